@@ -1,0 +1,63 @@
+//! How often each value occurs.
+
+use super::Volume;
+
+/// Counts of densities in equal bins over the volume's value range.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Histogram {
+    /// Voxels per bin; bin `i` of `n` holds densities in `[i/n, (i+1)/n)`, the last one also 1.
+    pub counts: Vec<u64>,
+    /// All voxels.
+    pub total: u64,
+}
+
+impl Histogram {
+    /// Counts a volume's voxels in `bins` bins.
+    pub fn of(volume: &Volume, bins: usize) -> Self {
+        use rayon::prelude::*;
+        let empty = || vec![0u64; bins];
+        let counts = (0..volume.dims()[2])
+            .into_par_iter()
+            .fold(empty, |mut counts, z| {
+                for density in volume.slice_densities(z) {
+                    counts[((density * bins as f32) as usize).min(bins - 1)] += 1;
+                }
+                counts
+            })
+            .reduce(empty, |mut a, b| {
+                a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+                a
+            });
+        Self { counts, total: volume.voxel_count() as u64 }
+    }
+
+    /// The density below which a share of `fraction` (0 … 1) of the voxels lies, to one bin.
+    pub fn percentile(&self, fraction: f64) -> f64 {
+        let wanted = fraction * self.total as f64;
+        let mut seen = 0.0;
+        for (bin, &count) in self.counts.iter().enumerate() {
+            seen += count as f64;
+            if seen >= wanted && count > 0 {
+                return bin as f64 / self.counts.len() as f64;
+            }
+        }
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Samples;
+    use glam::DVec3;
+
+    #[test]
+    fn counts_and_percentiles() {
+        let values = Samples::U8((0..=255).collect());
+        let volume = Volume::with_spacing("ramp", [16, 4, 4], DVec3::ONE, values).unwrap();
+        let histogram = Histogram::of(&volume, 256);
+        assert_eq!(histogram.counts.iter().sum::<u64>(), 256);
+        assert!((histogram.percentile(0.5) - 0.5).abs() < 0.01);
+        assert_eq!(histogram.percentile(0.0), 0.0);
+    }
+}

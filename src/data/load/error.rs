@@ -1,0 +1,175 @@
+//! Why a volume could not be loaded, in words that help.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+/// What a user reads: `WHAT: WHY (file, field); HELP`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Explanation {
+    /// What did not work.
+    pub what: String,
+    /// Why: what was expected and what was found.
+    pub why: String,
+    /// Where: the file and, after a comma, the field or option.
+    pub place: String,
+    /// What helps.
+    pub help: String,
+}
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {} ({}); {}", self.what, self.why, self.place, self.help)
+    }
+}
+
+/// The kinds of failure that callers treat differently.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LoadErrorKind {
+    /// The file or the options are wrong, broken or of a kind that is not read.
+    BadInput,
+    /// The volume is larger than a limit or than the memory.
+    Limit,
+    /// The file is not there or cannot be read.
+    Io,
+    /// The user cancelled.
+    Cancelled,
+}
+
+/// Why a volume could not be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The file or the options are wrong, broken or of a kind that is not read.
+    #[error("{0}")]
+    BadInput(Box<Explanation>),
+    /// The volume is larger than a limit or than the memory.
+    #[error("{0}")]
+    Limit(Box<Explanation>),
+    /// The file is not there or cannot be read.
+    #[error("{explanation}")]
+    Io {
+        /// The words for it.
+        explanation: Box<Explanation>,
+        /// What the operating system said, if it was asked.
+        #[source]
+        source: Option<io::Error>,
+    },
+    /// The user cancelled.
+    #[error("loading was cancelled")]
+    Cancelled,
+}
+
+impl LoadError {
+    /// Which kind of failure this is.
+    pub fn kind(&self) -> LoadErrorKind {
+        match self {
+            Self::BadInput(_) => LoadErrorKind::BadInput,
+            Self::Limit(_) => LoadErrorKind::Limit,
+            Self::Io { .. } => LoadErrorKind::Io,
+            Self::Cancelled => LoadErrorKind::Cancelled,
+        }
+    }
+
+    /// The parts of the message, except when cancelled.
+    pub fn explanation(&self) -> Option<&Explanation> {
+        match self {
+            Self::BadInput(explanation) | Self::Limit(explanation) | Self::Io { explanation, .. } => {
+                Some(explanation)
+            }
+            Self::Cancelled => None,
+        }
+    }
+}
+
+/// Makes the errors of one attempt: knows what is being done with which file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Attempt<'a> {
+    /// What is being done, after "cannot": `read the RAW volume`.
+    pub(crate) what: &'a str,
+    /// The file it is done with.
+    pub(crate) path: &'a Path,
+}
+
+impl Attempt<'_> {
+    pub(crate) fn bad_input(
+        &self,
+        field: &str,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) -> LoadError {
+        LoadError::BadInput(Box::new(self.explain(field, why.into(), help.into())))
+    }
+
+    pub(crate) fn limit(&self, field: &str, why: impl Into<String>, help: impl Into<String>) -> LoadError {
+        LoadError::Limit(Box::new(self.explain(field, why.into(), help.into())))
+    }
+
+    /// Something the file system is asked for is of the wrong kind.
+    pub(crate) fn not_a_file(&self, why: &str, help: &str) -> LoadError {
+        LoadError::Io {
+            explanation: Box::new(self.explain("", why.to_owned(), help.to_owned())),
+            source: None,
+        }
+    }
+
+    pub(crate) fn io(&self, source: io::Error) -> LoadError {
+        let (why, help) = match source.kind() {
+            io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the path"),
+            io::ErrorKind::PermissionDenied => {
+                ("it may not be read by this user".to_owned(), "change its permissions or copy it")
+            }
+            _ => (source.to_string(), "check the path and the disk"),
+        };
+        LoadError::Io { explanation: Box::new(self.explain("", why, help.to_owned())), source: Some(source) }
+    }
+
+    fn explain(&self, field: &str, why: String, help: String) -> Explanation {
+        let file = plain(&self.path.to_string_lossy(), 4096);
+        let place = if field.is_empty() { file } else { format!("{file}, {field}") };
+        Explanation { what: format!("cannot {}", self.what), why, place, help }
+    }
+}
+
+/// Text from a file in quotes, short and without control characters, for a message.
+pub(crate) fn quoted(text: &str) -> String {
+    format!("\"{}\"", plain(text, 60))
+}
+
+/// Text from outside as one line of at most `longest` characters: control characters become `·`.
+pub(crate) fn plain(text: &str, longest: usize) -> String {
+    let mut characters = text.chars().map(|c| if is_odd(c) { '·' } else { c });
+    let mut short: String = characters.by_ref().take(longest).collect();
+    if characters.next().is_some() {
+        short.push('…');
+    }
+    short
+}
+
+/// Whether a character could disturb a terminal or turn the direction of a line.
+fn is_odd(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_say_what_why_where_and_what_helps() {
+        let attempt = Attempt { what: "read the RAW volume", path: Path::new("dir/a\nb.raw") };
+        let error = attempt.bad_input("--dims", "a dimension is 0", "give three numbers above 0");
+        assert_eq!(
+            error.to_string(),
+            "cannot read the RAW volume: a dimension is 0 (dir/a·b.raw, --dims); give three numbers above 0"
+        );
+        assert_eq!(error.kind(), LoadErrorKind::BadInput);
+    }
+
+    #[test]
+    fn foreign_text_is_made_harmless() {
+        assert_eq!(quoted("a\u{1b}[2Jb"), "\"a·[2Jb\"");
+        assert_eq!(plain("abcdef", 3), "abc…");
+        assert_eq!(plain("abc", 3), "abc");
+        assert_eq!(plain("a\u{202e}b", 9), "a·b");
+    }
+}

@@ -1,0 +1,106 @@
+//! Regular files, opened only after a look at what they are.
+
+use std::fs::{self, File, FileType};
+use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom};
+use std::path::Path;
+
+use super::error::Attempt;
+use super::{LoadControl, LoadError};
+
+/// A regular file open for reading, at its beginning.
+#[derive(Debug)]
+pub(crate) struct Input {
+    /// Its content.
+    pub(crate) reader: BufReader<File>,
+    /// Its length in bytes when it was opened.
+    pub(crate) len: u64,
+}
+
+impl Input {
+    /// Opens a regular file; a symbolic link may lead to it.
+    ///
+    /// # Errors
+    /// `Io` when it is not there, not readable, or a directory, pipe, socket or device. Those are
+    /// never opened: opening a pipe blocks, and a device may have no end.
+    pub(crate) fn open(attempt: Attempt<'_>) -> Result<Self, LoadError> {
+        let io = |error| attempt.io(error);
+        let refuse = |file_type: FileType| {
+            if file_type.is_dir() {
+                attempt.not_a_file("it is a directory", "name one file: .raw, .raw.gz, .nrrd or .nhdr")
+            } else {
+                attempt.not_a_file(
+                    "it is a pipe, socket or device, not a regular file",
+                    "copy it to a file first",
+                )
+            }
+        };
+        let file_type = fs::metadata(attempt.path).map_err(io)?.file_type();
+        if !file_type.is_file() {
+            return Err(refuse(file_type));
+        }
+        let file = File::open(attempt.path).map_err(io)?;
+        // The name may mean something else by now; the open file cannot.
+        let metadata = file.metadata().map_err(io)?;
+        if !metadata.is_file() {
+            return Err(refuse(metadata.file_type()));
+        }
+        Ok(Self { reader: BufReader::with_capacity(256 << 10, file), len: metadata.len() })
+    }
+
+    /// The first bytes, at most `N`, zeros after the end. Goes back to the beginning.
+    pub(crate) fn magic<const N: usize>(&mut self) -> io::Result<[u8; N]> {
+        let mut start = Vec::with_capacity(N);
+        self.reader.by_ref().take(N as u64).read_to_end(&mut start)?;
+        self.reader.rewind()?;
+        start.resize(N, 0);
+        let mut magic = [0; N];
+        magic.copy_from_slice(&start);
+        Ok(magic)
+    }
+
+    /// Goes to byte `position`.
+    pub(crate) fn seek(&mut self, position: u64) -> io::Result<()> {
+        self.reader.seek(SeekFrom::Start(position)).map(drop)
+    }
+
+    /// Skips `lines` lines; their bytes, or `None` when the file ends before that.
+    ///
+    /// Nothing is collected, so that a file without line ends costs no memory.
+    pub(crate) fn skip_lines(
+        &mut self,
+        attempt: Attempt<'_>,
+        lines: u64,
+        control: &LoadControl,
+    ) -> Result<Option<u64>, LoadError> {
+        let mut left = lines;
+        let mut skipped = 0;
+        while left > 0 {
+            control.check()?;
+            let block = self.reader.fill_buf().map_err(|error| attempt.io(error))?;
+            if block.is_empty() {
+                return Ok(None);
+            }
+            let used = match block.iter().position(|&byte| byte == b'\n') {
+                Some(end) => {
+                    left -= 1;
+                    end + 1
+                }
+                None => block.len(),
+            };
+            self.reader.consume(used);
+            skipped += used as u64;
+        }
+        Ok(Some(skipped))
+    }
+}
+
+/// Whether a file that begins like this is a gzip file (RFC 1952: magic, then method 8).
+pub(crate) fn is_gzip(magic: &[u8]) -> bool {
+    magic.starts_with(&[0x1f, 0x8b, 8])
+}
+
+/// The file name without its last extension, for a volume that has no other name.
+pub(crate) fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    super::error::plain(&stem.to_string_lossy(), 120)
+}

@@ -1,0 +1,158 @@
+//! Sizes checked before anything is allocated.
+
+use std::fs;
+
+use glam::DAffine3;
+
+use super::LoadError;
+use super::error::Attempt;
+use crate::data::VoxelType;
+
+/// The budget where the system does not say how much memory it has.
+const FALLBACK_BUDGET_BYTES: u64 = 4 << 30;
+
+/// Distances between voxels outside this range are mistakes, and would upset every computation.
+const SPACING_RANGE_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
+/// The size of a grid that fits into the memory budget.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Extent {
+    /// Voxels along x, y, z, none of them 0.
+    pub(crate) dims: [usize; 3],
+    /// Their product.
+    pub(crate) voxels: usize,
+    /// Bytes of all voxels.
+    pub(crate) bytes: u64,
+}
+
+impl Extent {
+    /// Checks `dims`, which `field` gave, against zero, overflow and the budget.
+    pub(crate) fn checked(
+        attempt: Attempt<'_>,
+        field: &str,
+        dims: [u64; 3],
+        voxel_type: VoxelType,
+        budget_bytes: u64,
+    ) -> Result<Self, LoadError> {
+        let [x, y, z] = dims;
+        if dims.contains(&0) {
+            return Err(attempt.bad_input(
+                field,
+                format!("{x} x {y} x {z} voxels are an empty volume"),
+                "every dimension must be at least 1",
+            ));
+        }
+        // Three 64-bit factors can leave even 128 bits; saturated they still are over any budget.
+        let voxels = dims.iter().fold(1u128, |product, &n| product.saturating_mul(u128::from(n)));
+        let bytes = voxels.saturating_mul(voxel_type.bytes() as u128);
+        let too_large = || {
+            attempt.limit(
+                field,
+                format!(
+                    "{x} x {y} x {z} voxels of {} need {}, {} are allowed",
+                    voxel_type.name(),
+                    human_bytes(bytes),
+                    human_bytes(u128::from(budget_bytes))
+                ),
+                "check the dimensions, close other programs, or load a smaller or cropped volume",
+            )
+        };
+        if bytes > u128::from(budget_bytes) {
+            return Err(too_large());
+        }
+        // On a 32-bit system the budget may be larger than what can be addressed.
+        let narrow = |n: u64| usize::try_from(n).ok();
+        match (narrow(x), narrow(y), narrow(z), usize::try_from(voxels).ok(), u64::try_from(bytes).ok()) {
+            (Some(x), Some(y), Some(z), Some(voxels), Some(bytes)) => {
+                Ok(Self { dims: [x, y, z], voxels, bytes })
+            }
+            _ => Err(too_large()),
+        }
+    }
+}
+
+/// Whether a distance between voxels can be used.
+pub(crate) fn is_usable_spacing(spacing_mm: f64) -> bool {
+    SPACING_RANGE_MM.contains(&spacing_mm)
+}
+
+/// Whether an affine has usable, independent axes and a finite origin.
+pub(crate) fn is_usable_affine(world_from_index: &DAffine3) -> bool {
+    let axes = world_from_index.matrix3;
+    let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(glam::DVec3::length);
+    let flatness = axes.determinant().abs() / lengths.iter().product::<f64>();
+    world_from_index.is_finite() && lengths.into_iter().all(is_usable_spacing) && flatness > 1e-6
+}
+
+/// Three quarters of the memory that is free now, or 4 GiB where that is not known.
+pub(crate) fn default_budget_bytes() -> u64 {
+    fs::read_to_string("/proc/meminfo")
+        .ok()
+        .and_then(|text| available_bytes(&text))
+        .map_or(FALLBACK_BUDGET_BYTES, |available| available / 4 * 3)
+}
+
+/// `MemAvailable` of `/proc/meminfo`.
+fn available_bytes(meminfo: &str) -> Option<u64> {
+    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+/// A number of bytes for a message: exact when small, else in the largest unit that fits.
+pub(crate) fn human_bytes(bytes: u128) -> String {
+    const UNITS: [&str; 6] = ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
+    if bytes < 10 * 1024 {
+        return format!("{bytes} bytes");
+    }
+    let mut value = bytes as f64 / 1024.0;
+    let mut unit = 0;
+    while value >= 1024.0 && unit + 1 < UNITS.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    if value >= 1e6 {
+        format!("more than 1000000 {}", UNITS[unit])
+    } else {
+        format!("{value:.1} {}", UNITS[unit])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::LoadErrorKind;
+    use super::*;
+
+    fn kind_of(dims: [u64; 3], budget: u64) -> Result<Extent, LoadErrorKind> {
+        let attempt = Attempt { what: "test", path: Path::new("t") };
+        Extent::checked(attempt, "sizes", dims, VoxelType::U16, budget).map_err(|error| error.kind())
+    }
+
+    #[test]
+    fn sizes_are_checked_without_overflow() {
+        let ok = Extent { dims: [2, 3, 4], voxels: 24, bytes: 48 };
+        assert_eq!(kind_of([2, 3, 4], 48), Ok(ok));
+        assert_eq!(kind_of([2, 3, 4], 47), Err(LoadErrorKind::Limit));
+        assert_eq!(kind_of([2, 0, 4], 48), Err(LoadErrorKind::BadInput));
+        assert_eq!(kind_of([u64::MAX; 3], u64::MAX), Err(LoadErrorKind::Limit));
+        assert_eq!(kind_of([1 << 32, 1 << 32, 1], u64::MAX), Err(LoadErrorKind::Limit));
+        assert_eq!(kind_of([1_000_000; 3], u64::MAX / 16), Err(LoadErrorKind::Limit));
+    }
+
+    #[test]
+    fn the_budget_follows_the_free_memory() {
+        assert_eq!(available_bytes("MemTotal: 9 kB\nMemAvailable:    2048 kB\n"), Some(2 << 20));
+        assert_eq!(available_bytes("MemTotal: 9 kB\n"), None);
+        assert!(default_budget_bytes() > 0);
+    }
+
+    #[test]
+    fn bytes_read_well() {
+        assert_eq!(human_bytes(100), "100 bytes");
+        assert_eq!(human_bytes(3 << 29), "1.5 GiB");
+        assert_eq!(human_bytes(2_000_000_000_000_000_000), "1.7 EiB");
+        assert_eq!(human_bytes(u128::MAX), "more than 1000000 EiB");
+    }
+}

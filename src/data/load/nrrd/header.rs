@@ -1,0 +1,132 @@
+//! The header's lines: a magic, then `field: value`, `key:=value` and `# comment`, then an empty line.
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, Read as _};
+
+use super::super::LoadError;
+use super::super::error::{Attempt, quoted};
+
+/// Longer headers are refused: real ones have a few kilobytes.
+const LONGEST_HEADER_BYTES: u64 = 1 << 20;
+
+/// The header's fields as text.
+#[derive(Debug)]
+pub(super) struct Header {
+    /// By name in lower case without spaces: that makes `data file` and `datafile` one field.
+    fields: BTreeMap<String, String>,
+    /// Where the data begin in this file; `None` when the file ended before an empty line.
+    data_start: Option<u64>,
+}
+
+impl Header {
+    /// Reads up to the empty line or the end of the file.
+    pub(super) fn read(attempt: Attempt<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
+        let mut reader = reader.take(LONGEST_HEADER_BYTES);
+        let mut line = Vec::new();
+        let mut fields = BTreeMap::new();
+        let mut data_start = None;
+        for number in 1.. {
+            line.clear();
+            reader.read_until(b'\n', &mut line).map_err(|error| attempt.io(error))?;
+            if !line.ends_with(b"\n") && reader.limit() == 0 {
+                return Err(attempt.limit(
+                    "header",
+                    "the header has no end within 1 MiB",
+                    "check that it ends with an empty line",
+                ));
+            }
+            if line.is_empty() {
+                break;
+            }
+            let text = String::from_utf8_lossy(&line);
+            let text = text.trim_end_matches(['\n', '\r']);
+            if number == 1 {
+                check_magic(attempt, text)?;
+            } else if text.is_empty() {
+                data_start = Some(LONGEST_HEADER_BYTES - reader.limit());
+                break;
+            } else if !text.starts_with('#') {
+                let is_list = add_field(attempt, &mut fields, text, number)?;
+                if is_list {
+                    // File names follow, not fields; the reader of the data refuses the list.
+                    break;
+                }
+            }
+        }
+        if fields.is_empty() {
+            return Err(attempt.bad_input("header", "it has no fields", "check that it is an NRRD file"));
+        }
+        Ok(Self { fields, data_start })
+    }
+
+    /// The value of a field, if the header has it.
+    pub(super) fn get(&self, name: &str) -> Option<&str> {
+        self.fields.get(&key(name)).map(String::as_str)
+    }
+
+    /// The value of a field that must be there; `help` says what it should be.
+    pub(super) fn require(&self, attempt: Attempt<'_>, name: &str, help: &str) -> Result<&str, LoadError> {
+        self.get(name).ok_or_else(|| attempt.bad_input(name, format!("the field {name} is missing"), help))
+    }
+
+    /// Where the data begin in the header's own file.
+    pub(super) fn data_start(&self, attempt: Attempt<'_>) -> Result<u64, LoadError> {
+        self.data_start.ok_or_else(|| {
+            attempt.bad_input(
+                "data file",
+                "the file ends with its header: no data follow, and no data file is named",
+                "copy the file again, or name the file that holds the voxels in the field data file",
+            )
+        })
+    }
+}
+
+fn check_magic(attempt: Attempt<'_>, line: &str) -> Result<(), LoadError> {
+    match line.strip_prefix("NRRD000").map(str::trim_end) {
+        Some("1" | "2" | "3" | "4" | "5") => Ok(()),
+        Some(_) => Err(attempt.bad_input(
+            "magic",
+            format!("NRRD0001 to NRRD0005 are read, {} was found", quoted(line)),
+            "write it again as NRRD0004 or NRRD0005",
+        )),
+        None => Err(attempt.bad_input(
+            "magic",
+            format!("an NRRD file begins with NRRD0001 to NRRD0005, {} was found", quoted(line)),
+            "check the file's name and format",
+        )),
+    }
+}
+
+/// Adds the field of one line. True when it announces a list of data files.
+fn add_field(
+    attempt: Attempt<'_>,
+    fields: &mut BTreeMap<String, String>,
+    line: &str,
+    number: u32,
+) -> Result<bool, LoadError> {
+    let Some((name, value)) = line.split_once(':') else {
+        return Err(attempt.bad_input(
+            "header",
+            format!("line {number} is neither a field, a key, a comment nor empty: {}", quoted(line)),
+            "check that an empty line separates header and data",
+        ));
+    };
+    if value.starts_with('=') {
+        return Ok(false);
+    }
+    let (key, value) = (key(name), value.trim());
+    let is_list = key == "datafile" && value.split_whitespace().next() == Some("LIST");
+    let earlier = fields.insert(key, value.to_owned());
+    match earlier {
+        Some(earlier) if earlier != value => Err(attempt.bad_input(
+            name.trim(),
+            format!("the field is there twice, as {} and as {}", quoted(&earlier), quoted(value)),
+            "remove one of the two lines",
+        )),
+        _ => Ok(is_list),
+    }
+}
+
+fn key(name: &str) -> String {
+    name.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_lowercase()
+}

@@ -1,0 +1,148 @@
+//! How the voxels are stored: `type`, `encoding`, `endian`, `line skip`, `byte skip`.
+
+use super::super::error::{Attempt, quoted};
+use super::super::{Endian, LoadError};
+use super::header::Header;
+use super::needs_endian;
+use crate::data::VoxelType;
+
+/// How the numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Raw,
+    Gzip,
+    Text,
+}
+
+/// How the voxels are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Storage {
+    pub(super) voxel_type: VoxelType,
+    pub(super) encoding: Encoding,
+    /// `None` where it makes no difference.
+    pub(super) endian: Option<Endian>,
+    /// Lines before the data.
+    pub(super) line_skip: u64,
+    /// Bytes before the data, after the lines; `None`: the data are the file's last bytes.
+    pub(super) byte_skip: Option<u64>,
+}
+
+impl Storage {
+    pub(super) fn from_header(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
+        let voxel_type = voxel_type(attempt, header)?;
+        let encoding = encoding(attempt, header)?;
+        let endian = endian(attempt, header)?;
+        if endian.is_none() && encoding != Encoding::Text && needs_endian(voxel_type) {
+            return Err(attempt.bad_input(
+                "endian",
+                format!("the field endian is missing and {} has more than one byte", voxel_type.name()),
+                "add endian: little or endian: big",
+            ));
+        }
+        Ok(Self {
+            voxel_type,
+            encoding,
+            endian,
+            line_skip: line_skip(attempt, header)?,
+            byte_skip: byte_skip(attempt, header, encoding)?,
+        })
+    }
+}
+
+fn voxel_type(attempt: Attempt<'_>, header: &Header) -> Result<VoxelType, LoadError> {
+    const HELP: &str = "use one of uint8, int8, uint16, int16, uint32, int32, float, double";
+    let text = header.require(attempt, "type", HELP)?;
+    let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
+    Ok(match words.join(" ").as_str() {
+        "signed char" | "int8" | "int8_t" => VoxelType::I8,
+        "uchar" | "unsigned char" | "uint8" | "uint8_t" => VoxelType::U8,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => VoxelType::I16,
+        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => VoxelType::U16,
+        "int" | "signed int" | "int32" | "int32_t" => VoxelType::I32,
+        "uint" | "unsigned int" | "uint32" | "uint32_t" => VoxelType::U32,
+        "float" | "float32" => VoxelType::F32,
+        "double" | "float64" => VoxelType::F64,
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
+        | "int64_t"
+        | "ulonglong"
+        | "unsigned long long"
+        | "unsigned long long int"
+        | "uint64"
+        | "uint64_t"
+        | "block" => {
+            return Err(attempt.bad_input(
+                "type",
+                format!("voxels of type {} are not read", quoted(text)),
+                HELP,
+            ));
+        }
+        _ => return Err(attempt.bad_input("type", format!("{} is no NRRD type", quoted(text)), HELP)),
+    })
+}
+
+fn encoding(attempt: Attempt<'_>, header: &Header) -> Result<Encoding, LoadError> {
+    const HELP: &str = "write it again with encoding raw or gzip (for example: unu save -f nrrd -e gzip)";
+    let text = header.require(attempt, "encoding", "add encoding: raw, gzip or ascii")?;
+    match text.to_lowercase().as_str() {
+        "raw" => Ok(Encoding::Raw),
+        "gz" | "gzip" => Ok(Encoding::Gzip),
+        "txt" | "text" | "ascii" => Ok(Encoding::Text),
+        "hex" | "bz2" | "bzip2" | "zrl" => Err(attempt.bad_input(
+            "encoding",
+            format!("raw, gzip and ascii are read, {} is not", quoted(text)),
+            HELP,
+        )),
+        _ => Err(attempt.bad_input(
+            "encoding",
+            format!("raw, gzip or ascii was expected, {} was found", quoted(text)),
+            HELP,
+        )),
+    }
+}
+
+fn endian(attempt: Attempt<'_>, header: &Header) -> Result<Option<Endian>, LoadError> {
+    match header.get("endian").map(str::to_lowercase).as_deref() {
+        None => Ok(None),
+        Some("little") => Ok(Some(Endian::Little)),
+        Some("big") => Ok(Some(Endian::Big)),
+        Some(other) => Err(attempt.bad_input(
+            "endian",
+            format!("little or big was expected, {} was found", quoted(other)),
+            "correct the header",
+        )),
+    }
+}
+
+fn line_skip(attempt: Attempt<'_>, header: &Header) -> Result<u64, LoadError> {
+    let text = header.get("line skip").unwrap_or("0");
+    text.parse().map_err(|_unreadable| {
+        attempt.bad_input(
+            "line skip",
+            format!("a number of lines was expected, {} was found", quoted(text)),
+            "correct the header",
+        )
+    })
+}
+
+fn byte_skip(attempt: Attempt<'_>, header: &Header, encoding: Encoding) -> Result<Option<u64>, LoadError> {
+    let text = header.get("byte skip").unwrap_or("0");
+    match text.parse::<u64>() {
+        Ok(skip) => Ok(Some(skip)),
+        Err(_) if text == "-1" && encoding == Encoding::Raw => Ok(None),
+        Err(_) if text == "-1" => Err(attempt.bad_input(
+            "byte skip",
+            "-1 (the data are the last bytes) is possible with encoding raw only",
+            "give the number of bytes to skip",
+        )),
+        Err(_) => Err(attempt.bad_input(
+            "byte skip",
+            format!("a number of bytes or -1 was expected, {} was found", quoted(text)),
+            "correct the header",
+        )),
+    }
+}

@@ -1,0 +1,144 @@
+//! NRRD, "nearly raw raster data": a text header, and the voxels behind it or in a second file.
+//!
+//! After the definition at <https://teem.sourceforge.net/nrrd/format.html>, versions 1 to 5.
+//! Encodings raw, gzip and text. World space is right-anterior-superior millimetres.
+
+mod detached;
+mod geometry;
+mod header;
+mod layout;
+mod space;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use super::error::{Attempt, plain};
+use super::input::{Input, stem};
+use super::limits::Extent;
+use super::samples::{Layout, read_binary, read_gzip, read_text};
+use super::{Endian, LoadControl, LoadError, LoadOptions};
+use crate::data::{Samples, Volume, VoxelType};
+use geometry::Geometry;
+use header::Header;
+use layout::{Encoding, Storage};
+
+/// Whether a file that begins like this is an NRRD file.
+pub(super) fn is_nrrd(magic: &[u8]) -> bool {
+    magic.starts_with(b"NRRD000")
+}
+
+/// Loads an NRRD file that is open at its beginning.
+pub(super) fn load(
+    path: &Path,
+    mut input: Input,
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Result<Volume, LoadError> {
+    let attempt = Attempt { what: "read the NRRD volume", path };
+    let header = Header::read(attempt, &mut input.reader)?;
+    let storage = Storage::from_header(attempt, &header)?;
+    let geometry = Geometry::from_header(attempt, &header)?;
+    let extent =
+        Extent::checked(attempt, "sizes", geometry.dims, storage.voxel_type, options.memory_budget_bytes)?;
+    // Text has no byte order and one-byte voxels need none.
+    let endian = storage.endian.unwrap_or(Endian::Little);
+    let layout = Layout { extent, voxel_type: storage.voxel_type, endian };
+
+    let samples = match header.get("data file") {
+        None => {
+            let start = header.data_start(attempt)?;
+            input.seek(start).map_err(|error| attempt.io(error))?;
+            read_data(attempt, input, start, &storage, &layout, control)?
+        }
+        Some(name) => {
+            let data_path = detached::resolve(attempt, name)?;
+            let attempt = Attempt { what: "read the NRRD volume's data file", path: &data_path };
+            read_data(attempt, Input::open(attempt)?, 0, &storage, &layout, control)?
+        }
+    };
+    let name = header.get("content").filter(|content| !content.is_empty());
+    let name = name.map_or_else(|| stem(path), |content| plain(content, 120));
+    Volume::new(name, extent.dims, geometry.world_from_index, samples)
+        .map_err(|error| attempt.bad_input("data", error.to_string(), "check the header against the data"))
+}
+
+/// Reads the voxels from `input`, whose data begin at byte `start`, before any skipping.
+fn read_data(
+    attempt: Attempt<'_>,
+    mut input: Input,
+    start: u64,
+    storage: &Storage,
+    layout: &Layout,
+    control: &LoadControl,
+) -> Result<Samples, LoadError> {
+    const HELP: &str = "check sizes, type and the skips in the header, or copy the file again";
+    let Some(skipped) = input.skip_lines(attempt, storage.line_skip, control)? else {
+        return Err(attempt.bad_input(
+            "line skip",
+            format!("the data end before {} lines have been skipped", storage.line_skip),
+            HELP,
+        ));
+    };
+    let start = start + skipped;
+    let available = input.len.saturating_sub(start);
+    match storage.encoding {
+        Encoding::Raw => {
+            let bytes = layout.extent.bytes;
+            let skip = match storage.byte_skip {
+                Some(skip) => skip,
+                None => available.saturating_sub(bytes),
+            };
+            let found = available.saturating_sub(skip);
+            if found < bytes {
+                let [x, y, z] = layout.extent.dims;
+                let name = layout.voxel_type.name();
+                return Err(attempt.bad_input(
+                    "sizes",
+                    format!(
+                        "the data are truncated: {bytes} bytes expected for {x} x {y} x {z} voxels of {name}, \
+                         {found} found"
+                    ),
+                    HELP,
+                ));
+            }
+            if found > bytes {
+                // Legal: several headers can point into one file.
+                log::warn!(
+                    "{}: {} bytes after the voxels are ignored",
+                    attempt.path.display(),
+                    found - bytes
+                );
+            }
+            input.seek(start + skip).map_err(|error| attempt.io(error))?;
+            read_binary(&mut input.reader, layout, control)
+                .map_err(|fault| fault.into_error(attempt, layout, "bytes", HELP))
+        }
+        Encoding::Gzip => {
+            // The skipped bytes of compressed data are counted after inflating.
+            read_gzip(input.reader, storage.byte_skip.unwrap_or(0), layout, control)
+                .map_err(|fault| fault.into_error(attempt, layout, "bytes", HELP))
+        }
+        Encoding::Text => {
+            let skip = storage.byte_skip.unwrap_or(0);
+            // A digit each and a space between: less cannot hold the voxels, and nothing is allocated.
+            let voxels = layout.extent.voxels as u64;
+            let most = available.saturating_sub(skip).div_ceil(2);
+            if most < voxels {
+                return Err(attempt.bad_input(
+                    "sizes",
+                    format!("the data are truncated: {voxels} numbers expected, room for {most} found"),
+                    HELP,
+                ));
+            }
+            input.seek(start + skip).map_err(|error| attempt.io(error))?;
+            read_text(&mut input.reader, layout, control)
+                .map_err(|fault| fault.into_error(attempt, layout, "numbers", HELP))
+        }
+    }
+}
+
+/// Whether binary voxels of this type need a byte order.
+fn needs_endian(voxel_type: VoxelType) -> bool {
+    voxel_type.bytes() > 1
+}

@@ -1,0 +1,170 @@
+//! The space of an NRRD file: its vectors, its orientation and its units.
+
+use glam::DVec3;
+
+use super::super::LoadError;
+use super::super::error::{Attempt, quoted};
+use super::header::Header;
+
+/// The vectors of `space directions`, one for each axis; `None` for an axis outside space.
+///
+/// Without the field, or when it describes no axis at all, there are none.
+pub(super) fn directions(
+    attempt: Attempt<'_>,
+    header: &Header,
+    dimension: usize,
+) -> Result<Option<Vec<Option<DVec3>>>, LoadError> {
+    const FIELD: &str = "space directions";
+    let Some(text) = header.get(FIELD) else {
+        return Ok(None);
+    };
+    let space_dimension = space_dimension(attempt, header)?;
+    let wrong = |why: String| {
+        attempt.bad_input(
+            FIELD,
+            why,
+            format!("write {dimension} vectors like (1,0,0), or none, one for each axis"),
+        )
+    };
+    let vectors = parse_vectors(text)
+        .filter(|vectors| vectors.len() == dimension)
+        .ok_or_else(|| wrong(format!("{dimension} vectors were expected, {} was found", quoted(text))))?;
+    let mut directions = Vec::new();
+    for vector in vectors {
+        // Old files mark an axis outside space with NaN.
+        let Some(components) = vector.filter(|components| !components.iter().all(|c| c.is_nan())) else {
+            directions.push(None);
+            continue;
+        };
+        let direction = in_space(&components, space_dimension).ok_or_else(|| {
+            wrong(format!("{components:?} is no vector of {space_dimension} finite numbers"))
+        })?;
+        directions.push(Some(direction));
+    }
+    Ok(directions.iter().any(Option::is_some).then_some(directions))
+}
+
+/// The centre of the first voxel, in the file's space; the origin where it is not known.
+pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, LoadError> {
+    const FIELD: &str = "space origin";
+    let Some(text) = header.get(FIELD) else {
+        return Ok(DVec3::ZERO);
+    };
+    let space_dimension = space_dimension(attempt, header)?;
+    let wrong = || {
+        attempt.bad_input(
+            FIELD,
+            format!("a vector of {space_dimension} finite numbers was expected, {} was found", quoted(text)),
+            "write it like (0,0,0)",
+        )
+    };
+    let vectors = parse_vectors(text).ok_or_else(wrong)?;
+    match &vectors[..] {
+        [None] => Ok(DVec3::ZERO),
+        [Some(components)] if components.iter().all(|component| component.is_nan()) => {
+            log::warn!("{}: the space origin is unknown: 0 is used", attempt.path.display());
+            Ok(DVec3::ZERO)
+        }
+        [Some(components)] => in_space(components, space_dimension).ok_or_else(wrong),
+        _ => Err(wrong()),
+    }
+}
+
+/// Signs that turn the file's space into right-anterior-superior.
+///
+/// Spaces without an anatomical meaning are taken as they are.
+pub(super) fn flips(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, LoadError> {
+    // Checks the dimension also where no vector uses it.
+    space_dimension(attempt, header)?;
+    Ok(match header.get("space").unwrap_or_default().to_lowercase().as_str() {
+        "left-posterior-superior" | "lps" => DVec3::new(-1.0, -1.0, 1.0),
+        "left-anterior-superior" | "las" => DVec3::new(-1.0, 1.0, 1.0),
+        _ => DVec3::ONE,
+    })
+}
+
+/// Millimetres per unit of `space units` or `units`, from the first unit that is a known length.
+pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
+    let units = header.get(field).unwrap_or_default();
+    let length = |unit: &str| match unit.trim().to_lowercase().as_str() {
+        "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => Some(1.0),
+        "m" | "meter" | "meters" | "metre" | "metres" => Some(1e3),
+        "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => Some(10.0),
+        "um" | "\u{b5}m" | "\u{3bc}m" | "micron" | "microns" | "micrometer" | "micrometers" => Some(1e-3),
+        "nm" | "nanometer" | "nanometers" | "nanometre" | "nanometres" => Some(1e-6),
+        _ => None,
+    };
+    // Units are in quotes: every second piece is one.
+    units.split('"').skip(1).step_by(2).find_map(length)
+}
+
+/// The number of components of the file's vectors: 3, or 2 for pictures.
+fn space_dimension(attempt: Attempt<'_>, header: &Header) -> Result<usize, LoadError> {
+    let wrong = |field: &str, found: &str| {
+        attempt.bad_input(
+            field,
+            format!("a space of 3 dimensions, or 2 for a slice, was expected, {} was found", quoted(found)),
+            "extract one time step, or write a space like left-posterior-superior",
+        )
+    };
+    match (header.get("space"), header.get("space dimension")) {
+        // The spaces with time have four dimensions: names and abbreviations end like this.
+        (Some(space), _) if has_time(space) => Err(wrong("space", space)),
+        (Some(_), _) | (None, None | Some("3")) => Ok(3),
+        (None, Some("2")) => Ok(2),
+        (None, Some(other)) => Err(wrong("space dimension", other)),
+    }
+}
+
+fn has_time(space: &str) -> bool {
+    let space = space.to_lowercase();
+    space.ends_with("-time") || matches!(space.as_str(), "rast" | "last" | "lpst")
+}
+
+/// A vector in three dimensions; none when its length is another or a component is not finite.
+fn in_space(components: &[f64], space_dimension: usize) -> Option<DVec3> {
+    let vector = match *components {
+        [x, y, z] if space_dimension == 3 => DVec3::new(x, y, z),
+        [x, y] if space_dimension == 2 => DVec3::new(x, y, 0.0),
+        _ => return None,
+    };
+    vector.is_finite().then_some(vector)
+}
+
+/// Takes `(1,0,0) none (0, 1, 0)` apart.
+fn parse_vectors(text: &str) -> Option<Vec<Option<Vec<f64>>>> {
+    let mut vectors = Vec::new();
+    let mut rest = text.trim_start();
+    while !rest.is_empty() {
+        if let Some(inside) = rest.strip_prefix('(') {
+            let (numbers, after) = inside.split_once(')')?;
+            vectors.push(Some(
+                numbers.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?,
+            ));
+            rest = after.trim_start();
+        } else {
+            let (word, after) = rest.split_at(rest.find([' ', '\t', '(']).unwrap_or(rest.len()));
+            if !word.eq_ignore_ascii_case("none") {
+                return None;
+            }
+            vectors.push(None);
+            rest = after.trim_start();
+        }
+    }
+    Some(vectors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_are_taken_apart() {
+        let vectors = parse_vectors(" (1,0, -2.5e0)none  (0,1,0) ").unwrap();
+        assert_eq!(vectors, [Some(vec![1.0, 0.0, -2.5]), None, Some(vec![0.0, 1.0, 0.0])]);
+        assert_eq!(parse_vectors(""), Some(vec![]));
+        for text in ["(1,0", "(1,x)", "()", "1 0 0", "(1,0,0) nothing", ")"] {
+            assert_eq!(parse_vectors(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Dimensions, orientation and spacing, from the outside.
+
+use glam::DVec3;
+
+use super::{VOXELS, assert_refused, header_with, load_attached};
+use crate::data::load::LoadErrorKind;
+
+#[test]
+fn other_dimensions_become_three() {
+    let dims = |fields: &[&str]| load_attached(&header_with(fields), &VOXELS).map(|volume| volume.dims());
+    assert_eq!(dims(&["dimension: 2", "sizes: 4 2"]).unwrap(), [4, 2, 1]);
+    assert_eq!(dims(&["dimension: 4", "sizes: 1 2 2 2"]).unwrap(), [2, 2, 2]);
+    assert_eq!(dims(&["dimension: 4", "sizes: 2 2 1 2"]).unwrap(), [2, 2, 2]);
+    assert_eq!(dims(&["dimension: 4", "sizes: 1 4 2 1"]).unwrap(), [4, 2, 1]);
+    let last = ["dimension: 4", "sizes: 1 2 4 1", "space directions: (1,0,0) (0,1,0) (0,0,2) none"];
+    assert_eq!(dims(&last).unwrap(), [1, 2, 4]);
+    let four = load_attached(&header_with(&["dimension: 4", "sizes: 2 2 2 2"]), &[0; 16]);
+    assert_refused(four, LoadErrorKind::BadInput, &["dimension", "component or time step"]);
+    let times = ["dimension: 4", "sizes: 2 1 2 2", "kinds: list domain domain domain"];
+    let times = load_attached(&header_with(&times), &VOXELS);
+    assert_refused(times, LoadErrorKind::BadInput, &["2 components or time steps"]);
+    let one = load_attached(&header_with(&["dimension: 1", "sizes: 8"]), &VOXELS);
+    assert_refused(one, LoadErrorKind::BadInput, &["dimension"]);
+}
+
+#[test]
+fn the_world_is_right_anterior_superior_millimetres() {
+    const DIRECTIONS: &str = "space directions: (0,2,0) (3,0,0) (0,0,4)";
+    const ORIGIN: &str = "space origin: (10, 20, 30)";
+    for (space, flip) in [
+        ("left-posterior-superior", DVec3::new(-1.0, -1.0, 1.0)),
+        ("LPS", DVec3::new(-1.0, -1.0, 1.0)),
+        ("left-anterior-superior", DVec3::new(-1.0, 1.0, 1.0)),
+        ("right-anterior-superior", DVec3::ONE),
+        ("scanner-xyz", DVec3::ONE),
+        ("unheard of", DVec3::ONE),
+    ] {
+        let fields = header_with(&[&format!("space: {space}"), DIRECTIONS, ORIGIN, "spacings: 9 9 9"]);
+        let affine = load_attached(&fields, &VOXELS).unwrap().world_from_index();
+        assert_eq!(affine.transform_point3(DVec3::ZERO), flip * DVec3::new(10.0, 20.0, 30.0), "{space}");
+        let step = affine.transform_vector3(DVec3::new(1.0, 1.0, 1.0));
+        assert_eq!(step, flip * DVec3::new(3.0, 2.0, 4.0), "{space}");
+    }
+    let microns =
+        header_with(&["space dimension: 3", DIRECTIONS, ORIGIN, "space units: \"um\" \"um\" \"um\""]);
+    let affine = load_attached(&microns, &VOXELS).unwrap().world_from_index();
+    assert!((affine.transform_point3(DVec3::ONE) - DVec3::new(0.013, 0.022, 0.034)).length() < 1e-12);
+}
+
+#[test]
+fn spacings_without_a_space_are_used() {
+    let spacing = |fields: &[&str]| load_attached(&header_with(fields), &VOXELS).unwrap().spacing_mm();
+    assert_eq!(spacing(&[]), DVec3::ONE);
+    assert_eq!(spacing(&["spacings: 0.5 0.5 3"]), DVec3::new(0.5, 0.5, 3.0));
+    assert_eq!(spacing(&["spacings: 0.5 NaN 3"]), DVec3::new(0.5, 1.0, 3.0));
+    assert_eq!(spacing(&["spacings: 2 2 3", "units: \"cm\" \"cm\" \"cm\""]), DVec3::new(20.0, 20.0, 30.0));
+    let squeezed = ["dimension: 4", "sizes: 1 2 2 2", "spacings: nan 1 2 3"];
+    assert_eq!(spacing(&squeezed), DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(spacing(&["dimension: 2", "sizes: 4 2", "spacings: 1 4"]), DVec3::new(1.0, 4.0, 2.0));
+}

@@ -1,0 +1,13 @@
+//! Volumes: what they are, where they come from, what can be said of their values.
+//!
+//! Knows nothing of settings, of the GPU or of the window.
+
+mod bricks;
+mod histogram;
+pub mod load;
+pub mod synthetic;
+mod volume;
+
+pub use bricks::{BRICK_EDGE, Bricks};
+pub use histogram::Histogram;
+pub use volume::{Samples, Volume, VolumeError, VoxelType};

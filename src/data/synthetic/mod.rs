@@ -1,0 +1,228 @@
+//! Built-in volumes: small scenes and test signals, computed at any resolution.
+//!
+//! All fill the same cube of 128 mm around the world's origin, whatever the number of voxels, so
+//! that settings made for one resolution hold for the others. They are described in coordinates
+//! p in [-1, 1]³ with z up: p = 1 is 64 mm, and voxel i of n has its centre at (i + ½) / n · 2 − 1.
+
+mod block;
+mod chair;
+mod cloud;
+mod marschner_lobb;
+mod noise;
+mod parts;
+mod shapes;
+mod sphere;
+
+use std::path::Path;
+
+use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::load::{Attempt, Extent, LoadControl, LoadError, LoadOptions};
+use super::{Samples, Volume, VoxelType};
+
+/// The built-in volumes.
+pub const NAMES: [&str; 5] = ["chair", "cloud", "sphere", "box", "marschner-lobb"];
+
+/// Voxels along each edge where nothing else is said.
+pub const DEFAULT_SIZE: usize = 128;
+
+/// Length to which the opacities of a built-in's transfer function refer: a voxel of the default
+/// size.
+pub(super) const UNIT_MM: f64 = 1.0;
+
+/// Voxels along each edge that are possible.
+const SIZES: std::ops::RangeInclusive<usize> = 8..=1024;
+
+/// Length of the cube's edges.
+const EDGE_MM: f64 = 128.0;
+
+/// The voxels of a built-in volume along each of the three axes.
+#[derive(Debug, Clone, Copy)]
+struct Grid {
+    n: usize,
+}
+
+impl Grid {
+    /// The edge of a voxel, in units of p.
+    fn voxel_edge(self) -> f64 {
+        2.0 / self.n as f64
+    }
+
+    /// The centre of voxel `i` along one axis, in units of p.
+    fn centre(self, i: usize) -> f64 {
+        (i as f64 + 0.5) / self.n as f64 * 2.0 - 1.0
+    }
+
+    /// The voxels whose centres lie in `[from, to]` along one axis.
+    fn range(self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let index = |p: f64| (p * 0.5 + 0.5) * self.n as f64 - 0.5;
+        let first = index(from).ceil().max(0.0) as usize;
+        let end = (index(to).floor() + 1.0).clamp(0.0, self.n as f64) as usize;
+        first.min(end)..end
+    }
+
+    /// Computes all voxels on all cores: `slice(z, values)` fills one z-slice, which begins as zeros.
+    fn fill<T: Copy + Default + Send>(
+        self,
+        attempt: Attempt<'_>,
+        control: &LoadControl,
+        slice: impl Fn(usize, &mut [T]) + Sync,
+    ) -> Result<Vec<T>, LoadError> {
+        let mut values = Vec::new();
+        let count = self.n.pow(3);
+        if values.try_reserve_exact(count).is_err() {
+            return Err(attempt.limit("N", "the memory is not there", "choose fewer voxels"));
+        }
+        values.resize(count, T::default());
+        control.start((count * size_of::<T>()) as u64);
+        values.par_chunks_mut(self.n * self.n).enumerate().try_for_each(|(z, values)| {
+            control.check()?;
+            slice(z, values);
+            control.advance(size_of_val(values) as u64);
+            Ok::<(), LoadError>(())
+        })?;
+        Ok(values)
+    }
+}
+
+/// Makes the built-in volume `name` of `n`³ voxels, else [`DEFAULT_SIZE`]³.
+///
+/// # Errors
+/// `BadInput` for a name that is not in [`NAMES`] or an `n` outside 8 … 1024; `Limit` when it would
+/// need more than three quarters of the free memory.
+pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
+    builtin_within(name, n, LoadOptions::default().memory_budget_bytes, &LoadControl::new())
+}
+
+/// As [`builtin`], with a memory budget in bytes, and with a control to watch and to cancel it.
+///
+/// # Errors
+/// As [`builtin`]; also `Cancelled`.
+pub fn builtin_within(
+    name: &str,
+    n: Option<usize>,
+    budget_bytes: u64,
+    control: &LoadControl,
+) -> Result<Volume, LoadError> {
+    let source = format!("builtin:{name}");
+    let attempt = Attempt { what: "make the built-in volume", path: Path::new(&source) };
+    let n = n.unwrap_or(DEFAULT_SIZE);
+    if !NAMES.contains(&name) {
+        return Err(attempt.bad_input(
+            "NAME",
+            "there is no built-in volume of that name",
+            format!("choose one of {}", NAMES.join(", ")),
+        ));
+    }
+    if !SIZES.contains(&n) {
+        let (least, most) = (SIZES.start(), SIZES.end());
+        return Err(attempt.bad_input(
+            "N",
+            format!("{least} to {most} voxels along an edge are possible, {n} were asked for"),
+            format!("write it like builtin:{name}:{DEFAULT_SIZE}"),
+        ));
+    }
+    control.check()?;
+    let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
+    Extent::checked(attempt, "N", [n as u64; 3], voxel_type, budget_bytes)?;
+    let grid = Grid { n };
+    let samples = match name {
+        "chair" => Samples::U8(parts::voxelise(grid, &chair::parts(), attempt, control)?),
+        "sphere" => Samples::U8(parts::voxelise(grid, &sphere::parts(), attempt, control)?),
+        "cloud" => Samples::U8(cloud::voxels(grid, attempt, control)?),
+        "box" => Samples::U8(block::voxels(grid, attempt, control)?),
+        _ => Samples::F32(marschner_lobb::voxels(grid, attempt, control)?),
+    };
+    let spacing_mm = EDGE_MM / n as f64;
+    let world_from_index = DAffine3 {
+        matrix3: DMat3::from_diagonal(DVec3::splat(spacing_mm)),
+        translation: DVec3::splat((spacing_mm - EDGE_MM) / 2.0),
+    };
+    Volume::new(name, [n; 3], world_from_index, samples)
+        // One voxel of the default size: at any other size the look stays.
+        .map(|volume| volume.with_unit_mm(UNIT_MM))
+        .map_err(|error| attempt.bad_input("data", error.to_string(), "choose another number of voxels"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::load::LoadErrorKind;
+    use super::*;
+
+    fn make(name: &str, n: usize) -> Volume {
+        builtin(name, Some(n)).unwrap()
+    }
+
+    fn mean(volume: &Volume) -> f64 {
+        let count = volume.voxel_count();
+        (0..count).map(|voxel| volume.samples().value(voxel)).sum::<f64>() / count as f64
+    }
+
+    #[test]
+    fn all_fill_the_same_cube() {
+        for name in NAMES {
+            for n in [8, 30, 33] {
+                let volume = make(name, n);
+                assert_eq!((volume.name(), volume.dims()), (name, [n; 3]));
+                let affine = volume.world_from_index();
+                let low = affine.transform_point3(DVec3::splat(-0.5));
+                let high = affine.transform_point3(DVec3::splat(n as f64 - 0.5));
+                assert!((low + 64.0).length() < 1e-9 && (high - 64.0).length() < 1e-9, "{name}:{n}");
+            }
+        }
+        assert_eq!(make("box", DEFAULT_SIZE).dims(), builtin("box", None).unwrap().dims());
+    }
+
+    #[test]
+    fn resolution_changes_little() {
+        for name in NAMES {
+            let (coarse, fine) = (mean(&make(name, 32)), mean(&make(name, 64)));
+            assert!((coarse / fine - 1.0).abs() < 0.04, "{name}: {coarse} at 32, {fine} at 64");
+        }
+    }
+
+    #[test]
+    fn the_same_call_gives_the_same_voxels() {
+        for name in NAMES {
+            assert_eq!(make(name, 24).samples(), make(name, 24).samples(), "{name}");
+        }
+    }
+
+    #[test]
+    fn scenes_stay_clear_of_the_border() {
+        for name in ["chair", "cloud", "sphere", "box"] {
+            let volume = make(name, 32);
+            for a in 0..32 {
+                for b in 0..32 {
+                    for [x, y, z] in [[0, a, b], [31, a, b], [a, 0, b], [a, 31, b], [a, b, 0], [a, b, 31]] {
+                        assert_eq!(volume.value(x, y, z), 0.0, "{name} at {x} {y} {z}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_hold_the_centres() {
+        let grid = Grid { n: 8 };
+        assert_eq!(grid.range(-2.0, 2.0), 0..8);
+        assert_eq!(grid.range(grid.centre(2), grid.centre(5)), 2..6);
+        assert_eq!(grid.range(0.01, 0.02), 4..4);
+        assert_eq!(grid.range(1.5, 2.0), 8..8);
+        assert!(grid.range(-3.0, -2.0).is_empty());
+    }
+
+    #[test]
+    fn unknown_names_and_sizes_are_refused() {
+        let kind = |name, n, budget| {
+            builtin_within(name, n, budget, &LoadControl::new()).map_err(|error| error.kind()).map(drop)
+        };
+        assert_eq!(kind("table", None, 1 << 30), Err(LoadErrorKind::BadInput));
+        assert_eq!(kind("box", Some(7), 1 << 30), Err(LoadErrorKind::BadInput));
+        assert_eq!(kind("box", Some(1025), 1 << 60), Err(LoadErrorKind::BadInput));
+        assert_eq!(kind("box", Some(8), 511), Err(LoadErrorKind::Limit));
+        assert_eq!(kind("marschner-lobb", Some(8), 2047), Err(LoadErrorKind::Limit));
+        assert_eq!(kind("box", Some(8), 512), Ok(()));
+    }
+}

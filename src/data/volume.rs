@@ -1,0 +1,366 @@
+//! A scalar volume on a regular grid, with its place in the world and its values in data units.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::math::SceneSpace;
+
+/// The number types that a voxel can have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub enum VoxelType {
+    U8,
+    I8,
+    U16,
+    I16,
+    U32,
+    I32,
+    F32,
+    F64,
+}
+
+impl VoxelType {
+    /// Every type, in the order of the declaration.
+    pub const ALL: [Self; 8] =
+        [Self::U8, Self::I8, Self::U16, Self::I16, Self::U32, Self::I32, Self::F32, Self::F64];
+
+    /// Size of one voxel in bytes.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 => 2,
+            Self::U32 | Self::I32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// The name used in file names and on the command line: `uint8` … `float64`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::U8 => "uint8",
+            Self::I8 => "int8",
+            Self::U16 => "uint16",
+            Self::I16 => "int16",
+            Self::U32 => "uint32",
+            Self::I32 => "int32",
+            Self::F32 => "float32",
+            Self::F64 => "float64",
+        }
+    }
+}
+
+/// The voxels' values as the file has them, x fastest, z slowest.
+#[derive(Debug, Clone, PartialEq)]
+#[expect(missing_docs, reason = "one variant per voxel type")]
+pub enum Samples {
+    U8(Vec<u8>),
+    I8(Vec<i8>),
+    U16(Vec<u16>),
+    I16(Vec<i16>),
+    U32(Vec<u32>),
+    I32(Vec<i32>),
+    F32(Vec<f32>),
+    F64(Vec<f64>),
+}
+
+/// Calls `$body` with `$values` bound to the vector inside, whatever its type.
+macro_rules! with_samples {
+    ($samples:expr, $values:ident => $body:expr) => {
+        match $samples {
+            Samples::U8($values) => $body,
+            Samples::I8($values) => $body,
+            Samples::U16($values) => $body,
+            Samples::I16($values) => $body,
+            Samples::U32($values) => $body,
+            Samples::I32($values) => $body,
+            Samples::F32($values) => $body,
+            Samples::F64($values) => $body,
+        }
+    };
+}
+
+impl Samples {
+    /// Number of voxels.
+    pub fn len(&self) -> usize {
+        with_samples!(self, values => values.len())
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number type.
+    pub fn voxel_type(&self) -> VoxelType {
+        match self {
+            Self::U8(_) => VoxelType::U8,
+            Self::I8(_) => VoxelType::I8,
+            Self::U16(_) => VoxelType::U16,
+            Self::I16(_) => VoxelType::I16,
+            Self::U32(_) => VoxelType::U32,
+            Self::I32(_) => VoxelType::I32,
+            Self::F32(_) => VoxelType::F32,
+            Self::F64(_) => VoxelType::F64,
+        }
+    }
+
+    /// One value in data units.
+    #[expect(
+        trivial_numeric_casts,
+        clippy::unnecessary_cast,
+        reason = "one of the eight types is f64 already"
+    )]
+    pub fn value(&self, voxel: usize) -> f64 {
+        with_samples!(self, values => values[voxel] as f64)
+    }
+
+    /// Smallest and largest finite value and the number of voxels that are not finite.
+    fn finite_range(&self) -> Option<(f64, f64, usize)> {
+        #[expect(
+            trivial_numeric_casts,
+            clippy::unnecessary_cast,
+            reason = "one of the eight types is f64 already"
+        )]
+        let (min, max, odd) = with_samples!(self, values => values.iter().fold(
+            (f64::INFINITY, f64::NEG_INFINITY, 0),
+            |(min, max, odd), &value| {
+                let value = value as f64;
+                if value.is_finite() { (min.min(value), max.max(value), odd) } else { (min, max, odd + 1) }
+            },
+        ));
+        (min <= max).then_some((min, max, odd))
+    }
+
+    /// A 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
+    fn fingerprint(&self) -> u64 {
+        const PRIME: u64 = 0x0000_0100_0000_01b3;
+        #[expect(
+            trivial_numeric_casts,
+            clippy::unnecessary_cast,
+            reason = "one of the eight types is f64 already"
+        )]
+        let hash = with_samples!(self, values => values.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
+            (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
+        }));
+        hash
+    }
+}
+
+/// Why a grid and its values do not make a volume.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum VolumeError {
+    #[error("the volume is empty ({dims:?} voxels): every dimension must be at least 1")]
+    Empty { dims: [usize; 3] },
+    #[error("{dims:?} voxels were announced, {found} are there")]
+    WrongCount { dims: [usize; 3], found: usize },
+    #[error("the spacing or orientation is unusable ({what}): it must be finite and not flat")]
+    BadGeometry { what: String },
+    #[error("no voxel has a finite value")]
+    NothingFinite,
+}
+
+/// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range.
+#[derive(Debug, Clone)]
+pub struct Volume {
+    name: String,
+    dims: [usize; 3],
+    world_from_index: DAffine3,
+    samples: Samples,
+    min_value: f64,
+    max_value: f64,
+    odd_voxels: usize,
+    unit_mm: Option<f64>,
+    content_id: u64,
+}
+
+impl Volume {
+    /// Makes a volume. `world_from_index` maps voxel indices (centres at integers) to millimetres.
+    ///
+    /// # Errors
+    /// When the count does not fit `dims`, a dimension is zero, the affine is not finite and
+    /// invertible, or no value is finite.
+    pub fn new(
+        name: impl Into<String>,
+        dims: [usize; 3],
+        world_from_index: DAffine3,
+        samples: Samples,
+    ) -> Result<Self, VolumeError> {
+        if dims.contains(&0) {
+            return Err(VolumeError::Empty { dims });
+        }
+        let expected = dims.iter().try_fold(1usize, |product, &n| product.checked_mul(n));
+        if expected != Some(samples.len()) {
+            return Err(VolumeError::WrongCount { dims, found: samples.len() });
+        }
+        let matrix = world_from_index.matrix3;
+        let lengths = DVec3::new(matrix.x_axis.length(), matrix.y_axis.length(), matrix.z_axis.length());
+        // Relative to a box of the same edges: below a millionth it is flat, whatever the unit.
+        let flatness = matrix.determinant().abs() / lengths.element_product();
+        if !(world_from_index.is_finite() && lengths.min_element() > 0.0 && flatness > 1e-6) {
+            return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
+        }
+        let (min_value, max_value, odd_voxels) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+        let geometry =
+            dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
+        let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
+            hash.rotate_left(17) ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        });
+        Ok(Self {
+            name: name.into(),
+            dims,
+            world_from_index,
+            samples,
+            min_value,
+            max_value,
+            odd_voxels,
+            unit_mm: None,
+            content_id,
+        })
+    }
+
+    /// States the length to which opacities of this material refer, so that it looks the same at
+    /// every resolution; the built-in volumes have one.
+    #[must_use]
+    pub fn with_unit_mm(self, unit_mm: f64) -> Self {
+        Self { unit_mm: Some(unit_mm), ..self }
+    }
+
+    /// See [`Self::with_unit_mm`].
+    pub fn unit_mm(&self) -> Option<f64> {
+        self.unit_mm
+    }
+
+    /// An axis-aligned volume: `spacing_mm` between voxel centres along x, y, z.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_spacing(
+        name: impl Into<String>,
+        dims: [usize; 3],
+        spacing_mm: DVec3,
+        samples: Samples,
+    ) -> Result<Self, VolumeError> {
+        let affine = DAffine3 { matrix3: DMat3::from_diagonal(spacing_mm), translation: DVec3::ZERO };
+        Self::new(name, dims, affine, samples)
+    }
+
+    /// What the user calls it: the file's name or the built-in's.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Voxels along x, y, z.
+    pub fn dims(&self) -> [usize; 3] {
+        self.dims
+    }
+
+    /// Number of voxels.
+    pub fn voxel_count(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// Voxel indices (centres at integers) to millimetres.
+    pub fn world_from_index(&self) -> DAffine3 {
+        self.world_from_index
+    }
+
+    /// Distance between voxel centres along the three index axes.
+    pub fn spacing_mm(&self) -> DVec3 {
+        let axes = self.world_from_index.matrix3;
+        DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length())
+    }
+
+    /// How the grid lies in scene space.
+    pub fn scene(&self) -> SceneSpace {
+        SceneSpace::new(self.dims, self.world_from_index)
+    }
+
+    /// The stored values.
+    pub fn samples(&self) -> &Samples {
+        &self.samples
+    }
+
+    /// The smallest and the largest finite value, in data units.
+    pub fn value_range(&self) -> (f64, f64) {
+        (self.min_value, self.max_value)
+    }
+
+    /// How many voxels hold NaN or an infinity; they count as the smallest value.
+    pub fn odd_voxels(&self) -> usize {
+        self.odd_voxels
+    }
+
+    /// Identifies values and geometry: equal volumes have equal ids.
+    pub fn content_id(&self) -> u64 {
+        self.content_id
+    }
+
+    /// One voxel in data units.
+    pub fn value(&self, x: usize, y: usize, z: usize) -> f64 {
+        self.samples.value(x + self.dims[0] * (y + self.dims[1] * z))
+    }
+
+    /// A value in data units as a density in [0, 1]: 0 at the smallest value of the volume, 1 at
+    /// the largest. What lies outside the grid has density 0; so do values that are not finite.
+    pub fn density_of(&self, value: f64) -> f64 {
+        let span = self.max_value - self.min_value;
+        if value.is_finite() && span > 0.0 { ((value - self.min_value) / span).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// The inverse of [`Self::density_of`].
+    pub fn value_of(&self, density: f64) -> f64 {
+        self.min_value + density * (self.max_value - self.min_value)
+    }
+
+    /// Densities in [0, 1] of the voxels of one z-slice, x fastest.
+    #[expect(
+        trivial_numeric_casts,
+        clippy::unnecessary_cast,
+        reason = "one of the eight types is f64 already"
+    )]
+    pub fn slice_densities(&self, z: usize) -> Vec<f32> {
+        let count = self.dims[0] * self.dims[1];
+        let range = z * count..(z + 1) * count;
+        with_samples!(&self.samples, values => values[range]
+            .iter()
+            .map(|&value| self.density_of(value as f64) as f32)
+            .collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn density_spans_the_finite_range() {
+        let samples = Samples::F32(vec![f32::NAN, -1000.0, 0.0, 1000.0]);
+        let volume = Volume::with_spacing("t", [4, 1, 1], DVec3::ONE, samples).unwrap();
+        assert_eq!(volume.value_range(), (-1000.0, 1000.0));
+        assert_eq!(volume.odd_voxels(), 1);
+        assert_eq!(volume.slice_densities(0), [0.0, 0.0, 0.5, 1.0]);
+        assert_eq!(volume.value_of(0.5), 0.0);
+    }
+
+    #[test]
+    fn what_is_not_a_volume_is_refused() {
+        let make = |dims, spacing: DVec3, n| {
+            Volume::with_spacing("t", dims, spacing, Samples::U8(vec![0; n])).map(|_| ())
+        };
+        assert!(matches!(make([0, 1, 1], DVec3::ONE, 0), Err(VolumeError::Empty { .. })));
+        assert!(matches!(make([2, 2, 2], DVec3::ONE, 7), Err(VolumeError::WrongCount { .. })));
+        assert!(matches!(
+            make([2, 1, 1], DVec3::new(1.0, f64::NAN, 1.0), 2),
+            Err(VolumeError::BadGeometry { .. })
+        ));
+        let nan = Volume::with_spacing("t", [1, 1, 1], DVec3::ONE, Samples::F64(vec![f64::NAN]));
+        assert!(matches!(nan, Err(VolumeError::NothingFinite)));
+    }
+
+    #[test]
+    fn content_decides_the_identity() {
+        let make = |v: Vec<u8>| Volume::with_spacing("t", [2, 2, 1], DVec3::ONE, Samples::U8(v)).unwrap();
+        assert_eq!(make(vec![1, 2, 3, 4]).content_id(), make(vec![1, 2, 3, 4]).content_id());
+        assert_ne!(make(vec![1, 2, 3, 4]).content_id(), make(vec![1, 2, 4, 3]).content_id());
+    }
+}

@@ -1,0 +1,17 @@
+//! Chiaroscuro: see the shape of volume data.
+//!
+//! True volumetric shadows after *Splatting With Shadows* (Nulkar & Mueller, 2001), below cited as
+//! P: light is attenuated on its way to the material and again on its way to the eye, and both
+//! passes are image-aligned sheet-buffer splatting.
+//!
+//! Modules import downwards only, in this order:
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`math`] | spaces and boxes |
+//! | [`data`] | volumes: readers, built-ins, histograms, bricks |
+//!
+//! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's
+//! longest edge spans [−1, 1]) → sheets (pixels and depth along an axis of projection).
+pub mod data;
+pub mod math;

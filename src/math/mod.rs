@@ -1,0 +1,10 @@
+//! Spaces and small geometry: what everything else may use and what knows nothing else.
+//!
+//! Names of transforms read right to left: `scene_from_index` takes a point in index space and
+//! gives it in scene space. All of this is f64; the GPU gets f32 at the very end.
+
+mod bounds;
+mod scene;
+
+pub use bounds::Bounds;
+pub use scene::SceneSpace;
