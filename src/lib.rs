@@ -10,8 +10,12 @@
 //! |---|---|
 //! | [`math`] | spaces and boxes |
 //! | [`data`] | volumes: readers, built-ins, histograms, bricks |
+//! | [`model`] | `Settings`, the one value that is the whole look |
+//! | [`plan`] | what a change makes stale; the geometry of the passes |
 //!
 //! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's
 //! longest edge spans [−1, 1]) → sheets (pixels and depth along an axis of projection).
 pub mod data;
 pub mod math;
+pub mod model;
+pub mod plan;

@@ -1,0 +1,24 @@
+//! What the user decides: one [`Settings`] value that is the whole look of a picture.
+//!
+//! Undo, sessions, presets, screenshots and the command line all use this one value; what must be
+//! recomputed after a change follows from comparing two of them (`crate::plan`).
+
+pub mod auto;
+mod camera;
+mod length;
+mod light;
+mod preset;
+mod settings;
+mod transfer;
+
+pub use camera::{Camera, Projection};
+pub use length::Length;
+pub use light::{Light, LightKind, MAX_LIGHTS};
+pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
+pub use settings::{
+    Background, Deposit, Kernel, LightingTransfer, Output, Quadrature, Resolution, SCHEMA, Sampling,
+    Settings, Shading, ShadowAlgorithm, Shadows, ToneMap,
+};
+pub use transfer::{
+    BakedTransfer, ControlPoint, Interpolation, LUT_SIZE, MAX_OPACITY, TransferFunction, linear_from_srgb,
+};

@@ -1,0 +1,421 @@
+//! The one value that is the whole look of a picture.
+
+use serde::{Deserialize, Serialize};
+
+use super::transfer::{Interpolation, unit_in_scene};
+use super::{BakedTransfer, Camera, ControlPoint, Length, Light, TransferFunction};
+use crate::math::SceneSpace;
+
+/// Version of the JSON form. Older files are migrated, newer ones are read as far as possible.
+pub const SCHEMA: u32 = 1;
+
+/// Everything that decides what a picture of a volume looks like.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// See [`SCHEMA`].
+    pub schema: u32,
+    /// Where the eye is.
+    pub camera: Camera,
+    /// At most [`super::MAX_LIGHTS`].
+    pub lights: Vec<Light>,
+    /// What the eye sees: colour and opacity of every value.
+    pub transfer: TransferFunction,
+    /// What the light meets.
+    pub lighting: LightingTransfer,
+    /// The length to which opacities refer.
+    pub opacity_unit: Length,
+    /// How material answers to light.
+    pub shading: Shading,
+    /// How light is attenuated on its way to the material.
+    pub shadows: Shadows,
+    /// How the eye's sheets are sampled.
+    pub sampling: Sampling,
+    /// What happens to the picture at the end.
+    pub output: Output,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            schema: SCHEMA,
+            camera: Camera::default(),
+            lights: vec![Light::default()],
+            transfer: TransferFunction::default(),
+            lighting: LightingTransfer::default(),
+            opacity_unit: Length::Voxels(1.0),
+            shading: Shading::default(),
+            shadows: Shadows::default(),
+            sampling: Sampling::default(),
+            output: Output::default(),
+        }
+    }
+}
+
+/// The opacity that attenuates light: the eye's, scaled, or a curve of its own (P §4: lower
+/// opacities here let light faintly pass thin opaque structures).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LightingTransfer {
+    /// Whether it follows the eye's opacity.
+    pub linked: bool,
+    /// Multiplies the extinction, linked or not.
+    pub scale: f64,
+    /// Used when not linked; its colours mean nothing.
+    pub curve: TransferFunction,
+}
+
+impl Default for LightingTransfer {
+    fn default() -> Self {
+        Self { linked: true, scale: 1.0, curve: TransferFunction::default() }
+    }
+}
+
+/// Phong's illumination equation (P eq. 2–4).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Shading {
+    /// Light that the material gives off, as a share of its colour (`C_e`).
+    pub emission: f64,
+    /// `k_a`.
+    pub ambient: f64,
+    /// `k_d`.
+    pub diffuse: f64,
+    /// `k_s`.
+    pub specular: f64,
+    /// `n_s`, the Phong exponent.
+    pub shininess: f64,
+    /// The density change per opacity unit at which a sample counts half as a surface: below it
+    /// the direction of the gradient is noise, and the sample is lit evenly from all sides.
+    pub surface_gradient: f64,
+}
+
+impl Default for Shading {
+    fn default() -> Self {
+        Self {
+            emission: 0.0,
+            ambient: 0.15,
+            diffuse: 0.85,
+            specular: 0.25,
+            shininess: 32.0,
+            surface_gradient: 0.02,
+        }
+    }
+}
+
+/// Where attenuated light comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShadowAlgorithm {
+    /// Light reaches everything.
+    Off,
+    /// A light volume filled by sheet-buffer splatting (P §3.5, the paper's variant 3).
+    Splat,
+}
+
+/// Which transmittance a sheet deposits in the light volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Deposit {
+    /// In front of the slab: P eq. 10 read literally; first order in the slab's thickness.
+    Front,
+    /// The mean over the slab, T·(1 − e^−τ)/τ; second order.
+    SlabMean,
+}
+
+/// The reconstruction kernel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kernel {
+    /// Cubic B-spline: an exact partition of unity, within 2 % of a Gaussian of σ = 0.6 voxel.
+    BSpline,
+    /// The paper's kernel, cut at two voxels and normalised.
+    Gaussian {
+        /// Standard deviation in voxels, 0.4 … 0.8.
+        sigma: f64,
+    },
+    /// The volume blurred once with [1/12, 10/12, 1/12]³, then one trilinear fetch: the same
+    /// variance as the B-spline at an eighth of the fetches.
+    Prefiltered,
+}
+
+/// How many points per slab the kernel's integral over the slab takes (Gauss–Legendre).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quadrature {
+    /// The middle of the slab.
+    One,
+    /// ± Δs/(2√3) from the middle.
+    Two,
+}
+
+impl Quadrature {
+    /// Offsets from the middle of the slab in units of its thickness; equal weights.
+    pub fn offsets(self) -> &'static [f64] {
+        // 1/(2√3)
+        const TWO: f64 = 0.288_675_134_594_812_9;
+        match self {
+            Self::One => &[0.0],
+            Self::Two => &[-TWO, TWO],
+        }
+    }
+}
+
+/// Resolution of the light volume per axis, relative to the data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resolution {
+    /// One light voxel per voxel.
+    Full,
+    /// ½ per axis: an eighth of the memory and time.
+    Half,
+    /// ¼ per axis.
+    Quarter,
+}
+
+impl Resolution {
+    /// Data voxels per light voxel along an axis.
+    pub fn divisor(self) -> usize {
+        match self {
+            Self::Full => 1,
+            Self::Half => 2,
+            Self::Quarter => 4,
+        }
+    }
+}
+
+/// How light is attenuated on its way, and the cures for darkness (P §4).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Shadows {
+    /// Off, or how the light volume is filled.
+    pub algorithm: ShadowAlgorithm,
+    /// 0: no shadows, 1: full ones.
+    pub strength: f64,
+    /// Added to the attenuated light everywhere.
+    pub ambient_offset: f64,
+    /// Multiplies the attenuated light, which is then cut at 1.
+    pub gain: f64,
+    /// Moves the lookup towards the light, in voxels, 0 … 2 (the kernel's radius).
+    pub bias_voxels: f64,
+    /// Multiplies the lights while shadows are on, so that the picture is as bright as without.
+    pub balance: f64,
+    /// Each voxel takes the light of the first sheet that touches it (the paper's mode without
+    /// weight volume).
+    pub first_touch: bool,
+    /// Which transmittance a sheet deposits.
+    pub deposit: Deposit,
+    /// Kernel of the light pass.
+    pub kernel: Kernel,
+    /// Slab thickness of the light pass, in smallest edges of the light volume's voxels.
+    pub slab: f64,
+    /// Quadrature of the light pass.
+    pub quadrature: Quadrature,
+    /// Resolution of the light volumes.
+    pub resolution: Resolution,
+}
+
+impl Default for Shadows {
+    fn default() -> Self {
+        Self {
+            algorithm: ShadowAlgorithm::Splat,
+            strength: 1.0,
+            ambient_offset: 0.0,
+            gain: 1.0,
+            bias_voxels: 0.0,
+            balance: 1.0,
+            first_touch: false,
+            deposit: Deposit::SlabMean,
+            kernel: Kernel::BSpline,
+            slab: 1.0,
+            quadrature: Quadrature::One,
+            resolution: Resolution::Full,
+        }
+    }
+}
+
+/// How the eye's sheets are sampled.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Sampling {
+    /// Reconstruction kernel.
+    pub kernel: Kernel,
+    /// Slab thickness in smallest voxel edges.
+    pub slab: f64,
+    /// Points per slab.
+    pub quadrature: Quadrature,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self { kernel: Kernel::BSpline, slab: 1.0, quadrature: Quadrature::One }
+    }
+}
+
+/// How linear light becomes a display colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ToneMap {
+    /// As is up to 0.8, then a smooth shoulder that keeps the hue.
+    Neutral,
+    /// Cut at 1.
+    Clip,
+}
+
+/// A vertical gradient behind the volume.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Background {
+    /// sRGB, 0 … 1.
+    pub top: [f32; 3],
+    /// sRGB, 0 … 1.
+    pub bottom: [f32; 3],
+}
+
+/// What happens to the picture at the end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Output {
+    /// Behind the volume; left out of transparent pictures.
+    pub background: Background,
+    /// Applied to the volume, never to the background.
+    pub tone_map: ToneMap,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        // #14161b … #262a33: dark, but not black, so that shadows can be told from it.
+        let bytes = |rgb: [u8; 3]| rgb.map(|c| f32::from(c) / 255.0);
+        let background = Background { top: bytes([0x14, 0x16, 0x1b]), bottom: bytes([0x26, 0x2a, 0x33]) };
+        Self { background, tone_map: ToneMap::Neutral }
+    }
+}
+
+impl Settings {
+    /// The eye's transfer function as a table for a volume of that value range.
+    pub fn baked_eye(&self, range: (f64, f64), scene: &SceneSpace) -> BakedTransfer {
+        self.transfer.bake(range, unit_in_scene(self.opacity_unit, scene), 1.0)
+    }
+
+    /// The lighting transfer function as a table for a volume of that value range.
+    pub fn baked_lighting(&self, range: (f64, f64), scene: &SceneSpace) -> BakedTransfer {
+        let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
+        function.bake(range, unit_in_scene(self.opacity_unit, scene), self.lighting.scale)
+    }
+
+    /// Brings every number into its documented range, so that nothing typed or loaded can reach a
+    /// shader as NaN, as a negative extinction or as an endless loop.
+    pub fn sanitise(&mut self) {
+        let number = |value: &mut f64, low: f64, high: f64, fallback: f64| {
+            *value = if value.is_finite() { value.clamp(low, high) } else { fallback };
+        };
+        let rgb = |color: &mut [f32; 3]| {
+            for c in color {
+                *c = if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 };
+            }
+        };
+        let point = |position: &mut [f64; 3], limit: f64| {
+            for c in position {
+                *c = if c.is_finite() { c.clamp(-limit, limit) } else { 0.0 };
+            }
+        };
+        let kernel = |kernel: &mut Kernel| {
+            if let Kernel::Gaussian { sigma } = kernel {
+                *sigma = if sigma.is_finite() { sigma.clamp(0.4, 0.8) } else { 0.6 };
+            }
+        };
+        let default = Self::default();
+        let Camera { projection: _, azimuth_deg, elevation_deg, roll_deg, target, distance, fov_y_deg } =
+            &mut self.camera;
+        number(azimuth_deg, -1e6, 1e6, default.camera.azimuth_deg);
+        number(elevation_deg, -1e6, 1e6, default.camera.elevation_deg);
+        number(roll_deg, -1e6, 1e6, 0.0);
+        point(target, 100.0);
+        number(distance, 0.05, 1e4, default.camera.distance);
+        number(fov_y_deg, 1.0, 120.0, default.camera.fov_y_deg);
+        self.lights.truncate(super::MAX_LIGHTS);
+        for light in &mut self.lights {
+            let Light { name: _, kind: _, position, color, intensity, on: _, casts_shadows: _ } = light;
+            point(position, 1e6);
+            rgb(color);
+            number(intensity, 0.0, 1e3, 1.0);
+        }
+        for function in [&mut self.transfer, &mut self.lighting.curve] {
+            function.points.retain(|point| point.value.is_finite());
+            for ControlPoint { value: _, color, opacity } in &mut function.points {
+                rgb(color);
+                number(opacity, 0.0, 1.0, 0.0);
+            }
+            function.sort();
+            let (Interpolation::Opacity | Interpolation::Extinction) = function.interpolation;
+        }
+        number(&mut self.lighting.scale, 0.0, 1e3, 1.0);
+        let length = self.opacity_unit.number();
+        if !(length.is_finite() && length > 0.0) {
+            self.opacity_unit = default.opacity_unit;
+        }
+        let Shading { emission, ambient, diffuse, specular, shininess, surface_gradient } = &mut self.shading;
+        number(emission, 0.0, 100.0, default.shading.emission);
+        number(ambient, 0.0, 10.0, default.shading.ambient);
+        number(diffuse, 0.0, 10.0, default.shading.diffuse);
+        number(specular, 0.0, 10.0, default.shading.specular);
+        number(shininess, 1.0, 1e3, default.shading.shininess);
+        number(surface_gradient, 1e-6, 10.0, default.shading.surface_gradient);
+        let Shadows {
+            algorithm: _,
+            strength,
+            ambient_offset,
+            gain,
+            bias_voxels,
+            balance,
+            first_touch: _,
+            deposit: _,
+            kernel: light_kernel,
+            slab,
+            quadrature: _,
+            resolution: _,
+        } = &mut self.shadows;
+        number(strength, 0.0, 1.0, default.shadows.strength);
+        number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);
+        number(gain, 0.0, 100.0, default.shadows.gain);
+        number(bias_voxels, 0.0, 2.0, default.shadows.bias_voxels);
+        number(balance, 0.01, 100.0, default.shadows.balance);
+        number(slab, 0.25, 2.0, default.shadows.slab);
+        kernel(light_kernel);
+        let Sampling { kernel: eye_kernel, slab, quadrature: _ } = &mut self.sampling;
+        number(slab, 0.25, 2.0, default.sampling.slab);
+        kernel(eye_kernel);
+        let Output { background: Background { top, bottom }, tone_map: _ } = &mut self.output;
+        rgb(top);
+        rgb(bottom);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nonsense_becomes_usable() {
+        let mut settings = Settings::default();
+        settings.camera.distance = f64::NAN;
+        settings.shadows.slab = 0.0;
+        settings.lights = vec![Light { intensity: -3.0, ..Light::default() }; 20];
+        settings.transfer.points.push(ControlPoint { value: f64::NAN, color: [2.0; 3], opacity: 0.1 });
+        settings.opacity_unit = Length::Mm(0.0);
+        settings.sanitise();
+        assert_eq!(settings.camera.distance, 5.2);
+        assert_eq!(settings.shadows.slab, 0.25);
+        assert_eq!(settings.lights.len(), 8);
+        assert_eq!(settings.lights[0].intensity, 0.0);
+        assert!(settings.transfer.points.is_empty());
+        assert_eq!(settings.opacity_unit, Length::Voxels(1.0));
+    }
+
+    #[test]
+    fn sane_settings_stay_as_they_are() {
+        let mut settings = Settings::default();
+        let before = settings.clone();
+        settings.sanitise();
+        assert_eq!(settings, before);
+    }
+}

@@ -1,0 +1,255 @@
+//! A light's sheets: one view for a light outside the volume, six (the faces of a cube around it)
+//! for a perspective light inside or close by.
+
+use glam::{DMat3, DQuat, DVec2, DVec3};
+
+use super::sheet_frame::{Placement, SheetFrame};
+use crate::math::SceneSpace;
+use crate::model::{Light, LightKind, Shadows};
+
+/// A perspective light nearer than this many radii of the volume is split into six views: beyond
+/// it, the volume fits a cone of ± asin(1/1.5) = 42°, no wider than one face of a cube.
+const SPLIT_RADII: f64 = 1.5;
+
+/// Largest width of the reverse kernel in pixels: close to a light inside the volume pixels become
+/// arbitrarily small, and there the kernel is narrower than a voxel instead of ever more fetches.
+pub const MAX_KERNEL_PIXELS: f64 = 4.0;
+
+/// One view of a light: a stack of sheets and where a point of the volume lies on them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightView {
+    /// Rays and slabs.
+    pub frame: SheetFrame,
+    /// Columns: the sheets' x and y axes and the direction away from the light, in scene space.
+    pub axes: DMat3,
+    /// Where the axis meets the anchor plane, in scene space.
+    pub anchor: DVec3,
+    /// Position of pixel (0, 0) on the anchor plane, in pixels from the axis.
+    pub first_pixel: DVec2,
+    /// Width of the reverse kernel, in scene units, where pixels are no wider than that: one voxel
+    /// of the light volume (its smallest edge).
+    pub kernel_edge: f64,
+    /// Whether this view owns only the quarter-space where its axis dominates (a cube's face).
+    pub cube_face: bool,
+}
+
+/// Position on a view's sheets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SheetPosition {
+    /// In pixels; pixel centres at integers.
+    pub pixel: DVec2,
+    /// In slabs; slab middles at integers.
+    pub slab: f64,
+    /// Width of the reverse kernel here, in pixels …
+    pub kernel_pixels: f64,
+    /// … and in slabs.
+    pub kernel_slabs: f64,
+}
+
+impl LightView {
+    /// Where a point in scene space lies; `None` for what another view owns or what lies in the
+    /// plane of the light.
+    pub fn position(&self, point: DVec3) -> Option<SheetPosition> {
+        let local = self.axes.transpose() * (point - self.anchor);
+        let spread = 1.0 + local.z * self.frame.inverse_distance;
+        if self.cube_face {
+            let depth = spread / self.frame.inverse_distance;
+            if !(depth > 0.0 && local.x.abs() <= depth && local.y.abs() <= depth) {
+                return None;
+            }
+        }
+        // A thousandth of the anchor's distance: nothing visible is that close to the light.
+        if spread.is_nan() || spread <= 1e-3 {
+            return None;
+        }
+        let pitch = self.frame.pitch * spread;
+        let kernel_pixels = (self.kernel_edge / pitch).clamp(1.0, MAX_KERNEL_PIXELS);
+        Some(SheetPosition {
+            pixel: DVec2::new(local.x, local.y) / pitch - self.first_pixel,
+            slab: (local.z - self.frame.first_depth) / self.frame.slab - 0.5,
+            kernel_pixels,
+            kernel_slabs: kernel_pixels * pitch / self.frame.slab,
+        })
+    }
+}
+
+/// The views of a light over a scene, with the pitch, slab and resolution that `shadows` asks for.
+pub fn light_views(light: &Light, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
+    let edge = scene.smallest_edge() * shadows.resolution.divisor() as f64;
+    let radius = scene.support_radius();
+    let position = DVec3::from(light.position);
+    match light.kind {
+        LightKind::Parallel => {
+            vec![outside_view(scene, -light.direction(), 0.0, edge, shadows.slab)]
+        }
+        LightKind::Perspective if position.length() >= SPLIT_RADII * radius => {
+            vec![outside_view(
+                scene,
+                -position / position.length(),
+                1.0 / position.length(),
+                edge,
+                shadows.slab,
+            )]
+        }
+        LightKind::Perspective => cube_views(scene, position, edge, shadows.slab),
+    }
+}
+
+/// A light that looks along `forward` at the origin, from `1 / inverse_distance` away.
+fn outside_view(
+    scene: &SceneSpace,
+    forward: DVec3,
+    inverse_distance: f64,
+    edge: f64,
+    slab: f64,
+) -> LightView {
+    let axes = axes_along(forward);
+    let pixels = scene.support_corners().map(|corner| {
+        let local = axes.transpose() * corner;
+        DVec2::new(local.x, local.y) / (edge * (1.0 + local.z * inverse_distance))
+    });
+    let low = pixels.iter().fold(DVec2::INFINITY, |low, &pixel| low.min(pixel)).floor();
+    let high = pixels.iter().fold(DVec2::NEG_INFINITY, |high, &pixel| high.max(pixel)).ceil();
+    let size = high - low + 1.0;
+    let place = Placement {
+        axes,
+        anchor: DVec3::ZERO,
+        inverse_distance,
+        pitch: edge,
+        first_pixel: low,
+        size: [size.x as u32, size.y as u32],
+        slab: slab * edge,
+        near: f64::NEG_INFINITY,
+    };
+    view(scene, &place, false)
+}
+
+/// Six views around a light at `position`.
+fn cube_views(scene: &SceneSpace, position: DVec3, edge: f64, slab: f64) -> Vec<LightView> {
+    let farthest = scene.support_corners().iter().map(|corner| corner.distance(position)).fold(0.0, f64::max);
+    // Pixels are a voxel wide halfway to the farthest corner: stretch at most 2 behind it. A whole
+    // number of slabs, so that slab faces pass through the light.
+    let thickness = slab * edge;
+    let anchor_distance = (farthest / 2.0 / thickness).ceil().max(1.0) * thickness;
+    // Half the face, and the widest kernel beyond its edges.
+    let half = (anchor_distance / edge + 2.0 * MAX_KERNEL_PIXELS).ceil() + 1.0;
+    let faces = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+    faces
+        .into_iter()
+        .map(|forward| {
+            let place = Placement {
+                axes: axes_along(forward),
+                anchor: position + forward * anchor_distance,
+                inverse_distance: 1.0 / anchor_distance,
+                pitch: edge,
+                first_pixel: DVec2::splat(-half),
+                size: [(2.0 * half) as u32 + 1; 2],
+                slab: thickness,
+                // Nothing behind the light.
+                near: -anchor_distance,
+            };
+            view(scene, &place, true)
+        })
+        .filter(|view| view.frame.slab_count > 0)
+        .collect()
+}
+
+fn view(scene: &SceneSpace, place: &Placement, cube_face: bool) -> LightView {
+    LightView {
+        frame: SheetFrame::new(scene, place),
+        axes: place.axes,
+        anchor: place.anchor,
+        first_pixel: place.first_pixel,
+        kernel_edge: place.pitch,
+        cube_face,
+    }
+}
+
+/// Axes with z along `forward`, by the shortest turn from straight down. They change continuously
+/// with the light except where it shines straight up, the rarest of directions.
+fn axes_along(forward: DVec3) -> DMat3 {
+    let from = DVec3::NEG_Z;
+    let turn = if from.dot(forward) < -1.0 + 1e-12 {
+        DQuat::from_rotation_x(std::f64::consts::PI)
+    } else {
+        DQuat::from_rotation_arc(from, forward)
+    };
+    DMat3::from_cols(turn * DVec3::X, turn * DVec3::NEG_Y, forward)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DAffine3;
+
+    fn scene() -> SceneSpace {
+        SceneSpace::new([40, 30, 20], DAffine3::from_scale(DVec3::new(1.0, 1.2, 2.0)))
+    }
+
+    fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
+        light_views(&Light { kind, position, ..Light::default() }, &Shadows::default(), &scene())
+    }
+
+    #[test]
+    fn positions_invert_rays() {
+        for (kind, position) in [
+            (LightKind::Parallel, [1.0, 2.0, 3.0]),
+            (LightKind::Perspective, [1.0, 2.0, 3.0]),
+            (LightKind::Perspective, [0.1, 0.2, 0.0]),
+        ] {
+            for view in views(kind, position) {
+                let (i, j, k) =
+                    (view.frame.size[0] as f64 / 2.0 + 1.0, view.frame.size[1] as f64 / 2.0 - 2.0, 7.0);
+                let point = view.frame.point(i, j, view.frame.depth_of(k));
+                let found = view.position(scene().scene_from_index.transform_point3(point)).unwrap();
+                assert!((found.pixel - DVec2::new(i, j)).length() < 1e-9, "{found:?}");
+                assert!((found.slab - k).abs() < 1e-9, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_voxel_has_room_for_its_kernel() {
+        for (kind, position) in [
+            (LightKind::Parallel, [0.3, -2.0, 1.0]),
+            (LightKind::Perspective, [2.0, 2.0, 1.0]),
+            (LightKind::Perspective, [0.2, 0.1, 0.3]),
+        ] {
+            let views = views(kind, position);
+            let [nx, ny, nz] = scene().dims;
+            for z in 0..nz {
+                for y in 0..ny {
+                    for x in 0..nx {
+                        let voxel = DVec3::new(x as f64, y as f64, z as f64);
+                        let point = scene().scene_from_index.transform_point3(voxel);
+                        let owners: Vec<_> =
+                            views.iter().filter_map(|v| Some((v, v.position(point)?))).collect();
+                        assert!(!owners.is_empty(), "nobody lights {voxel}");
+                        for (view, at) in owners {
+                            let reach = 2.0 * at.kernel_pixels;
+                            let size =
+                                DVec2::new(f64::from(view.frame.size[0]), f64::from(view.frame.size[1]));
+                            assert!((at.pixel - reach).min_element() > -1.0, "{at:?}");
+                            assert!((size - at.pixel - reach).min_element() > 0.0, "{at:?} of {size}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn axes_turn_without_jumps() {
+        let mut previous: Option<DMat3> = None;
+        for step in 0..=360 {
+            let angle = f64::from(step).to_radians();
+            let forward = DVec3::new(angle.cos() * 0.8, angle.sin() * 0.8, -0.6);
+            let axes = axes_along(forward);
+            assert!((axes.determinant() - 1.0).abs() < 1e-9 || (axes.determinant() + 1.0).abs() < 1e-9);
+            if let Some(previous) = previous {
+                assert!((axes.x_axis - previous.x_axis).length() < 0.05, "at {step} degrees");
+            }
+            previous = Some(axes);
+        }
+    }
+}
