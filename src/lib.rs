@@ -12,6 +12,7 @@
 //! | [`data`] | volumes: readers, built-ins, histograms, bricks |
 //! | [`model`] | `Settings`, the one value that is the whole look |
 //! | [`plan`] | what a change makes stale; the geometry of the passes |
+//! | [`mod@reference`] | the paper in f64, literal and slow |
 //!
 //! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's
 //! longest edge spans [−1, 1]) → sheets (pixels and depth along an axis of projection).
@@ -19,3 +20,4 @@ pub mod data;
 pub mod math;
 pub mod model;
 pub mod plan;
+pub mod reference;

@@ -1,0 +1,173 @@
+//! The reverse splat: sheets of light into the voxels of the light volume (P eq. 10, figure 3).
+//! Stored is the attenuation, Σ D·h / Σ h, not the light.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::field::trilinear;
+use super::footprint::SlabSlice;
+use super::kernel::Profile;
+use super::light::ViewSheets;
+use super::{Fault, Reference, Weights};
+use crate::plan::SheetPosition;
+
+/// How much of a light arrives where: the paper's attenuation volume.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attenuation {
+    /// Light voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// Voxels per light voxel along an axis.
+    pub divisor: usize,
+    /// One value per light voxel, x fastest; 1 is unattenuated.
+    pub values: Vec<f64>,
+}
+
+impl Attenuation {
+    /// The trilinearly interpolated value at an index-space point.
+    pub fn at(&self, point: DVec3) -> f64 {
+        trilinear(self.dims, &self.values, (point + 0.5) / self.divisor as f64 - 0.5)
+    }
+
+    /// The index-space point in the middle of a light voxel.
+    fn point_of(&self, voxel: usize) -> DVec3 {
+        let [nx, ny, _] = self.dims;
+        let texel = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
+        DVec3::from(texel.map(|t| (t as f64 + 0.5) * self.divisor as f64 - 0.5))
+    }
+}
+
+impl Reference<'_> {
+    /// The attenuation volume of light `index`.
+    pub fn attenuation(&self, index: usize) -> Attenuation {
+        self.back_project(&self.light_sheets(index))
+    }
+
+    /// The attenuation volumes of all lights that have one.
+    pub fn attenuations(&self) -> Vec<Option<Attenuation>> {
+        let lights = &self.settings.lights;
+        (0..lights.len()).map(|index| self.casts(index).then(|| self.attenuation(index))).collect()
+    }
+
+    /// Splats a light's sheets back into its attenuation volume. What several views claim, the
+    /// last of them gets; what none does is unattenuated.
+    pub fn back_project(&self, sheets: &[ViewSheets]) -> Attenuation {
+        let divisor = self.settings.shadows.resolution.divisor();
+        let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
+        let mut volume = Attenuation { dims, divisor, values: vec![1.0; dims.iter().product()] };
+        for sheets in sheets.iter().filter(|sheets| !sheets.deposits.is_empty()) {
+            let filled: Vec<_> = match self.options.weights {
+                Weights::Footprint if !self.settings.shadows.first_touch => self.scatter(sheets, &volume),
+                Weights::Gather | Weights::Footprint => (0..volume.values.len())
+                    .into_par_iter()
+                    .map(|voxel| self.gathered(sheets, volume.point_of(voxel)))
+                    .collect(),
+            };
+            for (value, filled) in volume.values.iter_mut().zip(filled) {
+                *value = filled.unwrap_or(*value);
+            }
+        }
+        volume
+    }
+
+    /// Where a view's sheets see an index-space point, if the view owns it.
+    fn position(&self, sheets: &ViewSheets, point: DVec3) -> Option<SheetPosition> {
+        sheets.view.position(self.scene.scene_from_index.transform_point3(point))
+    }
+
+    /// The GPU's form: one voxel takes from all pixels around it.
+    fn gathered(&self, sheets: &ViewSheets, point: DVec3) -> Option<f64> {
+        let at = self.position(sheets, point)?;
+        if self.settings.shadows.first_touch {
+            return Some(first_touch(sheets, &at));
+        }
+        let profile = self.profile(self.settings.shadows.kernel);
+        let [columns, rows] = sheets.view.frame.size;
+        let across = taps(&profile, at.pixel.x, at.kernel_pixels, columns as usize);
+        let down = taps(&profile, at.pixel.y, at.kernel_pixels, rows as usize);
+        let deep = taps(&profile, at.slab, at.kernel_slabs, sheets.deposits.len());
+        let mut sums = Sums::default();
+        for &(k, wk) in &deep {
+            for &(j, wj) in &down {
+                for &(i, wi) in &across {
+                    sums.add(sheets.deposit(i, j, k), wi * wj * wk);
+                }
+            }
+        }
+        Some(sums.normalised(self.options.fault))
+    }
+
+    /// The paper's form: sheet after sheet is splatted into the light volume, each pixel with the
+    /// slice of the voxel's kernel that lies in the sheet's slab; a voxel is divided by its sum of
+    /// weights as soon as the sheets have passed it (the rolling normalisation).
+    fn scatter(&self, sheets: &ViewSheets, volume: &Attenuation) -> Vec<Option<f64>> {
+        let profile = self.profile(self.settings.shadows.kernel);
+        let mut light = vec![Sums::default(); volume.values.len()];
+        let mut done = vec![None; light.len()];
+        for k in 0..sheets.view.frame.slab_count {
+            // The kernel is as wide as a light voxel, or as a pixel where that is wider.
+            let slice = SlabSlice::new(&sheets.view.frame, k, profile.reach(), volume.divisor as f64);
+            light.par_iter_mut().zip(&mut done).enumerate().for_each(|(voxel, (sums, done))| {
+                let centre = volume.point_of(voxel);
+                if slice.is_beyond(centre) {
+                    done.get_or_insert_with(|| sums.normalised(self.options.fault));
+                    return;
+                }
+                let Some([columns, rows]) = slice.pixels_under(centre) else {
+                    return;
+                };
+                for j in rows {
+                    for i in columns.clone() {
+                        let weight = slice.mean_of(|t| profile.of_light(t), centre, i, j);
+                        sums.add(sheets.deposit(i as usize, j as usize, k as usize), weight);
+                    }
+                }
+            });
+        }
+        let value = |(voxel, (sums, done)): (usize, (Sums, Option<f64>))| {
+            self.position(sheets, volume.point_of(voxel))?;
+            Some(done.unwrap_or_else(|| sums.normalised(self.options.fault)))
+        };
+        light.into_iter().zip(done).enumerate().map(value).collect()
+    }
+}
+
+/// Σ D·h (the light volume) and Σ h (the weight volume) of one voxel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    light: f64,
+    weight: f64,
+}
+
+impl Sums {
+    fn add(&mut self, deposit: f64, weight: f64) {
+        self.light += deposit * weight;
+        self.weight += weight;
+    }
+
+    fn normalised(self, fault: Fault) -> f64 {
+        if self.weight <= 0.0 {
+            1.0
+        } else if fault == Fault::NoDivision {
+            self.light
+        } else {
+            self.light / self.weight
+        }
+    }
+}
+
+/// The integers 0 … count − 1 under a kernel of some width around `centre`, with its weights.
+fn taps(profile: &Profile, centre: f64, width: f64, count: usize) -> Vec<(usize, f64)> {
+    let reach = profile.reach() * width;
+    let first = (centre - reach).ceil().max(0.0) as usize;
+    let end = (centre + reach).floor().clamp(-1.0, count as f64 - 1.0) + 1.0;
+    (first..end as usize).map(|tap| (tap, profile.of_light((tap as f64 - centre) / width))).collect()
+}
+
+/// P §4: a voxel takes the light of the first sheet that touches it, l = ⌈z − 2·width⌉, and needs
+/// no weights. Bilinear between the sheet's pixels.
+fn first_touch(sheets: &ViewSheets, at: &SheetPosition) -> f64 {
+    let last = (sheets.deposits.len() - 1) as f64;
+    let k = (at.slab - 2.0 * at.kernel_slabs).ceil().clamp(0.0, last) as usize;
+    let [columns, rows] = sheets.view.frame.size.map(|n| n as usize);
+    trilinear([columns, rows, 1], &sheets.deposits[k], at.pixel.extend(0.0))
+}

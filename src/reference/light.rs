@@ -1,0 +1,79 @@
+//! The march of light: sheets are composited front to back as seen from the light, and each keeps
+//! the transmittance that it will splat into the light volume (the product in P eq. 10).
+
+use rayon::prelude::*;
+
+use super::sheet::Stack;
+use super::{Fault, Reference};
+use crate::model::Deposit;
+use crate::plan::{LightView, light_views};
+
+/// What the sheets of one view of a light hold.
+#[derive(Debug, Clone)]
+pub struct ViewSheets {
+    /// Where these sheets lie.
+    pub view: LightView,
+    /// D of every slab, front to back; each a sheet, row by row.
+    pub deposits: Vec<Vec<f64>>,
+    /// Transmittance behind the last slab, row by row.
+    pub transmittance: Vec<f64>,
+}
+
+impl ViewSheets {
+    /// D of slab `k` at pixel (i, j).
+    pub fn deposit(&self, i: usize, j: usize, k: usize) -> f64 {
+        self.deposits[k][i + self.view.frame.size[0] as usize * j]
+    }
+}
+
+impl Reference<'_> {
+    /// The sheets of every view of light `index`: P figure 3 up to the reverse splat.
+    pub fn light_sheets(&self, index: usize) -> Vec<ViewSheets> {
+        let shadows = &self.settings.shadows;
+        light_views(&self.settings.lights[index], shadows, &self.scene)
+            .into_iter()
+            .map(|view| self.march(view))
+            .collect()
+    }
+
+    fn march(&self, view: LightView) -> ViewSheets {
+        let shadows = &self.settings.shadows;
+        let table = self.settings.baked_lighting(self.range, &self.scene);
+        let stack = Stack::new(self, &view.frame, (shadows.kernel, shadows.quadrature), table);
+        // Densities do not depend on light, so all slabs at once; then light, slab by slab.
+        let densities: Vec<_> =
+            (0..view.frame.slab_count).into_par_iter().map(|k| stack.densities(k)).collect();
+        let mut transmittance = vec![1.0; stack.pixel_count()];
+        let deposits = (0..)
+            .zip(&densities)
+            .map(|(k, sheet)| {
+                transmittance
+                    .par_iter_mut()
+                    .zip(sheet)
+                    .enumerate()
+                    .map(|(pixel, (transmittance, &density))| {
+                        let sample = stack.classify(pixel as u32, k, density);
+                        let optical_depth = sample.map_or(0.0, |sample| sample.optical_depth);
+                        let deposit = *transmittance * self.deposited_share(optical_depth);
+                        *transmittance *= (-optical_depth).exp();
+                        deposit
+                    })
+                    .collect()
+            })
+            .collect();
+        ViewSheets { view, deposits, transmittance }
+    }
+
+    /// D/T: which of the transmittances in a slab of optical depth τ counts for it.
+    fn deposited_share(&self, optical_depth: f64) -> f64 {
+        match self.settings.shadows.deposit {
+            _ if self.options.fault == Fault::DepositAfter => (-optical_depth).exp(),
+            Deposit::Front => 1.0,
+            // 1/τ ∫₀^τ e^−t dt = (1 − e^−τ)/τ
+            Deposit::SlabMean if optical_depth < 1e-4 => {
+                1.0 - optical_depth / 2.0 + optical_depth * optical_depth / 6.0
+            }
+            Deposit::SlabMean => -(-optical_depth).exp_m1() / optical_depth,
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The slow, readable renderer in f64 that the GPU is compared with, stage by stage.
+//!
+//! It follows the paper literally (P §3.5, figure 3): sheet buffers filled by splatting voxels,
+//! composited as seen from the light, splatted back into a light volume and normalised, then the
+//! same again for the eye. [`Weights::Footprint`] is that; [`Weights::Gather`] are the same sums
+//! turned around, with the weights of the GPU, which must then agree to rounding. Nothing is
+//! skipped and no ray ends early.
+//!
+//! | stage | file | to compare |
+//! |---|---|---|
+//! | prefiltered volume and its pyramid | `pyramid` | [`Reference::density`] |
+//! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
+//! | march of light | `light` | [`Reference::light_sheets`] |
+//! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
+//! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
+
+mod back_project;
+mod eye;
+mod field;
+mod footprint;
+mod gather;
+mod kernel;
+mod light;
+mod pyramid;
+mod shade;
+mod sheet;
+#[cfg(test)]
+mod tests;
+
+pub use back_project::Attenuation;
+pub use field::{Field, Rounding};
+pub use kernel::{cubic_b_spline, gaussian, tent};
+pub use light::ViewSheets;
+pub use pyramid::Pyramid;
+
+use glam::DVec3;
+
+use crate::data::Volume;
+use crate::math::SceneSpace;
+use crate::model::{Kernel, Settings, ShadowAlgorithm};
+use kernel::Profile;
+
+/// Whose weights the sums are taken with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Weights {
+    /// The GPU's: kernels evaluated at one or two points per slab, weights that sum to 1.
+    #[default]
+    Gather,
+    /// The paper's: kernel slices integrated over the slab, not normalised on the way to the sheet.
+    Footprint,
+}
+
+/// A deliberate mistake. Tests use it to prove that a comparison with the GPU, or a check against
+/// a closed form, can fail; each is visible only where what it spoils matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Fault {
+    /// No mistake.
+    #[default]
+    None,
+    /// All kernels 5 % wider: every stage, wherever densities or light vary.
+    WiderKernel,
+    /// Sheets deposit the transmittance behind their slab, whatever the settings say.
+    DepositAfter,
+    /// The reverse splat is not divided by its sum of weights. Those of the B-spline sum to 1 by
+    /// themselves where the kernel is one pixel and one slab wide: look at another slab thickness,
+    /// another kernel or a perspective light.
+    NoDivision,
+    /// Slabs are as thick for oblique rays as for straight ones: perspective eyes and lights only.
+    NoObliquity,
+    /// Normals point inwards: specular light only, since diffuse light is two-sided.
+    FlippedNormal,
+    /// Densities are looked up half a voxel further along x.
+    ShiftedKernel,
+}
+
+/// What kind of reference is wanted.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// Whose weights.
+    pub weights: Weights,
+    /// Which mistake, if any.
+    pub fault: Fault,
+    /// How densities and the prefiltered volume's levels are stored; `None` keeps them as they are.
+    pub rounding: Option<Rounding>,
+}
+
+/// A volume and the look of it, ready to be rendered.
+#[derive(Debug, Clone)]
+pub struct Reference<'a> {
+    settings: &'a Settings,
+    options: Options,
+    scene: SceneSpace,
+    range: (f64, f64),
+    field: Field,
+    pyramid: Pyramid,
+}
+
+impl<'a> Reference<'a> {
+    /// A reference for a volume with some settings.
+    pub fn new(volume: &Volume, settings: &'a Settings, options: Options) -> Self {
+        let field = Field::with_rounding(volume, options.rounding.unwrap_or(|density| density));
+        let pyramid = Pyramid::of(&field, kernel_width(options.fault), options.rounding);
+        Self { settings, options, scene: volume.scene(), range: volume.value_range(), field, pyramid }
+    }
+
+    /// The density at an index-space point as the GPU gathers it, with the kernel stretched
+    /// 2^`level` times.
+    pub fn density(&self, kernel: Kernel, point: DVec3, level: f64) -> f64 {
+        gather::density(self, &self.profile(kernel), point + self.kernel_shift(), level)
+    }
+
+    /// Whether light `index` has an attenuation volume.
+    fn casts(&self, index: usize) -> bool {
+        self.settings.shadows.algorithm != ShadowAlgorithm::Off && self.settings.lights[index].needs_volume()
+    }
+
+    fn profile(&self, kernel: Kernel) -> Profile {
+        Profile { kernel, width: kernel_width(self.options.fault) }
+    }
+
+    /// Where densities are looked up, relative to where they should be.
+    fn kernel_shift(&self) -> DVec3 {
+        if self.options.fault == Fault::ShiftedKernel { DVec3::X / 2.0 } else { DVec3::ZERO }
+    }
+}
+
+/// The kernels' width relative to the right one.
+fn kernel_width(fault: Fault) -> f64 {
+    if fault == Fault::WiderKernel { 1.05 } else { 1.0 }
+}

@@ -1,0 +1,182 @@
+//! The colour of a sample: P eq. 2 – 4 with the light of the attenuation volumes.
+
+use glam::DVec3;
+
+use super::back_project::Attenuation;
+use super::pyramid::MAX_LEVEL;
+use super::{Fault, Reference};
+use crate::model::{Light, LightKind, Projection, ShadowAlgorithm};
+
+/// The lights and the eye of one picture.
+pub(super) struct Shader<'r> {
+    reference: &'r Reference<'r>,
+    lamps: Vec<Lamp<'r>>,
+    /// Length to which gradients refer, in scene units.
+    opacity_unit: f64,
+}
+
+/// A light that is on.
+struct Lamp<'r> {
+    light: &'r Light,
+    /// Linear colour times intensity and balance: `C_L` of P eq. 5.
+    rgb: [f64; 3],
+    attenuation: Option<&'r Attenuation>,
+}
+
+/// One sRGB component to linear light (IEC 61966-2-1); the reference has its own.
+fn linear_from_srgb(encoded: f32) -> f64 {
+    let encoded = f64::from(encoded);
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// What the gradient says about a sample.
+struct Surface {
+    /// From dense to thin; zero where there is no gradient.
+    normal: DVec3,
+    /// 0: the inside of something, lit evenly from all sides; 1: a surface.
+    weight: f64,
+}
+
+impl<'r> Shader<'r> {
+    pub(super) fn new(reference: &'r Reference<'r>, attenuations: &'r [Option<Attenuation>]) -> Self {
+        let settings = reference.settings;
+        let shadows_on = settings.shadows.algorithm != ShadowAlgorithm::Off;
+        let balance = if shadows_on { settings.shadows.balance } else { 1.0 };
+        let lamp = |(index, light): (usize, &'r Light)| Lamp {
+            light,
+            rgb: light.color.map(|c| linear_from_srgb(c) * light.intensity * balance),
+            attenuation: attenuations
+                .get(index)
+                .and_then(Option::as_ref)
+                .filter(|_| shadows_on && light.casts_shadows),
+        };
+        Self {
+            reference,
+            lamps: settings.lights.iter().enumerate().filter(|(_, light)| light.on).map(lamp).collect(),
+            opacity_unit: settings.opacity_unit.in_scene(&reference.scene).max(1e-9),
+        }
+    }
+
+    /// C(s) of P eq. 2 at an index-space point with the transfer function's colour `C_o`:
+    /// `C_o · (emission + k_a + Σ C_l·k_d·|N·L|) + Σ C_l·k_s·(N·H)^n_s`.
+    pub(super) fn color(&self, point: DVec3, base: [f64; 3], level: f64) -> [f64; 3] {
+        let shading = &self.reference.settings.shading;
+        let scene = &self.reference.scene;
+        let surface = self.surface(point, level);
+        let place = scene.scene_from_index.transform_point3(point);
+        let to_eye = self.towards_eye(place);
+        let mut diffuse = [shading.emission + shading.ambient; 3];
+        let mut specular = [0.0; 3];
+        for lamp in &self.lamps {
+            let to_light = match lamp.light.kind {
+                LightKind::Parallel => lamp.light.direction(),
+                LightKind::Perspective => (DVec3::from(lamp.light.position) - place).normalize_or(DVec3::Z),
+            };
+            let arriving = self.arriving(lamp, point, to_light);
+            let facing = surface.normal.dot(to_light);
+            // Two-sided, and 1 where there is no surface.
+            let reflected = 1.0 + (facing.abs() - 1.0) * surface.weight;
+            let half_way = (to_light + to_eye).normalize_or_zero();
+            let mirrored = if facing > 0.0 {
+                surface.weight * surface.normal.dot(half_way).max(0.0).powf(shading.shininess)
+            } else {
+                0.0
+            };
+            for channel in 0..3 {
+                diffuse[channel] += lamp.rgb[channel] * arriving * shading.diffuse * reflected;
+                specular[channel] += lamp.rgb[channel] * arriving * shading.specular * mirrored;
+            }
+        }
+        std::array::from_fn(|channel| base[channel] * diffuse[channel] + specular[channel])
+    }
+
+    /// The share of a light that arrives: its attenuation with the cures for darkness (P §4).
+    fn arriving(&self, lamp: &Lamp<'_>, point: DVec3, to_light: DVec3) -> f64 {
+        let Some(attenuation) = lamp.attenuation else {
+            return 1.0;
+        };
+        let shadows = &self.reference.settings.shadows;
+        let scene = &self.reference.scene;
+        let bias = to_light * (scene.smallest_edge() * shadows.bias_voxels);
+        let looked_up = attenuation.at(point + scene.index_from_scene.transform_vector3(bias));
+        let light = (shadows.gain * looked_up + shadows.ambient_offset).min(1.0);
+        1.0 - shadows.strength * (1.0 - light)
+    }
+
+    /// Central differences of the prefiltered density, one voxel (or one stretched voxel) to either
+    /// side, turned into scene space as gradients are: by the transposed inverse.
+    fn surface(&self, point: DVec3, level: f64) -> Surface {
+        let level = level.clamp(0.0, MAX_LEVEL as f64);
+        let step = level.exp2();
+        let difference = |axis: DVec3| {
+            let fetch = |at: DVec3| self.reference.pyramid.fetch(at, level);
+            (fetch(point + axis * step) - fetch(point - axis * step)) / (2.0 * step)
+        };
+        let in_index = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
+        let gradient = self.reference.scene.index_from_scene.matrix3.transpose() * in_index;
+        let length = gradient.length();
+        let outward = if self.reference.options.fault == Fault::FlippedNormal { 1.0 } else { -1.0 };
+        let change = length * self.opacity_unit;
+        let threshold = self.reference.settings.shading.surface_gradient;
+        Surface {
+            normal: if length < 1e-9 { DVec3::ZERO } else { gradient * (outward / length) },
+            weight: change * change / (change * change + threshold * threshold),
+        }
+    }
+
+    /// Unit vector from a scene point towards the eye.
+    fn towards_eye(&self, place: DVec3) -> DVec3 {
+        let camera = &self.reference.settings.camera;
+        let backward = camera.scene_from_view().z_axis;
+        match camera.projection {
+            Projection::Orthographic => backward,
+            Projection::Perspective => (camera.eye() - place).normalize_or(backward),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Samples, Volume};
+    use crate::model::{Camera, Settings, Shading};
+    use crate::reference::Options;
+
+    #[test]
+    fn a_ramp_is_lit_as_the_equation_says() {
+        // Density falls from 1 to 0 over 16 voxels along x: the surface looks towards +x.
+        let values = (0..16usize.pow(3)).map(|v| (15 - v % 16) as u8).collect();
+        let volume = Volume::with_spacing("ramp", [16; 3], DVec3::ONE, Samples::U8(values)).unwrap();
+        let settings = Settings {
+            camera: Camera {
+                projection: Projection::Orthographic,
+                azimuth_deg: 0.0,
+                elevation_deg: 0.0,
+                ..Camera::default()
+            },
+            lights: vec![Light { position: [3.0, 4.0, 0.0], intensity: 2.0, ..Light::default() }],
+            shading: Shading {
+                emission: 0.1,
+                shininess: 2.0,
+                surface_gradient: 1.0 / 15.0,
+                ..Shading::default()
+            },
+            ..Settings::default()
+        };
+        // One voxel is the opacity unit, so the density change per unit is 1/15, half a surface.
+        let weight = 0.5;
+        let reference = Reference::new(&volume, &settings, Options::default());
+        let half = Attenuation { dims: [1; 3], divisor: 16, values: vec![0.5] };
+        for (attenuations, arriving) in [(vec![], 1.0), (vec![Some(half)], 0.5)] {
+            let shader = Shader::new(&reference, &attenuations);
+            let found = shader.color(DVec3::splat(7.5), [1.0, 0.5, 0.0], 0.0);
+            let diffuse = 0.1 + 0.15 + 2.0 * arriving * 0.85 * (1.0 - weight + weight * 0.6);
+            // The half-vector of (0.6, 0.8, 0) and (1, 0, 0): cos² = (1 + 0.6)/2.
+            let specular = 2.0 * arriving * 0.25 * weight * 0.8;
+            for (channel, base) in [1.0, 0.5, 0.0].into_iter().enumerate() {
+                let right = base * diffuse + specular;
+                assert!((found[channel] - right).abs() < 1e-6, "{} {right}", found[channel]);
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A stack of sheet buffers: densities with either kind of weights, and what they mean after
+//! classification.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::kernel::Profile;
+use super::{Fault, Reference, Weights, footprint, gather};
+use crate::model::{BakedTransfer, Kernel, Quadrature};
+use crate::plan::SheetFrame;
+
+/// The sheets of one pass.
+pub(super) struct Stack<'r> {
+    reference: &'r Reference<'r>,
+    /// Rays and slabs.
+    pub frame: &'r SheetFrame,
+    profile: Profile,
+    quadrature: Quadrature,
+    table: BakedTransfer,
+}
+
+/// What one slab does to one ray.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    /// The index-space point in the middle of the slab.
+    pub point: DVec3,
+    /// Linear colour of the transfer function.
+    pub rgb: [f64; 3],
+    /// Optical depth τ of the slab along this ray.
+    pub optical_depth: f64,
+}
+
+impl<'r> Stack<'r> {
+    pub(super) fn new(
+        reference: &'r Reference<'r>,
+        frame: &'r SheetFrame,
+        (kernel, quadrature): (Kernel, Quadrature),
+        table: BakedTransfer,
+    ) -> Self {
+        Self { reference, frame, profile: reference.profile(kernel), quadrature, table }
+    }
+
+    /// The mean densities of slab `k`, row by row; 0 outside the volume's support.
+    pub(super) fn densities(&self, k: u32) -> Vec<f64> {
+        let Self { reference, frame, profile, quadrature, .. } = self;
+        match reference.options.weights {
+            Weights::Footprint => {
+                footprint::splat(&reference.field, frame, profile, reference.kernel_shift(), k)
+            }
+            Weights::Gather => {
+                let width = frame.size[0];
+                (0..width * frame.size[1])
+                    .into_par_iter()
+                    .map(|pixel| {
+                        let at = [pixel % width, pixel / width, k].map(f64::from);
+                        if self.material_at(at).is_none() {
+                            return 0.0;
+                        }
+                        gather::slab_mean(reference, frame, profile, *quadrature, at)
+                    })
+                    .collect()
+            }
+        }
+    }
+
+    /// The middle of slab `k` on a pixel's ray, if there can be material.
+    fn material_at(&self, [i, j, k]: [f64; 3]) -> Option<DVec3> {
+        let point = self.frame.point(i, j, self.frame.depth_of(k));
+        let support = self.reference.scene.support_in_index();
+        (point.cmpge(support.min).all() && point.cmple(support.max).all()).then_some(point)
+    }
+
+    /// Classifies the density of a slab on a pixel's ray; `None` where nothing is.
+    ///
+    /// τ = μ(ρ̄) · Δs / cos θ, so that the opacity is 1 − e^−τ (P eq. 6).
+    pub(super) fn classify(&self, pixel: u32, k: u32, density: f64) -> Option<Sample> {
+        let width = self.frame.size[0];
+        let at @ [i, j, _] = [pixel % width, pixel / width, k].map(f64::from);
+        let point = self.material_at(at)?;
+        let [r, g, b, extinction] = self.table.sample(density);
+        let lengthening =
+            if self.reference.options.fault == Fault::NoObliquity { 1.0 } else { self.frame.obliquity(i, j) };
+        let optical_depth = extinction * self.frame.slab * lengthening;
+        (optical_depth > 0.0).then_some(Sample { point, rgb: [r, g, b], optical_depth })
+    }
+
+    /// The number of pixels of a sheet.
+    pub(super) fn pixel_count(&self) -> usize {
+        self.frame.size[0] as usize * self.frame.size[1] as usize
+    }
+}

@@ -1,0 +1,77 @@
+//! The reference against closed forms, against itself with the other weights, and at fault.
+
+mod closed_forms;
+mod controls;
+mod weights;
+
+use glam::DVec3;
+
+use super::*;
+use crate::data::Samples;
+use crate::model::{
+    Camera, ControlPoint, Deposit, Interpolation, Light, LightKind, Projection, Quadrature, Resolution,
+    TransferFunction,
+};
+
+const KERNELS: [Kernel; 3] = [Kernel::BSpline, Kernel::Gaussian { sigma: 0.6 }, Kernel::Prefiltered];
+
+fn volume(dims: [usize; 3], density: impl Fn(DVec3) -> f64) -> Volume {
+    volume_with(dims, DVec3::ONE, density)
+}
+
+fn volume_with(dims: [usize; 3], spacing: DVec3, density: impl Fn(DVec3) -> f64) -> Volume {
+    let [nx, ny, nz] = dims;
+    let mut values: Vec<f32> = (0..nx * ny * nz)
+        .map(|v| density(DVec3::new((v % nx) as f64, (v / nx % ny) as f64, (v / (nx * ny)) as f64)) as f32)
+        .collect();
+    // Far from everything that is looked at: the range is then 0 … 1 for sure.
+    values[0] = 0.0;
+    values[1] = 1.0;
+    Volume::with_spacing("test", dims, spacing, Samples::F32(values)).unwrap()
+}
+
+fn box_of(dims: [usize; 3]) -> Volume {
+    volume(dims, |_| 1.0)
+}
+
+/// A soft ball with a dense lump of sharp edges in it.
+fn ball(dims: [usize; 3], spacing: DVec3) -> Volume {
+    let counts = DVec3::from(dims.map(|n| n as f64));
+    volume_with(dims, spacing, |p| {
+        let away = (p + 0.5) / counts - 0.5;
+        let lump = (away - DVec3::new(0.1, 0.1, 0.2)).length();
+        if lump < 0.15 { 1.0 } else { (1.0 - 2.5 * away.length()).clamp(0.0, 0.6) }
+    })
+}
+
+/// Extinction linear in density; `depth` is the optical depth of a full voxel.
+fn settings(depth: f64) -> Settings {
+    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    let points = vec![point(0.0, 0.0), point(1.0, -(-depth).exp_m1())];
+    let mut settings = Settings {
+        transfer: TransferFunction { points, interpolation: Interpolation::Extinction },
+        camera: Camera { distance: 4.0, ..Camera::default() },
+        lights: vec![Light { position: [0.0, 0.0, 4.0], ..Light::default() }],
+        ..Settings::default()
+    };
+    settings.shadows.slab = 1.0;
+    settings
+}
+
+fn options(weights: Weights, fault: Fault) -> Options {
+    Options { weights, fault, rounding: None }
+}
+
+/// Root mean square of differences.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
+}
+
+/// One light and an eye, at an optical depth of 0.4 per full voxel.
+fn scene(kind: LightKind, position: [f64; 3], projection: Projection) -> Settings {
+    let mut settings = settings(0.4);
+    settings.lights[0] = Light { kind, position, ..Light::default() };
+    settings.camera.projection = projection;
+    settings
+}
