@@ -13,10 +13,12 @@
 //! | [`model`] | `Settings`, the one value that is the whole look |
 //! | [`plan`] | what a change makes stale; the geometry of the passes |
 //! | [`mod@reference`] | the paper in f64, literal and slow |
+//! | [`gpu`] | the renderer |
 //!
 //! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's
 //! longest edge spans [−1, 1]) → sheets (pixels and depth along an axis of projection).
 pub mod data;
+pub mod gpu;
 pub mod math;
 pub mod model;
 pub mod plan;

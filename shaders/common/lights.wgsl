@@ -1,0 +1,71 @@
+// Phong's illumination with attenuated light (P eq. 2–4).
+const MAX_LIGHTS = 8;
+
+struct Light {
+    // Unit direction towards a parallel light, or the position of a perspective one; scene space.
+    place: vec3f,
+    // 0: parallel, 1: perspective.
+    perspective: f32,
+    // Linear colour × intensity.
+    color: vec3f,
+    // 1 when it has an attenuation volume.
+    shadowed: f32,
+    // Index space to texture coordinates of that volume: (p + ½) × lookup.
+    lookup: vec3f,
+    pad0: f32,
+}
+
+struct Shading {
+    emission: f32,
+    ambient: f32,
+    diffuse: f32,
+    specular: f32,
+    shininess: f32,
+    // Gradient per scene unit at which a sample counts half as a surface.
+    surface_gradient: f32,
+    strength: f32,
+    ambient_offset: f32,
+    gain: f32,
+    // Length of the step towards the light before looking up its attenuation, in scene units.
+    bias: f32,
+    pad0: f32,
+    pad1: f32,
+}
+
+// What is lit: a sample of the volume.
+struct Surface {
+    // In scene space …
+    position: vec3f,
+    // … and in index space.
+    point: vec3f,
+    normal: vec3f,
+    // How much of a surface it is: 0 amid homogeneous material, 1 at a boundary.
+    surfaceness: f32,
+    // Unit vector to the eye.
+    to_eye: vec3f,
+}
+
+struct Lit {
+    diffuse: vec3f,
+    specular: vec3f,
+}
+
+// Attenuated light as it reaches the sample, after the cures for darkness (P §4).
+fn received(shading: Shading, attenuation: f32) -> f32 {
+    let light = min(shading.gain * attenuation + shading.ambient_offset, 1.0);
+    return 1.0 - shading.strength * (1.0 - light);
+}
+
+// What one light of a given attenuation adds.
+fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, attenuation: f32) -> Lit {
+    let arriving = light.color * select(1.0, received(shading, attenuation), light.shadowed > 0.5);
+    let facing = dot(surface.normal, to_light);
+    // Two-sided diffuse; even from all sides where there is no surface.
+    let diffuse = mix(1.0, abs(facing), surface.surfaceness);
+    let sum = to_light + surface.to_eye;
+    let half_vector = sum / max(length(sum), 1e-6);
+    // One-sided specular. pow(0, x) is spared: some drivers make it NaN.
+    let aligned = max(dot(surface.normal, half_vector), 1e-6);
+    let highlight = select(0.0, pow(aligned, shading.shininess), facing > 0.0) * surface.surfaceness;
+    return Lit(arriving * diffuse, arriving * highlight);
+}

@@ -1,0 +1,157 @@
+// Reverse half of the light pass (P §3.5, eq. 10): the sheets are splatted back into the grid. In
+// gather form, one thread per voxel sums deposit × kernel over the sheet pixels under its footprint
+// and divides by the sum of kernel weights.
+//
+// A voxel is written when the last sheet that it needs has been marched (the paper's rolling
+// normalisation); voxels of other chunks leave at once.
+#import "common/kernel.wgsl"
+#import "common/sheet_frame.wgsl"
+
+struct Backprojection {
+    frame: SheetFrame,
+    // Index space to the light's axes at the anchor, x and y in pixels of the anchor plane, z in
+    // scene units: three rows of an affine map.
+    light_from_index_x: vec4f,
+    light_from_index_y: vec4f,
+    light_from_index_z: vec4f,
+    first_pixel: vec2f,
+    // Width of the reverse kernel where pixels are no wider: one voxel of the light volume.
+    kernel_edge: f32,
+    // Data voxels per voxel of the light volume.
+    voxel_step: f32,
+    dims: vec3u,
+    // 1 when the view owns only the quarter-space around its axis.
+    cube_face: u32,
+    begin: u32,
+    end: u32,
+    layers: u32,
+    // Bricks listed for this chunk.
+    bricks: u32,
+}
+
+@group(0) @binding(0) var<uniform> view: Backprojection;
+@group(0) @binding(1) var<storage, read> bricks: array<u32>;
+@group(0) @binding(2) var ring: texture_3d<f32>;
+// Clamps across a sheet, repeats from sheet to sheet.
+@group(0) @binding(3) var ring_sampler: sampler;
+@group(0) @binding(4) var attenuation: texture_storage_3d<STORAGE_FORMAT, write>;
+
+// The first sheet that touches a voxel alone decides (the paper's mode without weight volume).
+override FIRST_TOUCH: bool = false;
+// Whether the kernel is anywhere wider than four pixels or four slabs.
+override WIDE: bool = false;
+
+// Of a kernel close to a light inside the volume, in pixels (src/plan/light_frame.rs).
+const MAX_KERNEL_PIXELS = 4.0;
+
+fn sheet(pixel: vec2f, slab: f32) -> f32 {
+    let size = vec3f(vec2f(view.frame.size), f32(view.layers));
+    return textureSampleLevel(ring, ring_sampler, (vec3f(pixel, slab) + 0.5) / size, 0.0).r;
+}
+
+// Layer of a slab in the ring, for the lower one of a pair.
+fn layer(slab: i32) -> f32 {
+    return f32(slab % i32(view.layers));
+}
+
+// Exactly four pixels and four slabs: two linear fetches per axis (as in common/volume.wgsl).
+fn gather_four(pixel: vec2f, slab: f32) -> f32 {
+    let cell = vec3f(floor(pixel), floor(slab));
+    let f = vec3f(pixel, slab) - cell;
+    let wx = kernel_weights(f.x);
+    let wy = kernel_weights(f.y);
+    let wz = kernel_weights(f.z);
+    let low = vec3f(wx.x + wx.y, wy.x + wy.y, wz.x + wz.y);
+    let high = 1.0 - low;
+    let a = cell.xy + vec2f(wx.y, wy.y) / low.xy - 1.0;
+    let b = cell.xy + vec2f(wx.w, wy.w) / high.xy + 1.0;
+    let near = layer(i32(cell.z) - 1 + i32(view.layers)) + wz.y / low.z;
+    let far = layer(i32(cell.z) + 1) + wz.w / high.z;
+    return low.z * (low.y * (low.x * sheet(vec2f(a.x, a.y), near) + high.x * sheet(vec2f(b.x, a.y), near))
+            + high.y * (low.x * sheet(vec2f(a.x, b.y), near) + high.x * sheet(vec2f(b.x, b.y), near)))
+        + high.z * (low.y * (low.x * sheet(vec2f(a.x, a.y), far) + high.x * sheet(vec2f(b.x, a.y), far))
+            + high.y * (low.x * sheet(vec2f(a.x, b.y), far) + high.x * sheet(vec2f(b.x, b.y), far)));
+}
+
+// Two neighbouring samples as one linear fetch: x where between them, y their weight.
+fn pair(first: i32, count: i32, at: f32, width: f32) -> vec2f {
+    let a = select(0.0, kernel_at((f32(first) - at) / width), first >= 0 && first < count);
+    let b = select(0.0, kernel_at((f32(first + 1) - at) / width), first + 1 >= 0 && first + 1 < count);
+    return vec2f(b / max(a + b, 1e-20), a + b);
+}
+
+// Any width: pairs over the whole footprint, divided by the sum of their weights.
+fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
+    let reach = kernel_radius() * vec3f(pixels, pixels, slabs);
+    let first = vec3i(ceil(vec3f(pixel, slab) - reach));
+    let last = vec3i(floor(vec3f(pixel, slab) + reach));
+    let size = vec3i(vec2i(view.frame.size), i32(view.frame.slab_count));
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var k = max(first.z, 0); k <= last.z; k += 2) {
+        let z = pair(k, size.z, slab, slabs);
+        for (var j = first.y; j <= last.y; j += 2) {
+            let y = pair(j, size.y, pixel.y, pixels);
+            for (var i = first.x; i <= last.x; i += 2) {
+                let x = pair(i, size.x, pixel.x, pixels);
+                let weight = x.y * y.y * z.y;
+                sum += weight * sheet(vec2f(f32(i) + x.x, f32(j) + y.x), layer(k) + z.x);
+                weights += weight;
+            }
+        }
+    }
+    return select(1.0, sum / weights, weights > 1e-12);
+}
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    // Two workgroups to a brick; rows of 32768 bricks because a dispatch has at most 65535 groups.
+    let listed = group.y * 32768u + group.x / 2u;
+    if (listed >= view.bricks) {
+        return;
+    }
+    let packed = bricks[listed];
+    let brick = vec3u(packed & 1023u, packed >> 10u & 1023u, packed >> 20u);
+    let voxel = brick * 8u + local + vec3u(0u, 0u, group.x % 2u * 4u);
+    if (any(voxel >= view.dims)) {
+        return;
+    }
+    let p = vec4f((vec3f(voxel) + 0.5) * view.voxel_step - 0.5, 1.0);
+    let across = vec2f(dot(view.light_from_index_x, p), dot(view.light_from_index_y, p));
+    let depth = dot(view.light_from_index_z, p);
+    let spread = 1.0 + depth * view.frame.inverse_distance;
+    let limit = spread / max(view.frame.inverse_distance * view.frame.pitch, 1e-20);
+    if (view.cube_face != 0u && !(spread > 0.0 && all(abs(across) <= vec2f(limit * 1.000001)))) {
+        return;
+    }
+    if (!(spread > 1e-3)) {
+        // In the plane of the light, and of this view: at the light itself.
+        if (view.begin == 0u) {
+            textureStore(attenuation, voxel, vec4f(1.0));
+        }
+        return;
+    }
+    let pixel = across / spread - view.first_pixel;
+    let slab = (depth - view.frame.first_depth) / view.frame.slab - 0.5;
+    let pitch = view.frame.pitch * spread;
+    let pixels = clamp(view.kernel_edge / pitch, 1.0, MAX_KERNEL_PIXELS);
+    let slabs = pixels * pitch / view.frame.slab;
+
+    // This voxel's chunk is the one that marches the last sheet under its kernel (of radius 2,
+    // whichever the kernel, so that the choice of chunk does not depend on it).
+    let last_slab = i32(view.frame.slab_count) - 1;
+    let final_slab = clamp(i32(floor(slab + 2.0 * slabs)), 0, last_slab);
+    if (final_slab < i32(view.begin) || final_slab >= i32(view.end)) {
+        return;
+    }
+    var value: f32;
+    if (FIRST_TOUCH) {
+        let first = clamp(i32(ceil(slab - 2.0 * slabs)), 0, last_slab);
+        value = sheet(pixel, layer(first));
+    } else if (WIDE) {
+        value = gather_wide(pixel, slab, pixels, slabs);
+    } else {
+        value = gather_four(pixel, slab);
+    }
+    textureStore(attenuation, voxel, vec4f(value));
+}

@@ -1,0 +1,138 @@
+//! The work for one picture, cut into steps short enough for a watchdog and a waiting user.
+
+use std::collections::VecDeque;
+use std::ops::Range;
+
+use super::light_backproject::Schedule;
+use super::light_march::Sheets;
+use crate::plan::{BrickSet, LightKey, LightView, Request};
+
+/// What a step belongs to, for reports and for the status bar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Density, on its way to the GPU.
+    Upload,
+    /// The pyramid of prefiltered volumes.
+    Pyramid,
+    /// Sheets of a light.
+    LightMarch,
+    /// Sheets into the light volume.
+    LightBackproject,
+    /// The picture.
+    Eye,
+    /// Its display colours.
+    Display,
+}
+
+impl Stage {
+    /// What the user is told.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Upload => "uploading the volume",
+            Self::Pyramid => "preparing the volume",
+            Self::LightMarch | Self::LightBackproject => "filling the light volume",
+            Self::Eye | Self::Display => "drawing the picture",
+        }
+    }
+}
+
+/// A piece of work for one submission.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Step {
+    Upload(Range<usize>),
+    Pyramid(u32),
+    /// Light build, view, first slab.
+    March(usize, usize, u32),
+    Backproject(usize, usize, u32),
+    Eye(Range<u32>),
+    Display,
+}
+
+impl Step {
+    pub(super) fn stage(&self) -> Stage {
+        match self {
+            Self::Upload(_) => Stage::Upload,
+            Self::Pyramid(_) => Stage::Pyramid,
+            Self::March(..) => Stage::LightMarch,
+            Self::Backproject(..) => Stage::LightBackproject,
+            Self::Eye(_) => Stage::Eye,
+            Self::Display => Stage::Display,
+        }
+    }
+}
+
+/// One light volume to be filled.
+#[derive(Debug)]
+pub(super) struct LightBuild {
+    /// Index of the light in the settings, for counting.
+    pub light: usize,
+    pub key: LightKey,
+    pub views: Vec<LightView>,
+    /// Slabs per chunk, for each view.
+    pub chunks: Vec<u32>,
+    /// Data bricks whose sheets will be read.
+    pub read: BrickSet,
+    /// Sheets and schedule of the view that is being marched.
+    pub current: Option<(Sheets, Schedule)>,
+}
+
+/// The work for one picture.
+#[derive(Debug)]
+pub struct Job {
+    pub(super) request: Request,
+    pub(super) transparent: bool,
+    /// Key of every light's volume in this picture; `None` for lights without.
+    pub(super) keys: Vec<Option<LightKey>>,
+    pub(super) builds: Vec<LightBuild>,
+    pub(super) steps: VecDeque<Step>,
+    pub(super) total: usize,
+}
+
+impl Job {
+    /// What the picture is of.
+    pub fn request(&self) -> &Request {
+        &self.request
+    }
+
+    /// Share of the steps that are done.
+    pub fn progress(&self) -> f32 {
+        1.0 - self.steps.len() as f32 / self.total.max(1) as f32
+    }
+
+    /// What comes next; `None` when the picture is complete.
+    pub fn stage(&self) -> Option<Stage> {
+        self.steps.front().map(Step::stage)
+    }
+
+    /// Whether the picture is complete.
+    pub fn is_done(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Cuts the rows that are still to be drawn into bands of `rows`.
+    pub fn set_band(&mut self, rows: u32) {
+        let rows = rows.max(1);
+        let mut cut = VecDeque::with_capacity(self.steps.len());
+        for step in self.steps.drain(..) {
+            match step {
+                Step::Eye(Range { start, end }) => {
+                    let mut at = start;
+                    // Adjoining bands are joined again when the band grows.
+                    if let Some(Step::Eye(last)) = cut.back()
+                        && last.end == start
+                        && last.end - last.start < rows
+                    {
+                        at = last.start;
+                        cut.pop_back();
+                    }
+                    while at < end {
+                        cut.push_back(Step::Eye(at..end.min(at + rows)));
+                        at += rows;
+                    }
+                }
+                other => cut.push_back(other),
+            }
+        }
+        self.steps = cut;
+    }
+}

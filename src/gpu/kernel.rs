@@ -1,0 +1,19 @@
+//! How a kernel is said to a shader: override constants of `common/kernel.wgsl` and
+//! `common/volume.wgsl`.
+
+use crate::model::{Kernel, Quadrature};
+
+/// `KERNEL` and `SIGMA`.
+pub(super) fn kernel_constants(kernel: Kernel) -> [(&'static str, f64); 2] {
+    let (code, sigma) = match kernel {
+        Kernel::BSpline => (0.0, 0.6),
+        Kernel::Gaussian { sigma } => (1.0, sigma),
+        Kernel::Prefiltered => (2.0, 0.6),
+    };
+    [("KERNEL", code), ("SIGMA", sigma)]
+}
+
+/// `QUADRATURE`.
+pub(super) fn quadrature_constant(quadrature: Quadrature) -> (&'static str, f64) {
+    ("QUADRATURE", quadrature.offsets().len() as f64)
+}

@@ -1,0 +1,142 @@
+//! Reverse half of the light pass: splats the sheets back into the light volume.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::GpuError;
+use super::kernel::kernel_constants;
+use super::light_march::Sheets;
+use super::light_volume::LightVolume;
+use super::tables::view_entry;
+use super::uniforms::{self, rows};
+use super::volume::{Gpu, entry};
+use crate::data::BRICK_EDGE;
+use crate::math::SceneSpace;
+use crate::model::Shadows;
+use crate::plan::LightView;
+
+/// Bricks per row of a dispatch: two workgroups each, within the 65535 that all adapters allow.
+const BRICKS_PER_ROW: u32 = 32768;
+
+/// The bricks of a light volume, by the chunk of slabs that completes them.
+#[derive(Debug)]
+pub(super) struct Schedule {
+    chunks: Vec<Vec<u32>>,
+}
+
+impl Schedule {
+    /// Finds for every brick to be filled the chunks in which any of its voxels gets its last sheet.
+    pub(super) fn new(scene: &SceneSpace, view: &LightView, light: &LightVolume, chunk: u32) -> Self {
+        let count = view.frame.slab_count.div_ceil(chunk).max(1);
+        let mut chunks = vec![Vec::new(); count as usize];
+        for brick in light.filled.positions() {
+            let (first, last) = final_slabs(scene, view, light, brick);
+            let packed = brick[0] as u32 | (brick[1] as u32) << 10 | (brick[2] as u32) << 20;
+            for list in &mut chunks[(first / chunk) as usize..=(last / chunk) as usize] {
+                list.push(packed);
+            }
+        }
+        Self { chunks }
+    }
+}
+
+/// The first and the last slab that completes any voxel of a brick.
+fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick: [usize; 3]) -> (u32, u32) {
+    let step = light.divisor as f64;
+    let corner = |side: usize| {
+        let at = |axis: usize| {
+            let voxel = brick[axis] * BRICK_EDGE + if side >> axis & 1 == 0 { 0 } else { BRICK_EDGE - 1 };
+            (voxel as f64 + 0.5) * step - 0.5
+        };
+        scene.scene_from_index.transform_point3(DVec3::new(at(0), at(1), at(2)))
+    };
+    let frame = &view.frame;
+    let depths = (0..8).map(|side| (corner(side) - view.anchor).dot(view.axes.z_axis));
+    let (near, far) =
+        depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
+    // The kernel's reach grows with depth, so both ends follow the depth; one slab of slack each for
+    // the rounding of the shader.
+    let final_slab = |depth: f64| {
+        let width = frame.pitch_at(depth).max(view.kernel_edge.min(MAX_WIDENING * frame.pitch_at(depth)));
+        (depth - frame.first_depth + 2.0 * width.max(0.0)) / frame.slab - 0.5
+    };
+    let last = f64::from(frame.slab_count.max(1) - 1);
+    let clamp = |slab: f64| slab.clamp(0.0, last) as u32;
+    (clamp(final_slab(near).floor() - 1.0), clamp(final_slab(far).floor() + 1.0))
+}
+
+/// As `MAX_KERNEL_PIXELS` of the plan.
+const MAX_WIDENING: f64 = crate::plan::MAX_KERNEL_PIXELS;
+
+/// Light axes from index space: x and y in pixels of the anchor plane, z in scene units.
+fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
+    let to_light = DMat3::from_diagonal(DVec3::new(1.0 / view.frame.pitch, 1.0 / view.frame.pitch, 1.0))
+        * view.axes.transpose();
+    DAffine3 { matrix3: to_light, translation: -(to_light * view.anchor) } * scene.scene_from_index
+}
+
+/// Writes the voxels that the slabs `begin .. end` complete.
+pub(super) fn backproject(
+    gpu: Gpu<'_>,
+    shadows: &Shadows,
+    view: &LightView,
+    (sheets, schedule): &(Sheets, Schedule),
+    light: &LightVolume,
+    slabs: (u32, u32),
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), GpuError> {
+    let Gpu { context, shaders, volume, nothing: _ } = gpu;
+    let bricks = &schedule.chunks[(slabs.0 / sheets.chunk) as usize];
+    if bricks.is_empty() {
+        return Ok(());
+    }
+    let four_taps = view.frame.inverse_distance == 0.0
+        && (view.kernel_edge / view.frame.slab - 1.0).abs() < 1e-9
+        && !matches!(shadows.kernel, crate::model::Kernel::Prefiltered);
+    let [kernel, sigma] = kernel_constants(shadows.kernel);
+    let constants = [
+        kernel,
+        sigma,
+        ("FIRST_TOUCH", f64::from(u8::from(shadows.first_touch))),
+        ("WIDE", f64::from(u8::from(!four_taps))),
+    ];
+    let pipeline = shaders.pipeline("light_backproject.wgsl", &constants)?;
+    let [x, y, z] = rows(&light_from_index(&volume.scene, view));
+    let uniform = uniforms::Backprojection {
+        frame: uniforms::SheetFrame::new(&view.frame),
+        light_from_index_x: x,
+        light_from_index_y: y,
+        light_from_index_z: z,
+        first_pixel: view.first_pixel.as_vec2().into(),
+        kernel_edge: view.kernel_edge as f32,
+        voxel_step: light.divisor as f32,
+        dims: light.dims.map(|n| n as u32),
+        cube_face: u32::from(view.cube_face),
+        begin: slabs.0,
+        end: slabs.1,
+        layers: sheets.layers,
+        bricks: bricks.len() as u32,
+    };
+    let uniform = context.buffer("Backprojection::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
+    let list = context.buffer("Backprojection::bricks", bricks, wgpu::BufferUsages::STORAGE);
+    let sampler = context.sampler("Backprojection::ring_sampler", wgpu::AddressMode::Repeat);
+    let bind_group = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("Backprojection::bind_group"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            entry(0, uniform.as_entire_binding()),
+            entry(1, list.as_entire_binding()),
+            view_entry(2, &sheets.ring_view),
+            entry(3, wgpu::BindingResource::Sampler(&sampler)),
+            view_entry(4, &light.view),
+        ],
+    });
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("Backprojection::pass"),
+        timestamp_writes: None,
+    });
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &bind_group, &[]);
+    let listed = bricks.len() as u32;
+    pass.dispatch_workgroups(2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1);
+    Ok(())
+}

@@ -1,0 +1,132 @@
+//! Forward half of the light pass: fills sheets with the transmittance that they deposit.
+
+use super::kernel::{kernel_constants, quadrature_constant};
+use super::tables::{dilation, upload_bricks, view_entry};
+use super::uniforms;
+use super::volume::{Gpu, entry, texture_3d};
+use super::{Context, GpuError};
+use crate::model::{Deposit, Shadows};
+use crate::plan::{BrickSet, LightView};
+
+/// The sheets of one view of a light: a ring of layers through which the slabs stream.
+#[derive(Debug)]
+pub(super) struct Sheets {
+    /// Layers of the ring.
+    pub layers: u32,
+    /// Slabs marched at a time.
+    pub chunk: u32,
+    /// Deposited transmittance, sheet by sheet.
+    pub ring: wgpu::Texture,
+    /// The same.
+    pub ring_view: wgpu::TextureView,
+    transmittance: wgpu::Buffer,
+    distances: wgpu::TextureView,
+}
+
+impl Sheets {
+    /// Makes a ring that streams `chunk` slabs at a time and keeps what the reverse kernel still
+    /// needs of the ones before.
+    ///
+    /// `read` are the bricks whose sheets will be read, `occupied` those that attenuate light.
+    pub(super) fn new(
+        context: &Context,
+        view: &LightView,
+        chunk: u32,
+        read: &BrickSet,
+        occupied: &BrickSet,
+    ) -> Result<Self, GpuError> {
+        let frame = &view.frame;
+        let last = frame.first_depth + f64::from(frame.slab_count) * frame.slab;
+        // Radius 2 on both sides of a voxel, rounded outwards, and one for the pairs of fetches.
+        let kernel_slabs = frame.pitch_at(last).max(view.kernel_edge) / frame.slab;
+        let kept = (4.0 * kernel_slabs).ceil() as u32 + 2;
+        let chunk = chunk.min(frame.slab_count).max(1);
+        let layers = chunk + kept;
+        let [width, height] = frame.size;
+        let ring = context.texture(&texture_3d(
+            "Sheets::ring",
+            [width as usize, height as usize, layers as usize],
+            context.storage_format,
+            wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+        ))?;
+        let transmittance = context.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("Sheets::transmittance"),
+            size: u64::from(width) * u64::from(height) * 4,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        let both: Vec<u8> =
+            read.distances().into_iter().zip(occupied.distances()).flat_map(|(r, g)| [r, g]).collect();
+        let distances = upload_bricks(context, "Sheets::distances", read.dims, &both, 2)?;
+        Ok(Self {
+            layers,
+            chunk,
+            ring_view: ring.create_view(&wgpu::TextureViewDescriptor::default()),
+            ring,
+            transmittance,
+            distances,
+        })
+    }
+
+    /// Bytes of the ring and of the running transmittance.
+    pub(super) fn bytes(&self) -> u64 {
+        let size = self.ring.size();
+        let pixels = u64::from(size.width) * u64::from(size.height);
+        pixels
+            * (4 + u64::from(self.layers) * u64::from(self.ring.format().block_copy_size(None).unwrap_or(4)))
+    }
+}
+
+/// Marches the slabs `begin .. end` of a view.
+pub(super) fn march(
+    gpu: Gpu<'_>,
+    table: &wgpu::Buffer,
+    shadows: &Shadows,
+    view: &LightView,
+    sheets: &Sheets,
+    slabs: (u32, u32),
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), GpuError> {
+    let Gpu { context, shaders, volume, nothing: _ } = gpu;
+    let stretch = view.frame.max_stretch_level();
+    let [kernel, sigma] = kernel_constants(shadows.kernel);
+    let constants = [
+        kernel,
+        sigma,
+        quadrature_constant(shadows.quadrature),
+        ("STRETCH", f64::from(u8::from(stretch > 0.0))),
+        ("DEPOSIT_FRONT", f64::from(u8::from(shadows.deposit == Deposit::Front))),
+    ];
+    let pipeline = shaders.pipeline("light_march.wgsl", &constants)?;
+    let uniform = uniforms::March {
+        frame: uniforms::SheetFrame::new(&view.frame),
+        begin: slabs.0,
+        end: slabs.1,
+        layers: sheets.layers,
+        pad0: 0,
+    };
+    let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
+    let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("March::bind_group"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            entry(0, uniform.as_entire_binding()),
+            entry(1, table.as_entire_binding()),
+            view_entry(2, &sheets.distances),
+            entry(3, sheets.transmittance.as_entire_binding()),
+            view_entry(4, &sheets.ring_view),
+        ],
+    });
+    let of_volume = volume.bind_group(context, &pipeline, dilation(stretch));
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("March::pass"),
+        timestamp_writes: None,
+    });
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &own, &[]);
+    pass.set_bind_group(1, &of_volume, &[]);
+    pass.dispatch_workgroups(view.frame.size[0].div_ceil(8), view.frame.size[1].div_ceil(8), 1);
+    Ok(())
+}

@@ -1,0 +1,87 @@
+//! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
+
+use super::volume::{GpuVolume, brick_dims, texture_3d};
+use super::{Context, GpuError};
+use crate::plan::{BrickSet, LightKey, LightView};
+
+/// One light's attenuation volume, complete or being filled.
+#[derive(Debug)]
+pub(super) struct LightVolume {
+    /// What it is made from.
+    pub key: LightKey,
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// Data voxels per light voxel along an axis.
+    pub divisor: usize,
+    /// Attenuation, 0 … 1.
+    pub texture: wgpu::Texture,
+    /// The same.
+    pub view: wgpu::TextureView,
+    /// Bricks (of light voxels) that hold, or will hold, values.
+    pub filled: BrickSet,
+    /// Whether everything in `filled` is there.
+    pub complete: bool,
+    /// Counts up with every use; the least recently used goes first.
+    pub last_used: u64,
+}
+
+impl LightVolume {
+    /// Makes the texture; nothing is filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(super) fn new(
+        context: &Context,
+        volume: &GpuVolume,
+        key: LightKey,
+        filled: BrickSet,
+    ) -> Result<Self, GpuError> {
+        let divisor = key.resolution().divisor();
+        let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
+        let texture = context.texture(&texture_3d(
+            "LightVolume::attenuation",
+            dims,
+            context.storage_format,
+            wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::COPY_DST,
+        ))?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self { key, dims, divisor, texture, view, filled, complete: false, last_used: 0 })
+    }
+
+    /// Bytes of its texture.
+    pub(super) fn bytes(&self) -> u64 {
+        let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
+        texel * self.dims.iter().map(|&n| n as u64).product::<u64>()
+    }
+}
+
+/// The bricks of a light volume in which an eye sample can look up attenuation: those that either
+/// transfer function shows, and one further on every side for interpolation, bias and stretch.
+pub(super) fn needed_bricks(volume: &GpuVolume, shown: &BrickSet, divisor: usize) -> BrickSet {
+    let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
+    shown.dilated(1).coarsened(divisor, brick_dims(dims))
+}
+
+/// The data bricks whose sheets the back-projection of `filled` reads: within the reverse kernel of
+/// radius two.
+pub(super) fn read_bricks(
+    volume: &GpuVolume,
+    filled: &BrickSet,
+    divisor: usize,
+    views: &[LightView],
+) -> BrickSet {
+    let widest = views
+        .iter()
+        .map(|view| {
+            let last = view.frame.first_depth + f64::from(view.frame.slab_count) * view.frame.slab;
+            view.frame.pitch_at(last).max(view.kernel_edge)
+        })
+        .fold(0.0, f64::max);
+    let reach_voxels = 2.0 * widest / volume.scene.smallest_edge();
+    // One voxel more, for linear fetches between pixels.
+    let reach_bricks = ((reach_voxels + 1.0) / 8.0).ceil() as usize;
+    filled.refined(divisor, volume.bricks.dims).dilated(reach_bricks)
+}

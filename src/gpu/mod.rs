@@ -1,0 +1,33 @@
+//! The renderer: sheet-buffer splatting in gather form, on wgpu.
+//!
+//! One file per pass, with the same stem as its shader. [`Renderer`] reads top to bottom and owns
+//! every cache. Knows nothing of the window.
+
+mod context;
+mod display;
+mod error;
+mod export;
+mod eye;
+mod first_look;
+mod job;
+mod kernel;
+mod light_backproject;
+mod light_march;
+mod light_volume;
+mod prefilter;
+mod readback;
+mod renderer;
+mod shader;
+mod tables;
+pub mod uniforms;
+mod volume;
+
+pub use context::{Context, device_descriptor};
+pub use error::GpuError;
+pub use export::{ExportError, export_png, write_atomically};
+pub use first_look::{balance, first_look, mean_luminance};
+pub use job::{Job, Stage};
+pub use readback::Attenuation;
+pub use renderer::{Picture, RenderOptions, Renderer, Report};
+pub use shader::{SHADERS, ShaderLibrary};
+pub use volume::stored_density;

@@ -1,0 +1,513 @@
+//! The frame, read from top to bottom, and every cache.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::display::{Target, display};
+use super::eye::EyePass;
+use super::job::{Job, LightBuild, Stage, Step};
+use super::light_backproject::{Schedule, backproject};
+use super::light_march::{Sheets, march};
+use super::light_volume::{LightVolume, needed_bricks, read_bricks};
+use super::readback::{Attenuation, read_floats, read_texture};
+use super::tables::Tables;
+use super::volume::{Gpu, GpuVolume, texture_3d};
+use super::{Context, GpuError, ShaderLibrary, prefilter};
+use crate::data::{Bricks, Volume};
+use crate::model::{Settings, ShadowAlgorithm};
+use crate::plan::{BrickSet, LightKey, LightView, Request, light_views};
+
+/// Light volumes that are kept beyond those of the current picture: undoing a drag finds them.
+const SPARE_LIGHT_VOLUMES: usize = 2;
+
+/// Slabs per chunk of the light march: enough to be worth a dispatch, few enough for one to be short.
+const CHUNK_SLABS: std::ops::RangeInclusive<u64> = 8..=64;
+
+/// Ways of rendering that are no part of the look.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Leave out the background, write straight alpha.
+    pub transparent: bool,
+    /// Leap over empty bricks. Only a test that it changes nothing switches it off.
+    pub leaping: bool,
+    /// Fill light volumes everywhere, not only where the picture looks them up.
+    pub fill_everything: bool,
+    /// A ray ends when less than this is left of its light.
+    pub dark: f32,
+    /// Slabs per chunk of the light march, instead of what memory and time suggest.
+    pub chunk: Option<u32>,
+    /// Wait after every step, so that a report's stages are true.
+    pub timed: bool,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            transparent: false,
+            leaping: true,
+            fill_everything: false,
+            // 1/16 of an 8-bit step.
+            dark: 1.0 / 4096.0,
+            chunk: None,
+            timed: false,
+        }
+    }
+}
+
+/// A finished picture on the CPU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Pixels per row and column.
+    pub size: [u32; 2],
+    /// Linear, premultiplied RGBA before tone mapping, row by row from the top left.
+    pub light: Vec<[f32; 4]>,
+    /// sRGB bytes, RGBA.
+    pub shown: Vec<u8>,
+}
+
+/// What a picture took.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Report {
+    /// Milliseconds of the upload and the pyramid.
+    pub upload_ms: f64,
+    /// Milliseconds of the transfer functions and brick sets.
+    pub bricks_ms: f64,
+    /// Milliseconds of the forward half of the light pass.
+    pub light_march_ms: f64,
+    /// Milliseconds of its reverse half.
+    pub light_backproject_ms: f64,
+    /// Milliseconds of the eye pass.
+    pub eye_ms: f64,
+    /// Milliseconds of the display pass and of reading back.
+    pub readback_ms: f64,
+    /// Slabs of the eye's stack.
+    pub slabs: u32,
+    /// Largest sum of our textures and buffers so far.
+    pub peak_gpu_bytes: u64,
+}
+
+/// Renders volumes on one device.
+#[derive(Debug)]
+pub struct Renderer {
+    context: Context,
+    shaders: ShaderLibrary,
+    volume: Option<GpuVolume>,
+    uploaded: bool,
+    tables: Option<Tables>,
+    lights: Vec<LightVolume>,
+    /// What is shown, and a spare one to draw into.
+    front: Option<Target>,
+    back: Option<Target>,
+    /// Bound where a light has no volume.
+    nothing: wgpu::TextureView,
+    options: RenderOptions,
+    rebuilds: Vec<u64>,
+    clock: u64,
+    report: Report,
+}
+
+impl Renderer {
+    /// A renderer on a device.
+    ///
+    /// # Errors
+    /// When not even one texel can be had.
+    pub fn new(context: &Context) -> Result<Self, GpuError> {
+        Self::with_shaders(context, ShaderLibrary::new(context))
+    }
+
+    /// A renderer with shaders of one's own, which tests damage on purpose.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_shaders(context: &Context, shaders: ShaderLibrary) -> Result<Self, GpuError> {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        let nothing =
+            context.texture(&texture_3d("Renderer::nothing", [1; 3], context.storage_format, usage))?;
+        Ok(Self {
+            context: context.clone(),
+            shaders,
+            volume: None,
+            uploaded: false,
+            tables: None,
+            lights: Vec::new(),
+            front: None,
+            back: None,
+            nothing: nothing.create_view(&wgpu::TextureViewDescriptor::default()),
+            options: RenderOptions::default(),
+            rebuilds: Vec::new(),
+            clock: 0,
+            report: Report::default(),
+        })
+    }
+
+    /// The device.
+    pub fn context(&self) -> &Context {
+        &self.context
+    }
+
+    /// How often the light volume of each light of the settings was filled; counted where its first
+    /// march is submitted.
+    pub fn light_rebuilds(&self) -> &[u64] {
+        &self.rebuilds
+    }
+
+    /// Light volumes that are complete and kept.
+    pub fn cached_light_volumes(&self) -> usize {
+        self.lights.iter().filter(|light| light.complete).count()
+    }
+
+    /// Bytes of our textures on the GPU now.
+    pub fn gpu_bytes(&self) -> u64 {
+        let targets = self.front.iter().chain(&self.back).map(Target::bytes).sum::<u64>();
+        let lights = self.lights.iter().map(LightVolume::bytes).sum::<u64>();
+        targets + lights + self.volume.as_ref().map_or(0, GpuVolume::bytes)
+    }
+
+    /// What the last picture took.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// What is shown now: sRGB bytes, and its size.
+    pub fn shown(&self) -> Option<(&wgpu::TextureView, [u32; 2])> {
+        self.front.as_ref().map(|target| (&target.shown_view, target.size))
+    }
+
+    /// Makes a picture and waits for it.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    pub fn render(
+        &mut self,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+        settings: &Settings,
+        size: [u32; 2],
+        options: &RenderOptions,
+    ) -> Result<Picture, GpuError> {
+        self.draw(volume, bricks, settings, size, options)?;
+        let start = Instant::now();
+        let target =
+            self.front.as_ref().ok_or_else(|| GpuError::Refused("no picture was drawn".to_owned()))?;
+        let bytes = read_texture(&self.context, &target.picture)?;
+        let float = |word: &[u8]| f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+        let light =
+            bytes.chunks_exact(16).map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect();
+        let shown = read_texture(&self.context, &target.shown)?;
+        self.report.readback_ms += milliseconds(start);
+        Ok(Picture { size, light, shown })
+    }
+
+    /// Draws a picture and waits until it is complete, without reading it back.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    pub fn draw(
+        &mut self,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+        settings: &Settings,
+        size: [u32; 2],
+        options: &RenderOptions,
+    ) -> Result<(), GpuError> {
+        let request = Request { volume: volume.content_id(), settings: settings.clone(), size, coarse: None };
+        let mut job = self.begin(volume, bricks, request, options)?;
+        // A quarter of a megapixel per submission stays below driver watchdogs on slow GPUs.
+        job.set_band((1 << 18) / size[0].max(1));
+        let mut unfinished = 0;
+        while self.step(&mut job)? {
+            unfinished += 1;
+            // Bounds what is queued.
+            if unfinished % 64 == 0 {
+                self.context.wait()?;
+            }
+        }
+        self.context.wait()
+    }
+
+    /// Starts a picture: finds what is stale and lists the steps. An earlier job must not be
+    /// continued afterwards.
+    ///
+    /// # Errors
+    /// When memory for it cannot be had. What was shown stays.
+    pub fn begin(
+        &mut self,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+        request: Request,
+        options: &RenderOptions,
+    ) -> Result<Job, GpuError> {
+        self.options = options.clone();
+        self.clock += 1;
+        self.report = Report { peak_gpu_bytes: self.report.peak_gpu_bytes, ..Report::default() };
+        self.lights.retain(|light| light.complete);
+        let mut steps = Vec::new();
+        self.place_volume(volume, bricks, &mut steps)?;
+        let start = Instant::now();
+        let Some(gpu_volume) = &self.volume else { return Err(GpuError::Refused("no volume".to_owned())) };
+        match &mut self.tables {
+            Some(tables) => tables.refresh(&self.context, gpu_volume, &request.settings)?,
+            tables => *tables = Some(Tables::new(&self.context, gpu_volume, &request.settings)?),
+        }
+        self.report.bricks_ms = milliseconds(start);
+        let (keys, builds) = self.place_lights(&request)?;
+        for (at, build) in builds.iter().enumerate() {
+            for (view, chunk) in build.chunks.iter().enumerate() {
+                for begin in (0..build.views[view].frame.slab_count).step_by(*chunk as usize) {
+                    steps.push(Step::March(at, view, begin));
+                    steps.push(Step::Backproject(at, view, begin));
+                }
+            }
+        }
+        if self.back.as_ref().is_none_or(|target| target.size != request.size) {
+            self.back = None;
+            self.back = Some(Target::new(&self.context, request.size)?);
+        }
+        steps.push(Step::Eye(0..request.size[1]));
+        steps.push(Step::Display);
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(self.gpu_bytes());
+        let total = steps.len();
+        Ok(Job { request, transparent: options.transparent, keys, builds, steps: steps.into(), total })
+    }
+
+    /// Submits the next step. Returns whether there are more; after the last one the new picture is
+    /// what [`Self::shown`] gives, as soon as the GPU has done it.
+    ///
+    /// # Errors
+    /// What the device complains about.
+    pub fn step(&mut self, job: &mut Job) -> Result<bool, GpuError> {
+        let Some(step) = job.steps.pop_front() else { return Ok(false) };
+        let start = Instant::now();
+        let mut encoder =
+            self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.encode(job, &step, &mut encoder)?;
+        self.context.queue.submit([encoder.finish()]);
+        if self.options.timed {
+            self.context.wait()?;
+        }
+        let took = milliseconds(start);
+        match step.stage() {
+            Stage::Upload | Stage::Pyramid => self.report.upload_ms += took,
+            Stage::LightMarch => self.report.light_march_ms += took,
+            Stage::LightBackproject => self.report.light_backproject_ms += took,
+            Stage::Eye => self.report.eye_ms += took,
+            Stage::Display => self.report.readback_ms += took,
+        }
+        if step == Step::Display {
+            std::mem::swap(&mut self.front, &mut self.back);
+        }
+        Ok(!job.is_done())
+    }
+
+    /// Reads back the attenuation volume that a light of the last picture used.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it. `None` when the light has no volume.
+    pub fn attenuation(&self, request: &Request, light: usize) -> Result<Option<Attenuation>, GpuError> {
+        let Some(key) = LightKey::of(request, light) else { return Ok(None) };
+        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
+            return Ok(None);
+        };
+        let values = read_floats(&self.context, &found.texture)?;
+        Ok(Some(Attenuation { dims: found.dims, divisor: found.divisor, values }))
+    }
+
+    /// Overwrites a light's attenuation volume, which must be complete. Tests use it to see whether
+    /// a change refills it.
+    #[doc(hidden)]
+    pub fn corrupt_attenuation(&self, request: &Request, light: usize) -> bool {
+        let Some(key) = LightKey::of(request, light) else { return false };
+        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
+            return false;
+        };
+        let texel = found.texture.format().block_copy_size(None).unwrap_or(2);
+        let [nx, ny, _] = found.dims.map(|n| n as u32);
+        let zeros = vec![0u8; (found.bytes()) as usize];
+        self.context.queue.write_texture(
+            found.texture.as_image_copy(),
+            &zeros,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texel * nx),
+                rows_per_image: Some(ny),
+            },
+            found.texture.size(),
+        );
+        true
+    }
+
+    /// Makes room for a volume and lists its upload, unless it is there already.
+    fn place_volume(
+        &mut self,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+        steps: &mut Vec<Step>,
+    ) -> Result<(), GpuError> {
+        let same = |known: &GpuVolume| known.volume.content_id() == volume.content_id();
+        if !(self.uploaded && self.volume.as_ref().is_some_and(same)) {
+            let fresh = GpuVolume::new(&self.context, volume, bricks)?;
+            let slices = volume.dims()[2];
+            for first in (0..slices).step_by(fresh.slices_per_step()) {
+                steps.push(Step::Upload(first..slices.min(first + fresh.slices_per_step())));
+            }
+            steps.extend((0..prefilter::levels(&fresh)).map(Step::Pyramid));
+            self.volume = Some(fresh);
+            self.uploaded = false;
+            self.tables = None;
+            self.lights.clear();
+        }
+        Ok(())
+    }
+
+    /// Finds or makes the light volumes of a request and forgets the oldest of the others.
+    fn place_lights(
+        &mut self,
+        request: &Request,
+    ) -> Result<(Vec<Option<LightKey>>, Vec<LightBuild>), GpuError> {
+        let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else {
+            return Err(GpuError::Refused("no volume".to_owned()));
+        };
+        let count = request.settings.lights.len();
+        self.rebuilds.resize(self.rebuilds.len().max(count), 0);
+        let shown = if self.options.fill_everything {
+            BrickSet::full(volume.bricks.dims)
+        } else {
+            tables.eye.occupied.union(&tables.lighting.occupied)
+        };
+        let mut keys = vec![None; count];
+        let mut builds: Vec<LightBuild> = Vec::new();
+        for (light, slot) in keys.iter_mut().enumerate() {
+            let Some(full) = LightKey::of(request, light) else { continue };
+            let needed = |key: &LightKey| needed_bricks(volume, &shown, key.resolution().divisor());
+            let usable = |known: &LightVolume, key: &LightKey| {
+                known.key == *key && needed(key).is_within(&known.filled)
+            };
+            let coarse = request.coarse.map(|resolution| full.at_resolution(resolution));
+            let found = [Some(full.clone()), coarse.clone()]
+                .into_iter()
+                .flatten()
+                .find(|key| self.lights.iter().any(|known| usable(known, key)));
+            let key = found.clone().or(coarse).unwrap_or(full);
+            if found.is_none() {
+                self.lights.retain(|known| known.key != key);
+                let fresh = LightVolume::new(&self.context, volume, key.clone(), needed(&key))?;
+                let build = plan_build(volume, request, light, &fresh, self.options.chunk);
+                self.lights.push(fresh);
+                builds.push(build);
+            }
+            for known in self.lights.iter_mut().filter(|known| known.key == key) {
+                known.last_used = self.clock;
+            }
+            *slot = Some(key);
+        }
+        let clock = self.clock;
+        self.lights.sort_by_key(|light| std::cmp::Reverse(light.last_used));
+        let current = self.lights.iter().filter(|light| light.last_used == clock).count();
+        self.lights.truncate(current + SPARE_LIGHT_VOLUMES);
+        Ok((keys, builds))
+    }
+
+    fn encode(
+        &mut self,
+        job: &mut Job,
+        step: &Step,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let (Some(volume), Some(tables), Some(target)) = (&self.volume, &self.tables, &self.back) else {
+            return Err(GpuError::Refused("the job is out of date".to_owned()));
+        };
+        let settings = &job.request.settings;
+        let gpu = Gpu { context: &self.context, shaders: &self.shaders, volume, nothing: &self.nothing };
+        match step {
+            Step::Upload(slices) => volume.upload(&self.context, slices.clone()),
+            Step::Pyramid(level) => {
+                prefilter::fill(&self.context, &self.shaders, volume, *level, encoder)?;
+                self.uploaded = level + 1 == prefilter::levels(volume);
+            }
+            Step::March(at, view, begin) => {
+                let build = &mut job.builds[*at];
+                let Some(light) = self.lights.iter().find(|light| light.key == build.key) else {
+                    return Err(GpuError::Refused("the job is out of date".to_owned()));
+                };
+                let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
+                if *begin == 0 {
+                    let sheets =
+                        Sheets::new(&self.context, geometry, chunk, &build.read, &tables.lighting.occupied)?;
+                    let peak = self.gpu_bytes() + sheets.bytes();
+                    self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
+                    let schedule = Schedule::new(&volume.scene, geometry, light, sheets.chunk);
+                    build.current = Some((sheets, schedule));
+                    if *view == 0 {
+                        self.rebuilds[build.light] += 1;
+                    }
+                }
+                let Some((sheets, _)) = &build.current else { return Ok(()) };
+                let slabs = (*begin, (*begin + chunk).min(geometry.frame.slab_count));
+                let table = &tables.lighting.buffer;
+                march(gpu, table, &settings.shadows, geometry, sheets, slabs, encoder)?;
+            }
+            Step::Backproject(at, view, begin) => {
+                let build = &mut job.builds[*at];
+                let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
+                let Some(light) = self.lights.iter_mut().find(|light| light.key == build.key) else {
+                    return Err(GpuError::Refused("the job is out of date".to_owned()));
+                };
+                let Some(current) = &build.current else { return Ok(()) };
+                let end = (*begin + chunk).min(geometry.frame.slab_count);
+                let slabs = (*begin, end);
+                backproject(gpu, &settings.shadows, geometry, current, light, slabs, encoder)?;
+                if end == geometry.frame.slab_count && view + 1 == build.views.len() {
+                    light.complete = true;
+                    build.current = None;
+                }
+            }
+            Step::Eye(rows) => {
+                let found: Vec<Option<&LightVolume>> = job
+                    .keys
+                    .iter()
+                    .map(|key| {
+                        key.as_ref().and_then(|key| self.lights.iter().find(|light| light.key == *key))
+                    })
+                    .collect();
+                let attenuation: Vec<&LightVolume> = found.iter().copied().flatten().collect();
+                let (leaping, dark) = (self.options.leaping, self.options.dark);
+                let eye = EyePass::new(&volume.scene, settings, target.size, &found, leaping, dark);
+                self.report.slabs = eye.slab_count();
+                let picture = &target.picture_view;
+                eye.draw(gpu, tables, &attenuation, picture, rows.clone(), encoder)?;
+            }
+            Step::Display => {
+                display(&self.context, &self.shaders, &settings.output, job.transparent, target, encoder)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Lays out the filling of one light volume.
+fn plan_build(
+    volume: &GpuVolume,
+    request: &Request,
+    light: usize,
+    fresh: &LightVolume,
+    chunk: Option<u32>,
+) -> LightBuild {
+    let settings = &request.settings;
+    debug_assert!(settings.shadows.algorithm == ShadowAlgorithm::Splat);
+    let shadows = crate::model::Shadows { resolution: fresh.key.resolution(), ..settings.shadows.clone() };
+    let views = light_views(&settings.lights[light], &shadows, &volume.scene);
+    let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| chunk_slabs(volume, view))).collect();
+    let read = read_bricks(volume, &fresh.filled, fresh.divisor, &views);
+    LightBuild { light, key: fresh.key.clone(), views, chunks, read, current: None }
+}
+
+/// Slabs per chunk so that the ring takes no more than a byte per voxel of the volume.
+fn chunk_slabs(volume: &GpuVolume, view: &LightView) -> u32 {
+    let sheet_bytes = 2 * u64::from(view.frame.size[0]) * u64::from(view.frame.size[1]);
+    let fits = volume.volume.voxel_count() as u64 / sheet_bytes.max(1);
+    fits.clamp(*CHUNK_SLABS.start(), *CHUNK_SLABS.end()) as u32
+}
+
+fn milliseconds(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1000.0
+}

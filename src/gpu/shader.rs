@@ -1,0 +1,117 @@
+//! Shader sources: embedded, joined by `#import "path"` (each file once), turned into pipelines.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::{Context, GpuError};
+
+/// Every shader file, by its path below `shaders/`.
+pub const SHADERS: [(&str, &str); 12] = [
+    ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
+    ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
+    ("common/lights.wgsl", include_str!("../../shaders/common/lights.wgsl")),
+    ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
+    ("common/table.wgsl", include_str!("../../shaders/common/table.wgsl")),
+    ("common/volume.wgsl", include_str!("../../shaders/common/volume.wgsl")),
+    ("display.wgsl", include_str!("../../shaders/display.wgsl")),
+    ("downsample.wgsl", include_str!("../../shaders/downsample.wgsl")),
+    ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
+    ("light_backproject.wgsl", include_str!("../../shaders/light_backproject.wgsl")),
+    ("light_march.wgsl", include_str!("../../shaders/light_march.wgsl")),
+    ("prefilter.wgsl", include_str!("../../shaders/prefilter.wgsl")),
+];
+
+/// Joins sources and makes pipelines, each once.
+#[derive(Debug, Clone)]
+pub struct ShaderLibrary {
+    context: Context,
+    /// Replacements in the joined source; see [`Self::with_mutation`].
+    mutation: Option<(String, String)>,
+    pipelines: Arc<Mutex<HashMap<String, wgpu::ComputePipeline>>>,
+}
+
+impl ShaderLibrary {
+    /// An empty library for a device.
+    pub fn new(context: &Context) -> Self {
+        Self { context: context.clone(), mutation: None, pipelines: Arc::default() }
+    }
+
+    /// A library that replaces a text in every shader that has it. Tests use it to prove that they
+    /// notice a wrong shader.
+    #[must_use]
+    pub fn with_mutation(context: &Context, from: &str, to: &str) -> Self {
+        Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }
+    }
+
+    /// A shader with everything that it imports, for storage textures of `format`.
+    ///
+    /// # Errors
+    /// When a file is not there.
+    pub fn source(name: &str, format: wgpu::TextureFormat) -> Result<String, GpuError> {
+        let mut joined = String::new();
+        join(name, &mut Vec::new(), &mut joined)?;
+        let format = match format {
+            wgpu::TextureFormat::R32Float => "r32float",
+            _ => "r16float",
+        };
+        Ok(joined.replace("STORAGE_FORMAT", format))
+    }
+
+    /// The pipeline of a shader with these override constants, made on first use.
+    ///
+    /// # Errors
+    /// When the shader is not there or the driver refuses it.
+    pub fn pipeline(&self, name: &str, constants: &[(&str, f64)]) -> Result<wgpu::ComputePipeline, GpuError> {
+        let key = format!("{name} {constants:?}");
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = pipelines.get(&key) {
+            return Ok(pipeline.clone());
+        }
+        let mut source = Self::source(name, self.context.storage_format)?;
+        if let Some((from, to)) = &self.mutation {
+            source = source.replace(from, to);
+        }
+        let device = &self.context.device;
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(&key),
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                zero_initialize_workgroup_memory: false,
+            },
+            cache: None,
+        });
+        if let Some(err) = pollster::block_on(scope.pop()) {
+            return Err(GpuError::Refused(format!("{name}: {err}")));
+        }
+        pipelines.insert(key, pipeline.clone());
+        Ok(pipeline)
+    }
+}
+
+fn join(name: &str, seen: &mut Vec<String>, joined: &mut String) -> Result<(), GpuError> {
+    if seen.iter().any(|known| known == name) {
+        return Ok(());
+    }
+    seen.push(name.to_owned());
+    let (_, text) = SHADERS
+        .iter()
+        .find(|(known, _)| *known == name)
+        .ok_or_else(|| GpuError::Refused(format!("there is no shader file {name}")))?;
+    for line in text.lines() {
+        if let Some(import) = line.strip_prefix("#import \"").and_then(|rest| rest.strip_suffix('"')) {
+            join(import, seen, joined)?;
+        } else {
+            joined.push_str(line);
+            joined.push('\n');
+        }
+    }
+    Ok(())
+}

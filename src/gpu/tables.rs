@@ -1,0 +1,99 @@
+//! Transfer functions on the GPU, and the bricks that they show.
+
+use super::volume::{GpuVolume, entry};
+use super::{Context, GpuError};
+use crate::model::{BakedTransfer, Settings};
+use crate::plan::BrickSet;
+
+/// A baked transfer function: its table and the bricks in which it shows anything.
+#[derive(Debug)]
+pub(super) struct Table {
+    /// What it was baked to.
+    pub baked: BakedTransfer,
+    /// The table as a storage buffer.
+    pub buffer: wgpu::Buffer,
+    /// Bricks with any extinction.
+    pub occupied: BrickSet,
+}
+
+impl Table {
+    fn new(context: &Context, volume: &GpuVolume, baked: BakedTransfer) -> Self {
+        let buffer = context.buffer("Table::entries", &baked.entries, wgpu::BufferUsages::STORAGE);
+        let occupied = BrickSet::new(volume.bricks.dims, volume.bricks.occupancy(baked.visibility()));
+        Self { baked, buffer, occupied }
+    }
+}
+
+/// Both transfer functions of the settings.
+#[derive(Debug)]
+pub(super) struct Tables {
+    /// What the eye sees.
+    pub eye: Table,
+    /// What the light meets.
+    pub lighting: Table,
+    /// Distances in bricks to the nearest that the eye sees.
+    pub eye_distances: wgpu::TextureView,
+}
+
+impl Tables {
+    /// Bakes both and finds their bricks.
+    pub(super) fn new(context: &Context, volume: &GpuVolume, settings: &Settings) -> Result<Self, GpuError> {
+        let range = volume.volume.value_range();
+        let eye = Table::new(context, volume, settings.baked_eye(range, &volume.scene));
+        let lighting = Table::new(context, volume, settings.baked_lighting(range, &volume.scene));
+        let distances: Vec<u8> = eye.occupied.distances();
+        let texture = upload_bricks(context, "Tables::eye_distances", eye.occupied.dims, &distances, 1)?;
+        Ok(Self { eye, lighting, eye_distances: texture })
+    }
+
+    /// Brings the tables up to date with changed settings.
+    pub(super) fn refresh(
+        &mut self,
+        context: &Context,
+        volume: &GpuVolume,
+        settings: &Settings,
+    ) -> Result<(), GpuError> {
+        let range = volume.volume.value_range();
+        let eye = settings.baked_eye(range, &volume.scene);
+        let lighting = settings.baked_lighting(range, &volume.scene);
+        if eye != self.eye.baked || lighting != self.lighting.baked {
+            *self = Self::new(context, volume, settings)?;
+        }
+        Ok(())
+    }
+}
+
+/// A 3D texture of `channels` unsigned bytes per brick.
+pub(super) fn upload_bricks(
+    context: &Context,
+    label: &'static str,
+    dims: [usize; 3],
+    bytes: &[u8],
+    channels: u32,
+) -> Result<wgpu::TextureView, GpuError> {
+    let format = if channels == 1 { wgpu::TextureFormat::R8Uint } else { wgpu::TextureFormat::Rg8Uint };
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = context.texture(&super::volume::texture_3d(label, dims, format, usage))?;
+    context.queue.write_texture(
+        texture.as_image_copy(),
+        bytes,
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(channels * dims[0] as u32),
+            rows_per_image: Some(dims[1] as u32),
+        },
+        texture.size(),
+    );
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}
+
+/// The distance, in bricks, up to which a kernel stretched to a pyramid level can see beyond the
+/// range that a brick announces: at level 2 it reaches 9.4 voxels, the announcement three.
+pub(super) fn dilation(max_stretch_level: f64) -> i32 {
+    i32::from(max_stretch_level > 0.0)
+}
+
+/// A bind group entry for a texture view.
+pub(super) fn view_entry(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+    entry(binding, wgpu::BindingResource::TextureView(view))
+}

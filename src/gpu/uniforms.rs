@@ -1,0 +1,179 @@
+//! Every struct that a shader mirrors, field by field. `tests/shaders.rs` compares names, offsets
+//! and sizes with what the shaders declare.
+
+#![expect(missing_docs, reason = "each field is documented where the shader declares it")]
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DAffine3, DVec2, DVec3};
+
+use crate::plan::SheetFrame as Frame;
+
+fn vec3(v: DVec3) -> [f32; 3] {
+    v.as_vec3().into()
+}
+
+fn vec2(v: DVec2) -> [f32; 2] {
+    v.as_vec2().into()
+}
+
+/// The three rows of an affine map, the translation in w.
+pub(crate) fn rows(map: &DAffine3) -> [[f32; 4]; 3] {
+    let transposed = map.matrix3.transpose();
+    let row = |linear: DVec3, offset: f64| [linear.x as f32, linear.y as f32, linear.z as f32, offset as f32];
+    [
+        row(transposed.x_axis, map.translation.x),
+        row(transposed.y_axis, map.translation.y),
+        row(transposed.z_axis, map.translation.z),
+    ]
+}
+
+/// `common/sheet_frame.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SheetFrame {
+    pub origin: [f32; 3],
+    pub first_depth: f32,
+    pub origin_di: [f32; 3],
+    pub slab: f32,
+    pub origin_dj: [f32; 3],
+    pub pitch: f32,
+    pub direction: [f32; 3],
+    pub inverse_distance: f32,
+    pub direction_di: [f32; 3],
+    pub voxel_edge: f32,
+    pub direction_dj: [f32; 3],
+    pub slab_count: u32,
+    pub slope: [f32; 2],
+    pub slope_di: [f32; 2],
+    pub slope_dj: [f32; 2],
+    pub size: [u32; 2],
+}
+
+impl SheetFrame {
+    pub fn new(frame: &Frame) -> Self {
+        Self {
+            origin: vec3(frame.origin.base),
+            first_depth: frame.first_depth as f32,
+            origin_di: vec3(frame.origin.per_i),
+            slab: frame.slab as f32,
+            origin_dj: vec3(frame.origin.per_j),
+            pitch: frame.pitch as f32,
+            direction: vec3(frame.direction.base),
+            inverse_distance: frame.inverse_distance as f32,
+            direction_di: vec3(frame.direction.per_i),
+            voxel_edge: frame.voxel_edge as f32,
+            direction_dj: vec3(frame.direction.per_j),
+            slab_count: frame.slab_count,
+            slope: vec2(frame.slope.base),
+            slope_di: vec2(frame.slope.per_i),
+            slope_dj: vec2(frame.slope.per_j),
+            size: frame.size,
+        }
+    }
+}
+
+/// `common/volume.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Grid {
+    pub dims: [f32; 3],
+    pub dilation: i32,
+    pub density_scale: [f32; 3],
+    pub pad0: f32,
+    pub pyramid_scale: [f32; 3],
+    pub pad1: f32,
+    pub bricks: [i32; 3],
+    pub pad2: i32,
+}
+
+/// `light_march.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct March {
+    pub frame: SheetFrame,
+    pub begin: u32,
+    pub end: u32,
+    pub layers: u32,
+    pub pad0: u32,
+}
+
+/// `light_backproject.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Backprojection {
+    pub frame: SheetFrame,
+    pub light_from_index_x: [f32; 4],
+    pub light_from_index_y: [f32; 4],
+    pub light_from_index_z: [f32; 4],
+    pub first_pixel: [f32; 2],
+    pub kernel_edge: f32,
+    pub voxel_step: f32,
+    pub dims: [u32; 3],
+    pub cube_face: u32,
+    pub begin: u32,
+    pub end: u32,
+    pub layers: u32,
+    pub bricks: u32,
+}
+
+/// `common/lights.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Light {
+    pub place: [f32; 3],
+    pub perspective: f32,
+    pub color: [f32; 3],
+    pub shadowed: f32,
+    pub lookup: [f32; 3],
+    pub pad0: f32,
+}
+
+/// `common/lights.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Shading {
+    pub emission: f32,
+    pub ambient: f32,
+    pub diffuse: f32,
+    pub specular: f32,
+    pub shininess: f32,
+    pub surface_gradient: f32,
+    pub strength: f32,
+    pub ambient_offset: f32,
+    pub gain: f32,
+    pub bias: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+}
+
+/// `eye.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Eye {
+    pub frame: SheetFrame,
+    pub shading: Shading,
+    pub scene_from_index_x: [f32; 4],
+    pub scene_from_index_y: [f32; 4],
+    pub scene_from_index_z: [f32; 4],
+    pub index_from_scene_x: [f32; 4],
+    pub index_from_scene_y: [f32; 4],
+    pub index_from_scene_z: [f32; 4],
+    pub eye: [f32; 4],
+    pub first_row: u32,
+    pub end_row: u32,
+    pub leaping: u32,
+    pub dark: f32,
+    pub lights: [Light; crate::model::MAX_LIGHTS],
+}
+
+/// `display.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Display {
+    pub top: [f32; 4],
+    pub bottom: [f32; 4],
+    pub transparent: u32,
+    pub clip: u32,
+    pub pad0: u32,
+    pub pad1: u32,
+}

@@ -1,0 +1,228 @@
+//! The volume on the GPU: density with a border of nothing, and the pyramid made from it.
+
+use std::sync::Arc;
+
+use half::f16;
+
+use super::uniforms::Grid;
+use super::{Context, GpuError};
+use crate::data::{BRICK_EDGE, Bricks, Volume};
+use crate::math::SceneSpace;
+use crate::plan::MAX_STRETCH_LEVEL;
+
+/// Voxels of nothing before the data in the pyramid: one texel of its coarsest level.
+const PYRAMID_PADDING: usize = 4;
+
+/// Upload block: small enough that one takes a few milliseconds.
+const UPLOAD_BYTES: usize = 4 << 20;
+
+/// What every pass works with.
+#[derive(Clone, Copy)]
+pub(super) struct Gpu<'a> {
+    pub context: &'a Context,
+    pub shaders: &'a super::ShaderLibrary,
+    pub volume: &'a GpuVolume,
+    /// Bound where a light has no volume.
+    pub nothing: &'a wgpu::TextureView,
+}
+
+/// A volume's textures and bricks.
+#[derive(Debug)]
+pub(super) struct GpuVolume {
+    /// What is on the GPU; kept for re-upload and for the CPU side of the passes.
+    pub volume: Arc<Volume>,
+    /// Density ranges of 8³ bricks.
+    pub bricks: Arc<Bricks>,
+    /// How the grid lies in scene space.
+    pub scene: SceneSpace,
+    density: wgpu::Texture,
+    pub density_view: wgpu::TextureView,
+    pub pyramid: wgpu::Texture,
+    pub pyramid_view: wgpu::TextureView,
+    pub clamped: wgpu::Sampler,
+    unorm: bool,
+    grid: Grid,
+}
+
+impl GpuVolume {
+    /// Makes the textures; nothing is uploaded yet.
+    ///
+    /// # Errors
+    /// When the adapter cannot hold them.
+    pub(super) fn new(
+        context: &Context,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+    ) -> Result<Self, GpuError> {
+        let dims = volume.dims();
+        let unorm = density_is_unorm(context, volume);
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let density = context.texture(&texture_3d(
+            "Volume::density",
+            dims.map(|n| n + 2),
+            if unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float },
+            usage,
+        ))?;
+        // Whole texels on every level, so that a level's texel is exactly 2³ of the finer one's.
+        let padded = dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8));
+        let pyramid = context.texture(&wgpu::TextureDescriptor {
+            mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
+            ..texture_3d(
+                "Volume::pyramid",
+                padded,
+                context.storage_format,
+                wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+            )
+        })?;
+        let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
+        let grid = Grid {
+            dims: dims.map(|n| n as f32),
+            dilation: 0,
+            density_scale: reciprocal(dims.map(|n| n + 2)),
+            pad0: 0.0,
+            pyramid_scale: reciprocal(padded),
+            pad1: 0.0,
+            bricks: bricks.dims.map(|n| n as i32),
+            pad2: 0,
+        };
+        Ok(Self {
+            volume: Arc::clone(volume),
+            bricks: Arc::clone(bricks),
+            scene: volume.scene(),
+            density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
+            density,
+            pyramid_view: pyramid.create_view(&wgpu::TextureViewDescriptor::default()),
+            pyramid,
+            clamped: context.sampler("Volume::clamped", wgpu::AddressMode::ClampToEdge),
+            unorm,
+            grid,
+        })
+    }
+
+    /// How many slices one upload step takes.
+    pub(super) fn slices_per_step(&self) -> usize {
+        let [nx, ny, _] = self.volume.dims();
+        (UPLOAD_BYTES / (nx * ny * 2)).max(1)
+    }
+
+    /// Uploads some z-slices.
+    pub(super) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
+        use rayon::prelude::*;
+        let [nx, ny, _] = self.volume.dims();
+        let encode =
+            |density: f32| if self.unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
+        let words: Vec<u16> = slices
+            .clone()
+            .into_par_iter()
+            .flat_map_iter(|z| self.volume.slice_densities(z).into_iter().map(encode))
+            .collect();
+        context.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture: &self.density,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: 1, y: 1, z: 1 + slices.start as u32 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytemuck::cast_slice(&words),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(2 * nx as u32),
+                rows_per_image: Some(ny as u32),
+            },
+            wgpu::Extent3d {
+                width: nx as u32,
+                height: ny as u32,
+                depth_or_array_layers: slices.len() as u32,
+            },
+        );
+    }
+
+    /// The uniform that describes the grid to a pass whose stretched kernels see `dilation` bricks.
+    pub(super) fn grid(&self, dilation: i32) -> Grid {
+        Grid { dilation, ..self.grid }
+    }
+
+    /// Bytes of its textures.
+    pub(super) fn bytes(&self) -> u64 {
+        let texels = |texture: &wgpu::Texture| {
+            let size = texture.size();
+            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
+        };
+        // The coarser levels of the pyramid add a seventh.
+        2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7
+    }
+
+    /// Bind group 1 of the passes that sample density.
+    pub(super) fn bind_group(
+        &self,
+        context: &Context,
+        pipeline: &wgpu::ComputePipeline,
+        dilation: i32,
+    ) -> wgpu::BindGroup {
+        let grid = context.buffer("Volume::grid", &[self.grid(dilation)], wgpu::BufferUsages::UNIFORM);
+        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Volume::bind_group"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[
+                entry(0, grid.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&self.density_view)),
+                entry(2, wgpu::BindingResource::TextureView(&self.pyramid_view)),
+                entry(3, wgpu::BindingResource::Sampler(&self.clamped)),
+            ],
+        })
+    }
+}
+
+/// One entry of a bind group.
+pub(super) fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource }
+}
+
+/// A 3D texture without mip levels.
+pub(super) fn texture_3d(
+    label: &'static str,
+    dims: [usize; 3],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: dims[0] as u32,
+            height: dims[1] as u32,
+            depth_or_array_layers: dims[2] as u32,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format,
+        usage,
+        view_formats: &[],
+    }
+}
+
+/// Bricks along each axis of a grid.
+pub(super) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| n.div_ceil(BRICK_EDGE))
+}
+
+fn unorm16(density: f32) -> u16 {
+    (density.clamp(0.0, 1.0) * 65535.0).round() as u16
+}
+
+/// 16-bit floats carry 11 bits and are quickest on software drivers: enough for 8-bit data. Anything
+/// finer goes to 16 normalised bits where the adapter has them.
+fn density_is_unorm(context: &Context, volume: &Volume) -> bool {
+    use crate::data::VoxelType;
+    let eight_bits = matches!(volume.samples().voxel_type(), VoxelType::U8 | VoxelType::I8);
+    context.unorm16 && !eight_bits
+}
+
+/// A density as the GPU will have it: the reference rounds the same way.
+pub fn stored_density(context: &Context, volume: &Volume, density: f32) -> f32 {
+    if density_is_unorm(context, volume) {
+        f32::from(unorm16(density)) / 65535.0
+    } else {
+        f16::from_f32(density).to_f32()
+    }
+}
