@@ -14,9 +14,13 @@
 //! | [`plan`] | what a change makes stale; the geometry of the passes |
 //! | [`mod@reference`] | the paper in f64, literal and slow |
 //! | [`gpu`] | the renderer |
+//! | [`app`] | the window |
+//! | [`cli`] | the command line |
 //!
 //! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's
 //! longest edge spans [−1, 1]) → sheets (pixels and depth along an axis of projection).
+
+pub mod cli;
 pub mod data;
 pub mod gpu;
 pub mod math;

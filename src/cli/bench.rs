@@ -1,0 +1,240 @@
+//! `chiaroscuro bench`: how long pictures and light volumes take, in ratios within one run.
+//!
+//! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
+//! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
+//! halves of the light pass of those frames); *growth* (light volumes of clouds of growing size).
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::bench_report::{Samples, round};
+use super::scene::{Loaded, LookArgs, parse_size};
+use super::{CliError, print_line};
+use crate::data::synthetic;
+use crate::gpu::{Context, RenderOptions, Renderer};
+use crate::model::{Settings, ShadowAlgorithm, auto};
+
+/// Frames before the clock runs: pipelines are compiled, caches are warm.
+const WARM_UP: usize = 2;
+
+/// Degrees that camera or light move per frame.
+const STEP_DEG: f64 = 12.0;
+
+/// Sizes of the growth case.
+const GROWTH: [usize; 3] = [64, 128, 256];
+
+/// Arguments of `bench`.
+#[derive(Debug, Args)]
+pub(super) struct BenchArgs {
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Volume: a file, or builtin:NAME[:N]
+    #[arg(long, value_name = "FILE", default_value = "builtin:chair:128")]
+    volume: String,
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
+    size: [u32; 2],
+    /// Timed frames per case
+    #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    frames: u16,
+    /// Only the case of this name
+    #[arg(long, value_name = "CASE", value_parser = ["orbit", "light-drag", "light-build", "growth"])]
+    only: Option<String>,
+    #[command(flatten)]
+    look: LookArgs,
+}
+
+/// Runs the cases and prints them.
+pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
+    let context = Context::headless()?;
+    let wants = |case: &str| args.only.as_deref().is_none_or(|only| only == case);
+    let mut cases = Vec::new();
+    let mut ratios = serde_json::Map::new();
+    if wants("orbit") || wants("light-drag") || wants("light-build") {
+        let loaded = args.look.load(&args.volume)?;
+        let mut renderer = Renderer::new(&context)?;
+        let settings = args.look.settings(&mut renderer, &loaded)?;
+        let mut bench = Bench { args, loaded: &loaded, renderer, settings };
+        let (with, without) = bench.orbit(&mut cases)?;
+        ratios
+            .insert("shadowed_over_unshadowed_frame".to_owned(), json!(round(with.cost() / without.cost())));
+        if wants("light-drag") || wants("light-build") {
+            let drag = bench.light_drag(&mut cases)?;
+            let ratio = drag.light_build() / without.eye();
+            ratios.insert("light_build_over_unshadowed_frame".to_owned(), json!(round(ratio)));
+        }
+    }
+    if wants("growth") {
+        growth(args, &context, &mut cases, &mut ratios)?;
+    }
+    let result = json!({
+        "adapter": context.info.name,
+        "driver": format!("{} {}", context.info.driver, context.info.driver_info).trim(),
+        "cases": cases,
+        "ratios": ratios,
+    });
+    if args.json {
+        print_line(&result.to_string());
+    } else {
+        print_table(&result);
+    }
+    Ok(())
+}
+
+struct Bench<'a> {
+    args: &'a BenchArgs,
+    loaded: &'a Loaded,
+    renderer: Renderer,
+    settings: Settings,
+}
+
+impl Bench<'_> {
+    /// A frame without reading back, as the viewer draws it.
+    fn frame(&mut self, settings: &Settings, samples: Option<&mut Samples>) -> Result<(), CliError> {
+        let options = RenderOptions { timed: true, ..RenderOptions::default() };
+        let size = self.args.size;
+        let mut draw = || {
+            self.renderer.draw(&self.loaded.volume, &self.loaded.bricks, settings, size, &options)?;
+            Ok::<_, CliError>(self.renderer.report().clone())
+        };
+        match samples {
+            Some(samples) => samples.time(draw),
+            None => draw().map(|_| ()),
+        }
+    }
+
+    /// The camera turns: with shadows and without, in turn, so that a busy machine slows both.
+    fn orbit(&mut self, cases: &mut Vec<Value>) -> Result<(Samples, Samples), CliError> {
+        let (mut with, mut without) = (Samples::default(), Samples::default());
+        let mut rebuilds = 0;
+        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+            let mut settings = self.settings.clone();
+            settings.camera.azimuth_deg += STEP_DEG * frame as f64;
+            let mut unshadowed = settings.clone();
+            unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
+            let timed = frame >= WARM_UP;
+            let before: u64 = self.renderer.light_rebuilds().iter().sum();
+            self.frame(&settings, timed.then_some(&mut with))?;
+            self.frame(&unshadowed, timed.then_some(&mut without))?;
+            if timed {
+                rebuilds += self.renderer.light_rebuilds().iter().sum::<u64>() - before;
+            }
+        }
+        cases.push(self.case("orbit", &with, rebuilds));
+        cases.push(self.case("orbit-unshadowed", &without, 0));
+        Ok((with, without))
+    }
+
+    /// The first light turns about the vertical axis.
+    fn light_drag(&mut self, cases: &mut Vec<Value>) -> Result<Samples, CliError> {
+        let mut samples = Samples::default();
+        let mut rebuilds = 0;
+        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+            let mut settings = self.settings.clone();
+            if let Some(light) = settings.lights.first_mut() {
+                let turn = glam::DQuat::from_rotation_z((STEP_DEG * (frame + 1) as f64).to_radians());
+                light.position = (turn * glam::DVec3::from(light.position)).into();
+            }
+            let timed = frame >= WARM_UP;
+            let before: u64 = self.renderer.light_rebuilds().iter().sum();
+            self.frame(&settings, timed.then_some(&mut samples))?;
+            if timed {
+                rebuilds += self.renderer.light_rebuilds().iter().sum::<u64>() - before;
+            }
+        }
+        cases.push(self.case("light-drag", &samples, rebuilds));
+        let mut build = self.case("light-build", &samples, rebuilds);
+        build["wall_ms"] = json!({ "median": round(samples.light_build()) });
+        build["cpu_ms"] = Value::Null;
+        cases.push(build);
+        Ok(samples)
+    }
+
+    fn case(&self, name: &str, samples: &Samples, rebuilds: u64) -> Value {
+        describe(name, self.loaded, self.args.size, &self.settings, samples, rebuilds)
+    }
+}
+
+/// Light volumes of clouds of growing size, and the exponent of the growth per doubling.
+fn growth(
+    args: &BenchArgs,
+    context: &Context,
+    cases: &mut Vec<Value>,
+    ratios: &mut serde_json::Map<String, Value>,
+) -> Result<(), CliError> {
+    let mut previous: Option<f64> = None;
+    for n in GROWTH {
+        let loaded = Loaded::new(synthetic::builtin("cloud", Some(n))?);
+        let settings = auto::first_settings(&loaded.volume, &loaded.histogram);
+        // The picture grows with the volume (the paper's M = N).
+        let size = [n as u32; 2];
+        let renderer = Renderer::new(context)?;
+        let sized =
+            BenchArgs { size, volume: args.volume.clone(), only: None, look: args.look.clone(), ..*args };
+        let mut bench = Bench { args: &sized, loaded: &loaded, renderer, settings: settings.clone() };
+        let mut made = Vec::new();
+        let samples = bench.light_drag(&mut made)?;
+        cases.push(describe("growth", &loaded, size, &settings, &samples, u64::from(args.frames)));
+        let build = samples.light_build();
+        if let Some(before) = previous {
+            ratios.insert(format!("light_build_{}_over_{}", n, n / 2), json!(round(build / before)));
+            ratios.insert(format!("growth_exponent_to_{n}"), json!(round((build / before).log2())));
+        }
+        previous = Some(build);
+    }
+    Ok(())
+}
+
+fn describe(
+    name: &str,
+    loaded: &Loaded,
+    size: [u32; 2],
+    settings: &Settings,
+    samples: &Samples,
+    rebuilds: u64,
+) -> Value {
+    let mut case = json!({
+        "name": name,
+        "volume": loaded.volume.name(),
+        "dims": loaded.volume.dims(),
+        "size": size,
+        "light_rebuilds": rebuilds,
+        "rendered": {
+            "kernel": settings.sampling.kernel,
+            "slab": settings.sampling.slab,
+            "light_kernel": settings.shadows.kernel,
+            "light_slab": settings.shadows.slab,
+            "light_resolution": settings.shadows.resolution,
+        },
+    });
+    if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
+        case.extend(timings);
+    }
+    case
+}
+
+fn print_table(result: &Value) {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])));
+    print_line(
+        "case                volume               wall ms    cpu ms    eye    march  back-project  rebuilds",
+    );
+    for case in result["cases"].as_array().into_iter().flatten() {
+        let number = |value: &Value| value.as_f64().map_or("–".to_owned(), |ms| format!("{ms:.1}"));
+        print_line(&format!(
+            "{:<19} {:<20} {:>7} {:>9} {:>6} {:>8} {:>13} {:>9}",
+            text(&case["name"]),
+            format!("{} {}", text(&case["volume"]), case["dims"][0]),
+            number(&case["wall_ms"]["median"]),
+            number(&case["cpu_ms"]["median"]),
+            number(&case["stages"]["eye"]),
+            number(&case["stages"]["light_march"]),
+            number(&case["stages"]["light_backproject"]),
+            case["light_rebuilds"],
+        ));
+    }
+    for (name, ratio) in result["ratios"].as_object().into_iter().flatten() {
+        print_line(&format!("{name:<40} {ratio}"));
+    }
+}

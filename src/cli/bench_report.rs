@@ -1,0 +1,106 @@
+//! What a benchmark measured, as JSON and as a table.
+
+use serde_json::{Value, json};
+
+use super::cpu_time::process_cpu_ms;
+use crate::gpu::Report;
+
+/// Timings of one case.
+#[derive(Debug, Default)]
+#[expect(clippy::struct_field_names, reason = "the unit belongs into the name")]
+pub(super) struct Samples {
+    wall_ms: Vec<f64>,
+    cpu_ms: Vec<f64>,
+    eye_ms: Vec<f64>,
+    light_march_ms: Vec<f64>,
+    light_backproject_ms: Vec<f64>,
+}
+
+impl Samples {
+    /// Runs one frame and keeps what it took.
+    pub(super) fn time<E>(&mut self, frame: impl FnOnce() -> Result<Report, E>) -> Result<(), E> {
+        let cpu = process_cpu_ms();
+        let start = std::time::Instant::now();
+        let report = frame()?;
+        self.wall_ms.push(start.elapsed().as_secs_f64() * 1000.0);
+        if let (Some(before), Some(after)) = (cpu, process_cpu_ms()) {
+            self.cpu_ms.push(after - before);
+        }
+        self.eye_ms.push(report.eye_ms);
+        self.light_march_ms.push(report.light_march_ms);
+        self.light_backproject_ms.push(report.light_backproject_ms);
+        Ok(())
+    }
+
+    /// Median wall time of a frame.
+    pub(super) fn wall_median(&self) -> f64 {
+        median(&self.wall_ms)
+    }
+
+    /// Median CPU time of a frame, or wall time where that is not known.
+    pub(super) fn cost(&self) -> f64 {
+        if self.cpu_ms.is_empty() { self.wall_median() } else { median(&self.cpu_ms) }
+    }
+
+    /// Median of both halves of the light pass together.
+    pub(super) fn light_build(&self) -> f64 {
+        let both: Vec<f64> =
+            self.light_march_ms.iter().zip(&self.light_backproject_ms).map(|(a, b)| a + b).collect();
+        median(&both)
+    }
+
+    /// Median of the eye pass.
+    pub(super) fn eye(&self) -> f64 {
+        median(&self.eye_ms)
+    }
+
+    /// Everything, as the JSON of a case.
+    pub(super) fn json(&self) -> Value {
+        let spread = |values: &[f64]| {
+            if values.is_empty() {
+                return Value::Null;
+            }
+            let (min, max) =
+                values.iter().fold((f64::INFINITY, 0f64), |(min, max), &v| (min.min(v), max.max(v)));
+            json!({ "median": round(median(values)), "min": round(min), "max": round(max) })
+        };
+        json!({
+            "frames": self.wall_ms.len(),
+            "wall_ms": spread(&self.wall_ms),
+            "cpu_ms": spread(&self.cpu_ms),
+            "stages": {
+                "eye": round(median(&self.eye_ms)),
+                "light_march": round(median(&self.light_march_ms)),
+                "light_backproject": round(median(&self.light_backproject_ms)),
+            },
+        })
+    }
+}
+
+/// The middle value; 0 of nothing.
+pub(super) fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => sorted[n / 2],
+        n => f64::midpoint(sorted[n / 2 - 1], sorted[n / 2]),
+    }
+}
+
+/// To a microsecond.
+pub(super) fn round(ms: f64) -> f64 {
+    (ms * 1000.0).round() / 1000.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(&[]), 0.0);
+        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
+    }
+}

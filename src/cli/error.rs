@@ -1,0 +1,65 @@
+//! Errors of the command line and their exit codes.
+
+use crate::data::load::{LoadError, LoadErrorKind};
+use crate::gpu::{ExportError, GpuError};
+use crate::model::PresetError;
+
+/// Why a command failed.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// The arguments do not make sense.
+    #[error("{0}")]
+    Usage(String),
+    /// The volume could not be loaded.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A preset or session could not be used.
+    #[error(
+        "{what}: {source} ({path}); `chiaroscuro render FILE -o OUT.png --report REPORT.json` shows the names of all settings"
+    )]
+    Preset {
+        /// Preset or session.
+        what: &'static str,
+        /// Its file.
+        path: String,
+        /// Why not.
+        source: PresetError,
+    },
+    /// A file could not be read.
+    #[error("{what}: {source} ({path}); a file that exists and can be read helps")]
+    Read {
+        /// What was to be read.
+        what: &'static str,
+        /// Its file.
+        path: String,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// The GPU could not do it.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The result could not be written.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// The window could not be opened.
+    #[error("the window could not be opened: {0}; `chiaroscuro render FILE -o OUT.png` needs none")]
+    Window(String),
+}
+
+impl CliError {
+    /// 2 usage, 3 bad input, 4 no adapter, 5 out of memory or over a limit, 6 input or output.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) => 2,
+            Self::Preset { .. } => 3,
+            Self::Load(err) => match err.kind() {
+                LoadErrorKind::BadInput => 3,
+                LoadErrorKind::Limit => 5,
+                LoadErrorKind::Io | LoadErrorKind::Cancelled => 6,
+            },
+            Self::Gpu(GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. }) => 5,
+            Self::Gpu(_) | Self::Window(_) => 4,
+            Self::Read { .. } | Self::Export(_) => 6,
+        }
+    }
+}

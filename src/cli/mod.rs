@@ -1,0 +1,98 @@
+//! The command line: arguments become the same `Settings` and go to the same renderer as in the
+//! window.
+
+mod bench;
+mod bench_report;
+mod cpu_time;
+mod error;
+mod info;
+mod light_volume;
+mod render;
+mod scene;
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+pub use error::CliError;
+use scene::RawArgs;
+
+/// See the shape of volume data, with true volumetric shadows.
+#[derive(Debug, Parser)]
+#[command(name = "chiaroscuro", version, args_conflicts_with_subcommands = true)]
+struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Volume to view: a file, or builtin:NAME[:N]
+    file: Option<String>,
+    /// Session to continue; Ctrl+S saves to it
+    #[arg(long, value_name = "FILE")]
+    session: Option<PathBuf>,
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render a picture to a PNG file
+    Render(render::RenderArgs),
+    /// Write a light's attenuation volume as NRRD
+    LightVolume(light_volume::LightVolumeArgs),
+    /// Say what is in a volume
+    Info(info::InfoArgs),
+    /// Measure how long pictures and light volumes take
+    Bench(bench::BenchArgs),
+}
+
+/// What the window is to be opened with.
+#[derive(Debug, Clone)]
+pub struct ViewerRequest {
+    /// File or built-in.
+    pub source: Option<String>,
+    /// How to read it.
+    pub load: crate::data::load::LoadOptions,
+    /// See `--session`.
+    pub session: Option<PathBuf>,
+}
+
+/// Runs the command line; `open_window` runs the viewer. Returns the exit code.
+pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> u8 {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(err) => {
+            // Help and version are no errors: clap prints them to standard output.
+            let code = if err.use_stderr() { 2 } else { 0 };
+            err.print().ok();
+            return code;
+        }
+    };
+    let result = match args.command {
+        Some(Command::Render(args)) => render::run(&args),
+        Some(Command::LightVolume(args)) => light_volume::run(&args),
+        Some(Command::Info(args)) => info::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
+        None => args
+            .raw
+            .load_options()
+            .and_then(|load| open_window(ViewerRequest { source: args.file, load, session: args.session })),
+    };
+    match result {
+        Ok(()) => 0,
+        Err(err) => {
+            // Nothing can be done when standard error is closed.
+            writeln!(std::io::stderr(), "error: {err}").ok();
+            err.exit_code()
+        }
+    }
+}
+
+/// Prints a line to standard output; a closed pipe (`| head`) is no error.
+fn print_line(text: &str) {
+    writeln!(std::io::stdout(), "{text}").ok();
+}
+
+/// Prints a line to standard error.
+fn warn_line(text: &str) {
+    writeln!(std::io::stderr(), "{text}").ok();
+}

@@ -1,0 +1,92 @@
+//! `chiaroscuro render`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use super::scene::{SceneArgs, parse_size};
+use super::{CliError, print_line, warn_line};
+use crate::gpu::{Context, RenderOptions, Renderer, export_png, mean_luminance, write_atomically};
+
+/// Arguments of `render`.
+#[derive(Debug, Args)]
+pub(super) struct RenderArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// PNG file to write
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x960", value_parser = parse_size)]
+    size: [u32; 2],
+    /// Leave the background out (straight alpha)
+    #[arg(long)]
+    transparent: bool,
+    /// Also write what it took, and all settings, as JSON
+    #[arg(long, value_name = "REPORT.json")]
+    report: Option<PathBuf>,
+    /// Say what is being done
+    #[arg(long)]
+    progress: bool,
+}
+
+/// Renders one picture.
+pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
+    let say = |text: &str| {
+        if args.progress {
+            warn_line(text);
+        }
+    };
+    say("loading the volume");
+    let loaded = args.scene.load()?;
+    let context = Context::headless()?;
+    let mut renderer = Renderer::new(&context)?;
+    say("finding the look");
+    let settings = args.scene.settings(&mut renderer, &loaded)?;
+    say("rendering");
+    let options = RenderOptions {
+        transparent: args.transparent,
+        timed: args.report.is_some(),
+        ..RenderOptions::default()
+    };
+    // A report measures a whole picture, light volumes included, not what the balance left over.
+    if args.report.is_some() {
+        renderer = Renderer::new(&context)?;
+    }
+    let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
+    export_png(&picture, args.transparent, &args.output)?;
+    if let Some(path) = &args.report {
+        let took = renderer.report();
+        let report = json!({
+            "adapter": context.info.name,
+            "driver": format!("{} {}", context.info.driver, context.info.driver_info),
+            "image_size": args.size,
+            "volume_dims": loaded.volume.dims(),
+            "stages_ms": {
+                "upload": took.upload_ms,
+                "bricks": took.bricks_ms,
+                "light_march": took.light_march_ms,
+                "light_backproject": took.light_backproject_ms,
+                "eye": took.eye_ms,
+                "readback": took.readback_ms,
+            },
+            "light_rebuilds": renderer.light_rebuilds(),
+            "slabs": took.slabs,
+            "peak_gpu_bytes": took.peak_gpu_bytes,
+            "mean_luminance": mean_luminance(&picture),
+            "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(&settings).unwrap_or_default())),
+            "settings": settings,
+        });
+        write_atomically(path, format!("{report:#}\n").as_bytes())?;
+    }
+    print_line(&format!("{}", args.output.display()));
+    Ok(())
+}
+
+/// FNV-1a of a text: the same settings have the same hash in every version and on every machine.
+fn fingerprint(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}

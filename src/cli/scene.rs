@@ -1,0 +1,271 @@
+//! Arguments that say what is rendered, common to most commands.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::{Args, ValueEnum};
+use serde_json::Value;
+
+use super::{CliError, warn_line};
+use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
+use crate::data::{Bricks, Histogram, Volume, VoxelType};
+use crate::gpu::{Renderer, balance};
+use crate::model::{Settings, ShadowAlgorithm, apply_json, apply_path, auto};
+
+/// Largest file that is read as a preset: a thousand times the size of a real one.
+const MAX_PRESET_BYTES: u64 = 4 << 20;
+
+/// Presets that come with the program.
+const BUILTIN_PRESETS: [(&str, &str); 1] =
+    [("bench/creature", include_str!("../../presets/bench/creature.json"))];
+
+/// How a RAW file is stored.
+#[derive(Debug, Clone, Args)]
+pub(super) struct RawArgs {
+    /// RAW input: voxels along x, y, z
+    #[arg(long, value_name = "WxHxD", global = false)]
+    dims: Option<String>,
+    /// RAW input: uint8, int8, uint16, int16, uint32, int32, float32 or float64
+    #[arg(long = "type", value_name = "T")]
+    voxel_type: Option<String>,
+    /// RAW input: distance between voxels in millimetres
+    #[arg(long, value_name = "SXxSYxSZ")]
+    spacing: Option<String>,
+    /// RAW input: byte order
+    #[arg(long, value_enum)]
+    endian: Option<EndianArg>,
+    /// RAW input: bytes before the voxels
+    #[arg(long, value_name = "BYTES")]
+    offset: Option<u64>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum EndianArg {
+    Little,
+    Big,
+}
+
+impl RawArgs {
+    /// The options for the reader.
+    pub(super) fn load_options(&self) -> Result<LoadOptions, CliError> {
+        let usage = |field: &str, text: &str, expected: &str| {
+            CliError::Usage(format!(
+                "--{field}: expected {expected}, found {text:?} (command line, --{field})"
+            ))
+        };
+        let dims = match &self.dims {
+            None => None,
+            Some(text) => Some(
+                triple::<usize>(text).ok_or_else(|| usage("dims", text, "three whole numbers, 64x64x32"))?,
+            ),
+        };
+        let spacing_mm = match &self.spacing {
+            None => None,
+            Some(text) => {
+                Some(triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?)
+            }
+        };
+        let voxel_type = match &self.voxel_type {
+            None => None,
+            Some(text) => {
+                let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
+                Some(known.ok_or_else(|| usage("type", text, "uint8, int8, … float64"))?)
+            }
+        };
+        let endian = self.endian.map(|endian| match endian {
+            EndianArg::Little => Endian::Little,
+            EndianArg::Big => Endian::Big,
+        });
+        let raw = RawFormat { dims, voxel_type, spacing_mm, endian, offset: self.offset };
+        Ok(LoadOptions { raw, ..LoadOptions::default() })
+    }
+}
+
+/// `1x2x3`.
+fn triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
+    let parts: Vec<T> =
+        text.split(['x', 'X', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
+    parts.try_into().ok()
+}
+
+/// `1920x1080`.
+pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let expected = || format!("expected WIDTHxHEIGHT between 1x1 and 32768x32768, found {text:?}");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
+    let parse = |part: &str| part.trim().parse::<u32>().ok().filter(|n| (1..=32768).contains(n));
+    Ok([parse(width).ok_or_else(expected)?, parse(height).ok_or_else(expected)?])
+}
+
+/// Where shadows come from.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ShadowArg {
+    Off,
+    Splat,
+}
+
+/// The look.
+#[derive(Debug, Clone, Args)]
+pub(super) struct LookArgs {
+    /// Preset to lay over the automatic look: a name or a JSON file
+    #[arg(long, value_name = "NAME|FILE")]
+    preset: Option<String>,
+    /// Session to restore
+    #[arg(long, value_name = "FILE")]
+    session: Option<PathBuf>,
+    /// One setting by its path, for instance shadows.strength=0.5; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// How shadows are made
+    #[arg(long, value_enum)]
+    shadows: Option<ShadowArg>,
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+/// What is rendered, and how it looks.
+#[derive(Debug, Clone, Args)]
+pub(super) struct SceneArgs {
+    /// Volume: a file, or builtin:NAME[:N]
+    file: String,
+    #[command(flatten)]
+    look: LookArgs,
+}
+
+/// A volume with everything the renderer wants to know about it.
+pub(super) struct Loaded {
+    pub(super) volume: Arc<Volume>,
+    pub(super) bricks: Arc<Bricks>,
+    pub(super) histogram: Histogram,
+}
+
+impl Loaded {
+    /// Finds bricks and histogram.
+    pub(super) fn new(volume: Volume) -> Self {
+        let bricks = Arc::new(Bricks::of(&volume));
+        let histogram = Histogram::of(&volume, auto::BINS);
+        Self { volume: Arc::new(volume), bricks, histogram }
+    }
+}
+
+impl SceneArgs {
+    /// Loads the volume.
+    pub(super) fn load(&self) -> Result<Loaded, CliError> {
+        self.look.load(&self.file)
+    }
+
+    /// Finds the look.
+    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Loaded) -> Result<Settings, CliError> {
+        self.look.settings(renderer, loaded)
+    }
+}
+
+impl LookArgs {
+    /// Loads a volume.
+    pub(super) fn load(&self, source: &str) -> Result<Loaded, CliError> {
+        let volume = open(source, &self.raw.load_options()?, &LoadControl::new())?;
+        if volume.odd_voxels() > 0 {
+            warn_line(&format!(
+                "warning: {} voxels are not finite and count as nothing",
+                volume.odd_voxels()
+            ));
+        }
+        Ok(Loaded::new(volume))
+    }
+
+    /// The automatic look, with preset, session and single settings laid over it. Lights are
+    /// balanced as the viewer does on load, unless preset or session say how.
+    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Loaded) -> Result<Settings, CliError> {
+        let mut settings = auto::first_settings(&loaded.volume, &loaded.histogram);
+        let mut balanced = false;
+        let overlays =
+            [("preset", self.preset.as_deref().map(PathBuf::from)), ("session", self.session.clone())];
+        for (what, path) in overlays {
+            let Some(path) = path else { continue };
+            let (overlay, name) = read_overlay(what, &path)?;
+            balanced |= overlay.pointer("/shadows/balance").is_some();
+            let (next, warnings) = apply_json(&settings, &overlay).map_err(|source| CliError::Preset {
+                what,
+                path: name.clone(),
+                source,
+            })?;
+            for warning in warnings {
+                warn_line(&format!("warning: {what}: {warning} ({name})"));
+            }
+            settings = next;
+        }
+        if !balanced {
+            settings.shadows.balance = balance(renderer, &loaded.volume, &loaded.bricks, &settings)?;
+        }
+        for assignment in &self.set {
+            let (path, value) = assignment.split_once('=').ok_or_else(|| {
+                CliError::Usage(format!(
+                    "--set: expected PATH=VALUE, found {assignment:?} (command line, --set)"
+                ))
+            })?;
+            settings = apply_path(&settings, path.trim(), value.trim())
+                .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
+        }
+        match self.shadows {
+            Some(ShadowArg::Off) => settings.shadows.algorithm = ShadowAlgorithm::Off,
+            Some(ShadowArg::Splat) => settings.shadows.algorithm = ShadowAlgorithm::Splat,
+            None => {}
+        }
+        Ok(settings)
+    }
+}
+
+/// Reads a preset or session: a built-in's name or a file.
+fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliError> {
+    let name = path.display().to_string();
+    let builtin = BUILTIN_PRESETS.iter().find(|(known, _)| what == "preset" && *known == name);
+    let text = match builtin {
+        Some((_, text)) => (*text).to_owned(),
+        None => read_small(what, path)?,
+    };
+    let value = serde_json::from_str(&text).map_err(|err| CliError::Preset {
+        what,
+        path: name.clone(),
+        source: crate::model::PresetError::Syntax(err),
+    })?;
+    Ok((value, name))
+}
+
+/// Reads a text file, but not a huge one, nor a device.
+fn read_small(what: &'static str, path: &Path) -> Result<String, CliError> {
+    use std::io::Read as _;
+    let failed = |source| CliError::Read { what, path: path.display().to_string(), source };
+    let metadata = std::fs::metadata(path).map_err(failed)?;
+    if !metadata.is_file() {
+        return Err(failed(std::io::Error::other("not a regular file")));
+    }
+    let mut text = String::new();
+    std::fs::File::open(path)
+        .and_then(|file| file.take(MAX_PRESET_BYTES).read_to_string(&mut text))
+        .map_err(failed)?;
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::load_json;
+
+    #[test]
+    fn sizes_and_triples() {
+        assert_eq!(parse_size("640x480"), Ok([640, 480]));
+        for bad in ["640", "0x10", "-1x4", "99999x1", "axb", ""] {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+        assert_eq!(triple("1x2x3"), Some([1usize, 2, 3]));
+        assert_eq!(triple::<usize>("1x2"), None);
+        assert_eq!(triple("0.5x1x2"), Some([0.5, 1.0, 2.0]));
+    }
+
+    #[test]
+    fn built_in_presets_are_valid_and_fully_understood() {
+        for (name, text) in BUILTIN_PRESETS {
+            let (_, warnings) = load_json(&Settings::default(), text).unwrap();
+            assert!(warnings.is_empty(), "{name}: {warnings:?}");
+        }
+    }
+}
