@@ -40,6 +40,9 @@ struct Backprojection {
 override FIRST_TOUCH: bool = false;
 // Whether the kernel is anywhere wider than four pixels or four slabs.
 override WIDE: bool = false;
+// Points per slab at which the kernel is evaluated, as in common/volume.wgsl: with two it is the
+// paper's h̄, the kernel averaged over the slab.
+override QUADRATURE: u32 = 1u;
 
 // Of a kernel close to a light inside the volume, in pixels (src/plan/light_frame.rs).
 const MAX_KERNEL_PIXELS = 4.0;
@@ -80,16 +83,34 @@ fn pair(first: i32, count: i32, at: f32, width: f32) -> vec2f {
     return vec2f(b / max(a + b, 1e-20), a + b);
 }
 
+// Distance of the quadrature points from a slab's middle, in slabs.
+fn point_offset() -> f32 {
+    return select(0.0, 0.28867513, QUADRATURE == 2u);
+}
+
+// Kernel averaged over a slab at a distance in slabs.
+fn slab_kernel(distance: f32, slabs: f32) -> f32 {
+    let offset = point_offset();
+    return 0.5 * (kernel_at((distance - offset) / slabs) + kernel_at((distance + offset) / slabs));
+}
+
+// As pair(), along the axis of projection.
+fn slab_pair(first: i32, count: i32, at: f32, slabs: f32) -> vec2f {
+    let a = select(0.0, slab_kernel(f32(first) - at, slabs), first >= 0 && first < count);
+    let b = select(0.0, slab_kernel(f32(first + 1) - at, slabs), first + 1 >= 0 && first + 1 < count);
+    return vec2f(b / max(a + b, 1e-20), a + b);
+}
+
 // Any width: pairs over the whole footprint, divided by the sum of their weights.
 fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
-    let reach = kernel_radius() * vec3f(pixels, pixels, slabs);
+    let reach = kernel_radius() * vec3f(pixels, pixels, slabs) + vec3f(0.0, 0.0, point_offset());
     let first = vec3i(ceil(vec3f(pixel, slab) - reach));
     let last = vec3i(floor(vec3f(pixel, slab) + reach));
     let size = vec3i(vec2i(view.frame.size), i32(view.frame.slab_count));
     var sum = 0.0;
     var weights = 0.0;
     for (var k = max(first.z, 0); k <= last.z; k += 2) {
-        let z = pair(k, size.z, slab, slabs);
+        let z = slab_pair(k, size.z, slab, slabs);
         for (var j = first.y; j <= last.y; j += 2) {
             let y = pair(j, size.y, pixel.y, pixels);
             for (var i = first.x; i <= last.x; i += 2) {
@@ -121,7 +142,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let depth = dot(view.light_from_index_z, p);
     let spread = 1.0 + depth * view.frame.inverse_distance;
     let limit = spread / max(view.frame.inverse_distance * view.frame.pitch, 1e-20);
-    if (view.cube_face != 0u && !(spread > 0.0 && all(abs(across) <= vec2f(limit * 1.000001)))) {
+    if (view.cube_face != 0u && !(spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001)))) {
         return;
     }
     if (!(spread > 1e-3)) {
@@ -140,7 +161,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     // This voxel's chunk is the one that marches the last sheet under its kernel (of radius 2,
     // whichever the kernel, so that the choice of chunk does not depend on it).
     let last_slab = i32(view.frame.slab_count) - 1;
-    let final_slab = clamp(i32(floor(slab + 2.0 * slabs)), 0, last_slab);
+    let final_slab = clamp(i32(floor(slab + 2.0 * slabs + point_offset())), 0, last_slab);
     if (final_slab < i32(view.begin) || final_slab >= i32(view.end)) {
         return;
     }

@@ -117,6 +117,16 @@ impl Context {
         Ok(Self { device, queue, info: adapter.get_info(), storage_format, unorm16, complaint })
     }
 
+    /// The same device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
+    /// checks that must not see the rounding of 16-bit floats.
+    #[must_use]
+    pub fn with_full_precision(mut self) -> Self {
+        if self.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) {
+            self.storage_format = wgpu::TextureFormat::R32Float;
+        }
+        self
+    }
+
     /// Whether the adapter is the CPU.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu

@@ -5,7 +5,13 @@ use std::ops::Range;
 
 use super::light_backproject::Schedule;
 use super::light_march::Sheets;
-use crate::plan::{BrickSet, LightKey, LightView, Request};
+use super::light_volume::{LightVolume, read_bricks};
+use super::volume::GpuVolume;
+use crate::model::ShadowAlgorithm;
+use crate::plan::{BrickSet, LightKey, LightView, Request, light_views};
+
+/// Slabs per chunk of the light march: enough to be worth a dispatch, few enough for one to be short.
+const CHUNK_SLABS: std::ops::RangeInclusive<u64> = 8..=64;
 
 /// What a step belongs to, for reports and for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,6 +80,33 @@ pub(super) struct LightBuild {
     pub read: BrickSet,
     /// Sheets and schedule of the view that is being marched.
     pub current: Option<(Sheets, Schedule)>,
+}
+
+impl LightBuild {
+    /// Lays out the filling of one light volume.
+    pub(super) fn new(
+        volume: &GpuVolume,
+        request: &Request,
+        light: usize,
+        fresh: &LightVolume,
+        chunk: Option<u32>,
+    ) -> Self {
+        let settings = &request.settings;
+        debug_assert!(settings.shadows.algorithm == ShadowAlgorithm::Splat);
+        let shadows =
+            crate::model::Shadows { resolution: fresh.key.resolution(), ..settings.shadows.clone() };
+        let views = light_views(&settings.lights[light], &shadows, &volume.scene);
+        let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| chunk_slabs(volume, view))).collect();
+        let read = read_bricks(volume, &fresh.filled, fresh.divisor, &views);
+        Self { light, key: fresh.key.clone(), views, chunks, read, current: None }
+    }
+}
+
+/// Slabs per chunk so that the ring takes no more than a byte per voxel of the volume.
+fn chunk_slabs(volume: &GpuVolume, view: &LightView) -> u32 {
+    let sheet_bytes = 2 * u64::from(view.frame.size[0]) * u64::from(view.frame.size[1]);
+    let fits = volume.volume.voxel_count() as u64 / sheet_bytes.max(1);
+    fits.clamp(*CHUNK_SLABS.start(), *CHUNK_SLABS.end()) as u32
 }
 
 /// The work for one picture.

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::GpuError;
-use super::kernel::kernel_constants;
+use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_march::Sheets;
 use super::light_volume::LightVolume;
 use super::tables::view_entry;
@@ -11,7 +11,7 @@ use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
 use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
-use crate::model::Shadows;
+use crate::model::{Kernel, Quadrature, Shadows};
 use crate::plan::LightView;
 
 /// Bricks per row of a dispatch: two workgroups each, within the 65535 that all adapters allow.
@@ -54,7 +54,7 @@ fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick:
     let (near, far) =
         depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
     // The kernel's reach grows with depth, so both ends follow the depth; one slab of slack each for
-    // the rounding of the shader.
+    // the quadrature points and the rounding of the shader.
     let final_slab = |depth: f64| {
         let width = frame.pitch_at(depth).max(view.kernel_edge.min(MAX_WIDENING * frame.pitch_at(depth)));
         (depth - frame.first_depth + 2.0 * width.max(0.0)) / frame.slab - 0.5
@@ -91,11 +91,13 @@ pub(super) fn backproject(
     }
     let four_taps = view.frame.inverse_distance == 0.0
         && (view.kernel_edge / view.frame.slab - 1.0).abs() < 1e-9
-        && !matches!(shadows.kernel, crate::model::Kernel::Prefiltered);
+        && shadows.quadrature == Quadrature::One
+        && shadows.kernel != Kernel::Prefiltered;
     let [kernel, sigma] = kernel_constants(shadows.kernel);
     let constants = [
         kernel,
         sigma,
+        quadrature_constant(shadows.quadrature),
         ("FIRST_TOUCH", f64::from(u8::from(shadows.first_touch))),
         ("WIDE", f64::from(u8::from(!four_taps))),
     ];

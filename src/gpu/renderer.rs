@@ -8,98 +8,33 @@ use super::eye::EyePass;
 use super::job::{Job, LightBuild, Stage, Step};
 use super::light_backproject::{Schedule, backproject};
 use super::light_march::{Sheets, march};
-use super::light_volume::{LightVolume, needed_bricks, read_bricks};
-use super::readback::{Attenuation, read_floats, read_texture};
+use super::light_volume::{LightVolume, needed_bricks};
+use super::picture::{Picture, RenderOptions, Report};
+use super::readback::read_texture;
 use super::tables::Tables;
 use super::volume::{Gpu, GpuVolume, texture_3d};
 use super::{Context, GpuError, ShaderLibrary, prefilter};
 use crate::data::{Bricks, Volume};
-use crate::model::{Settings, ShadowAlgorithm};
-use crate::plan::{BrickSet, LightKey, LightView, Request, light_views};
+use crate::model::Settings;
+use crate::plan::{BrickSet, LightKey, Request};
 
 /// Light volumes that are kept beyond those of the current picture: undoing a drag finds them.
 const SPARE_LIGHT_VOLUMES: usize = 2;
 
-/// Slabs per chunk of the light march: enough to be worth a dispatch, few enough for one to be short.
-const CHUNK_SLABS: std::ops::RangeInclusive<u64> = 8..=64;
-
-/// Ways of rendering that are no part of the look.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RenderOptions {
-    /// Leave out the background, write straight alpha.
-    pub transparent: bool,
-    /// Leap over empty bricks. Only a test that it changes nothing switches it off.
-    pub leaping: bool,
-    /// Fill light volumes everywhere, not only where the picture looks them up.
-    pub fill_everything: bool,
-    /// A ray ends when less than this is left of its light.
-    pub dark: f32,
-    /// Slabs per chunk of the light march, instead of what memory and time suggest.
-    pub chunk: Option<u32>,
-    /// Wait after every step, so that a report's stages are true.
-    pub timed: bool,
-}
-
-impl Default for RenderOptions {
-    fn default() -> Self {
-        Self {
-            transparent: false,
-            leaping: true,
-            fill_everything: false,
-            // 1/16 of an 8-bit step.
-            dark: 1.0 / 4096.0,
-            chunk: None,
-            timed: false,
-        }
-    }
-}
-
-/// A finished picture on the CPU.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
-    /// Pixels per row and column.
-    pub size: [u32; 2],
-    /// Linear, premultiplied RGBA before tone mapping, row by row from the top left.
-    pub light: Vec<[f32; 4]>,
-    /// sRGB bytes, RGBA.
-    pub shown: Vec<u8>,
-}
-
-/// What a picture took.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Report {
-    /// Milliseconds of the upload and the pyramid.
-    pub upload_ms: f64,
-    /// Milliseconds of the transfer functions and brick sets.
-    pub bricks_ms: f64,
-    /// Milliseconds of the forward half of the light pass.
-    pub light_march_ms: f64,
-    /// Milliseconds of its reverse half.
-    pub light_backproject_ms: f64,
-    /// Milliseconds of the eye pass.
-    pub eye_ms: f64,
-    /// Milliseconds of the display pass and of reading back.
-    pub readback_ms: f64,
-    /// Slabs of the eye's stack.
-    pub slabs: u32,
-    /// Largest sum of our textures and buffers so far.
-    pub peak_gpu_bytes: u64,
-}
-
 /// Renders volumes on one device.
 #[derive(Debug)]
 pub struct Renderer {
-    context: Context,
-    shaders: ShaderLibrary,
-    volume: Option<GpuVolume>,
+    pub(super) context: Context,
+    pub(super) shaders: ShaderLibrary,
+    pub(super) volume: Option<GpuVolume>,
     uploaded: bool,
-    tables: Option<Tables>,
-    lights: Vec<LightVolume>,
+    pub(super) tables: Option<Tables>,
+    pub(super) lights: Vec<LightVolume>,
     /// What is shown, and a spare one to draw into.
     front: Option<Target>,
     back: Option<Target>,
     /// Bound where a light has no volume.
-    nothing: wgpu::TextureView,
+    pub(super) nothing: wgpu::TextureView,
     options: RenderOptions,
     rebuilds: Vec<u64>,
     clock: u64,
@@ -299,43 +234,6 @@ impl Renderer {
         Ok(!job.is_done())
     }
 
-    /// Reads back the attenuation volume that a light of the last picture used.
-    ///
-    /// # Errors
-    /// When the GPU cannot do it. `None` when the light has no volume.
-    pub fn attenuation(&self, request: &Request, light: usize) -> Result<Option<Attenuation>, GpuError> {
-        let Some(key) = LightKey::of(request, light) else { return Ok(None) };
-        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
-            return Ok(None);
-        };
-        let values = read_floats(&self.context, &found.texture)?;
-        Ok(Some(Attenuation { dims: found.dims, divisor: found.divisor, values }))
-    }
-
-    /// Overwrites a light's attenuation volume, which must be complete. Tests use it to see whether
-    /// a change refills it.
-    #[doc(hidden)]
-    pub fn corrupt_attenuation(&self, request: &Request, light: usize) -> bool {
-        let Some(key) = LightKey::of(request, light) else { return false };
-        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
-            return false;
-        };
-        let texel = found.texture.format().block_copy_size(None).unwrap_or(2);
-        let [nx, ny, _] = found.dims.map(|n| n as u32);
-        let zeros = vec![0u8; (found.bytes()) as usize];
-        self.context.queue.write_texture(
-            found.texture.as_image_copy(),
-            &zeros,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(texel * nx),
-                rows_per_image: Some(ny),
-            },
-            found.texture.size(),
-        );
-        true
-    }
-
     /// Makes room for a volume and lists its upload, unless it is there already.
     fn place_volume(
         &mut self,
@@ -391,7 +289,7 @@ impl Renderer {
             if found.is_none() {
                 self.lights.retain(|known| known.key != key);
                 let fresh = LightVolume::new(&self.context, volume, key.clone(), needed(&key))?;
-                let build = plan_build(volume, request, light, &fresh, self.options.chunk);
+                let build = LightBuild::new(volume, request, light, &fresh, self.options.chunk);
                 self.lights.push(fresh);
                 builds.push(build);
             }
@@ -482,30 +380,6 @@ impl Renderer {
         }
         Ok(())
     }
-}
-
-/// Lays out the filling of one light volume.
-fn plan_build(
-    volume: &GpuVolume,
-    request: &Request,
-    light: usize,
-    fresh: &LightVolume,
-    chunk: Option<u32>,
-) -> LightBuild {
-    let settings = &request.settings;
-    debug_assert!(settings.shadows.algorithm == ShadowAlgorithm::Splat);
-    let shadows = crate::model::Shadows { resolution: fresh.key.resolution(), ..settings.shadows.clone() };
-    let views = light_views(&settings.lights[light], &shadows, &volume.scene);
-    let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| chunk_slabs(volume, view))).collect();
-    let read = read_bricks(volume, &fresh.filled, fresh.divisor, &views);
-    LightBuild { light, key: fresh.key.clone(), views, chunks, read, current: None }
-}
-
-/// Slabs per chunk so that the ring takes no more than a byte per voxel of the volume.
-fn chunk_slabs(volume: &GpuVolume, view: &LightView) -> u32 {
-    let sheet_bytes = 2 * u64::from(view.frame.size[0]) * u64::from(view.frame.size[1]);
-    let fits = volume.volume.voxel_count() as u64 / sheet_bytes.max(1);
-    fits.clamp(*CHUNK_SLABS.start(), *CHUNK_SLABS.end()) as u32
 }
 
 fn milliseconds(start: Instant) -> f64 {

@@ -54,7 +54,9 @@ impl LightView {
         let spread = 1.0 + local.z * self.frame.inverse_distance;
         if self.cube_face {
             let depth = spread / self.frame.inverse_distance;
-            if !(depth > 0.0 && local.x.abs() <= depth && local.y.abs() <= depth) {
+            // A hundred-thousandth more, so that rounding leaves no voxel between two faces.
+            let limit = depth * 1.000_01;
+            if !(depth > 0.0 && local.x.abs() <= limit && local.y.abs() <= limit) {
                 return None;
             }
         }

@@ -82,9 +82,11 @@ impl Reference<'_> {
         }
         let profile = self.profile(self.settings.shadows.kernel);
         let [columns, rows] = sheets.view.frame.size;
-        let across = taps(&profile, at.pixel.x, at.kernel_pixels, columns as usize);
-        let down = taps(&profile, at.pixel.y, at.kernel_pixels, rows as usize);
-        let deep = taps(&profile, at.slab, at.kernel_slabs, sheets.deposits.len());
+        let across = taps(&profile, at.pixel.x, at.kernel_pixels, columns as usize, &[0.0]);
+        let down = taps(&profile, at.pixel.y, at.kernel_pixels, rows as usize, &[0.0]);
+        // Across the slabs the kernel is averaged over each slab: the paper's h̄.
+        let points = self.settings.shadows.quadrature.offsets();
+        let deep = taps(&profile, at.slab, at.kernel_slabs, sheets.deposits.len(), points);
         let mut sums = Sums::default();
         for &(k, wk) in &deep {
             for &(j, wj) in &down {
@@ -155,12 +157,17 @@ impl Sums {
     }
 }
 
-/// The integers 0 … count − 1 under a kernel of some width around `centre`, with its weights.
-fn taps(profile: &Profile, centre: f64, width: f64, count: usize) -> Vec<(usize, f64)> {
-    let reach = profile.reach() * width;
+/// The integers 0 … count − 1 under a kernel of some width around `centre`, with its weights: the
+/// mean of the kernel at `points` around each.
+fn taps(profile: &Profile, centre: f64, width: f64, count: usize, points: &[f64]) -> Vec<(usize, f64)> {
+    let reach = profile.reach() * width + points.iter().copied().fold(0.0, f64::max);
     let first = (centre - reach).ceil().max(0.0) as usize;
     let end = (centre + reach).floor().clamp(-1.0, count as f64 - 1.0) + 1.0;
-    (first..end as usize).map(|tap| (tap, profile.of_light((tap as f64 - centre) / width))).collect()
+    let weight = |tap: usize| {
+        let at = |point: f64| profile.of_light((tap as f64 + point - centre) / width);
+        points.iter().map(|&point| at(point)).sum::<f64>() / points.len() as f64
+    };
+    (first..end as usize).map(|tap| (tap, weight(tap))).collect()
 }
 
 /// P §4: a voxel takes the light of the first sheet that touches it, l = ⌈z − 2·width⌉, and needs

@@ -1,0 +1,88 @@
+//! Looking into the renderer: light volumes and sheets, read back for export and for tests.
+
+use std::sync::Arc;
+
+use super::light_march::{Sheets, march};
+use super::readback::{Attenuation, read_floats};
+use super::volume::Gpu;
+use super::{GpuError, RenderOptions, Renderer};
+use crate::data::{Bricks, Volume};
+use crate::model::Settings;
+use crate::plan::{BrickSet, LightKey, Request, light_views};
+
+impl Renderer {
+    /// Reads back the attenuation volume that a light of the last picture used.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it. `None` when the light has no volume.
+    pub fn attenuation(&self, request: &Request, light: usize) -> Result<Option<Attenuation>, GpuError> {
+        let Some(key) = LightKey::of(request, light) else { return Ok(None) };
+        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
+            return Ok(None);
+        };
+        let values = read_floats(&self.context, &found.texture)?;
+        Ok(Some(Attenuation { dims: found.dims, divisor: found.divisor, values }))
+    }
+
+    /// Overwrites a light's attenuation volume, which must be complete. Tests use it to see whether
+    /// a change refills it.
+    #[doc(hidden)]
+    pub fn corrupt_attenuation(&self, request: &Request, light: usize) -> bool {
+        let Some(key) = LightKey::of(request, light) else { return false };
+        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
+            return false;
+        };
+        let texel = found.texture.format().block_copy_size(None).unwrap_or(2);
+        let [nx, ny, _] = found.dims.map(|n| n as u32);
+        let zeros = vec![0u8; (found.bytes()) as usize];
+        self.context.queue.write_texture(
+            found.texture.as_image_copy(),
+            &zeros,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texel * nx),
+                rows_per_image: Some(ny),
+            },
+            found.texture.size(),
+        );
+        true
+    }
+
+    /// The sheets of one view of a light: the transmittance that each slab deposits, sheet by sheet
+    /// front to back, each row by row. All are held at once, so this is for small volumes.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    #[doc(hidden)]
+    pub fn light_sheets(
+        &mut self,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+        settings: &Settings,
+        light: usize,
+        view: usize,
+    ) -> Result<Vec<f32>, GpuError> {
+        self.draw(volume, bricks, settings, [8, 8], &RenderOptions::default())?;
+        let (Some(gpu_volume), Some(tables)) = (&self.volume, &self.tables) else {
+            return Err(GpuError::Refused("no volume".to_owned()));
+        };
+        let geometry = &light_views(&settings.lights[light], &settings.shadows, &gpu_volume.scene)[view];
+        let everything = BrickSet::full(gpu_volume.bricks.dims);
+        let count = geometry.frame.slab_count;
+        let sheets = Sheets::new(&self.context, geometry, count, &everything, &tables.lighting.occupied)?;
+        let gpu = Gpu {
+            context: &self.context,
+            shaders: &self.shaders,
+            volume: gpu_volume,
+            nothing: &self.nothing,
+        };
+        let mut encoder =
+            self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let table = &tables.lighting.buffer;
+        march(gpu, table, &settings.shadows, geometry, &sheets, (0, count), &mut encoder)?;
+        self.context.queue.submit([encoder.finish()]);
+        let mut values = read_floats(&self.context, &sheets.ring)?;
+        values.truncate((count * geometry.frame.size[0] * geometry.frame.size[1]) as usize);
+        Ok(values)
+    }
+}

@@ -1,0 +1,64 @@
+//! What is asked of the renderer besides the look, and what it answers.
+
+/// Ways of rendering that are no part of the look.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Leave out the background, write straight alpha.
+    pub transparent: bool,
+    /// Leap over empty bricks. Only a test that it changes nothing switches it off.
+    pub leaping: bool,
+    /// Fill light volumes everywhere, not only where the picture looks them up.
+    pub fill_everything: bool,
+    /// A ray ends when less than this is left of its light.
+    pub dark: f32,
+    /// Slabs per chunk of the light march, instead of what memory and time suggest.
+    pub chunk: Option<u32>,
+    /// Wait after every step, so that a report's stages are true.
+    pub timed: bool,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            transparent: false,
+            leaping: true,
+            fill_everything: false,
+            // 1/16 of an 8-bit step.
+            dark: 1.0 / 4096.0,
+            chunk: None,
+            timed: false,
+        }
+    }
+}
+
+/// A finished picture on the CPU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Pixels per row and column.
+    pub size: [u32; 2],
+    /// Linear, premultiplied RGBA before tone mapping, row by row from the top left.
+    pub light: Vec<[f32; 4]>,
+    /// sRGB bytes, RGBA.
+    pub shown: Vec<u8>,
+}
+
+/// What a picture took.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Report {
+    /// Milliseconds of the upload and the pyramid.
+    pub upload_ms: f64,
+    /// Milliseconds of the transfer functions and brick sets.
+    pub bricks_ms: f64,
+    /// Milliseconds of the forward half of the light pass.
+    pub light_march_ms: f64,
+    /// Milliseconds of its reverse half.
+    pub light_backproject_ms: f64,
+    /// Milliseconds of the eye pass.
+    pub eye_ms: f64,
+    /// Milliseconds of the display pass and of reading back.
+    pub readback_ms: f64,
+    /// Slabs of the eye's stack.
+    pub slabs: u32,
+    /// Largest sum of our textures and buffers so far.
+    pub peak_gpu_bytes: u64,
+}

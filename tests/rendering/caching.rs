@@ -1,0 +1,173 @@
+//! What is kept and what is refilled; and what must not change a single bit.
+
+use chiaroscuro::gpu::{RenderOptions, Renderer};
+use chiaroscuro::model::{Kernel, LightKind, Quadrature, Settings};
+use chiaroscuro::plan::Request;
+use glam::DVec3;
+
+use crate::common::{Loaded, attenuation, context, render};
+use crate::scenes;
+use crate::thresholds::F16_STEP;
+
+const SIZE: [u32; 2] = [64, 48];
+
+fn three_lights() -> Settings {
+    let mut settings = scenes::look();
+    settings.lights = vec![
+        scenes::light(LightKind::Parallel, [1.3, -0.8, 1.7]),
+        scenes::light(LightKind::Perspective, [-1.8, 1.5, 2.0]),
+        scenes::light(LightKind::Parallel, [-0.2, -1.0, 0.3]),
+    ];
+    settings
+}
+
+fn loaded() -> Loaded {
+    Loaded::new(scenes::creature(32, DVec3::ONE))
+}
+
+#[test]
+fn orbiting_a_hundred_frames_rebuilds_no_light() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
+    for _ in 0..100 {
+        settings.camera.orbit(3.6, 1.0);
+        render(&mut renderer, &loaded, &settings, SIZE);
+    }
+    assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
+}
+
+#[test]
+fn live_controls_rebuild_no_light_and_change_the_picture() {
+    let (loaded, settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let before = render(&mut renderer, &loaded, &settings, SIZE);
+    let changes: [(&str, fn(&mut Settings)); 9] = [
+        ("colour", |s| s.lights[0].color = [1.0, 0.2, 0.1]),
+        ("intensity", |s| s.lights[1].intensity = 0.3),
+        ("gain", |s| s.shadows.gain = 1.7),
+        ("offset", |s| s.shadows.ambient_offset = 0.2),
+        ("strength", |s| s.shadows.strength = 0.4),
+        ("bias", |s| s.shadows.bias_voxels = 1.5),
+        ("balance", |s| s.shadows.balance = 1.4),
+        ("off", |s| s.lights[2].on = false),
+        ("shading", |s| s.shading.diffuse = 0.5),
+    ];
+    for (name, change) in changes {
+        let mut changed = settings.clone();
+        change(&mut changed);
+        let after = render(&mut renderer, &loaded, &changed, SIZE);
+        assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "{name}");
+        assert_ne!(after.light, before.light, "{name} changes nothing");
+    }
+    // Back again: the same bytes, and still nothing rebuilt.
+    assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), before);
+    assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
+}
+
+#[test]
+fn moving_one_of_three_lights_rebuilds_exactly_that_one() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    settings.lights[1].position = [-1.5, 1.7, 2.0];
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
+    // Further out along the same direction a parallel light is the same light.
+    settings.lights[0].position = [2.6, -1.6, 3.4];
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
+}
+
+#[test]
+fn a_lighting_transfer_edit_rebuilds_all() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    settings.lighting.scale = 0.5;
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [2, 2, 2]);
+}
+
+/// An attenuation volume in use equals a fresh one; spoiling it shows that changes that may keep it
+/// do keep it, and that moving the light refills it.
+#[test]
+fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
+    let (loaded, mut settings) = (loaded(), scenes::look());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    settings.lights[0].color = [0.9, 0.7, 0.5];
+    settings.shadows.gain = 1.3;
+    let kept = render(&mut renderer, &loaded, &settings, SIZE);
+    let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
+    let worst = kept.light.iter().flatten().zip(fresh.light.iter().flatten()).map(|(a, b)| (a - b).abs());
+    assert!(worst.fold(0.0, f32::max) <= F16_STEP);
+
+    let request = |settings: &Settings| Request {
+        volume: loaded.volume.content_id(),
+        settings: settings.clone(),
+        size: SIZE,
+        coarse: None,
+    };
+    assert!(renderer.corrupt_attenuation(&request(&settings), 0), "there is a volume to spoil");
+    let mean =
+        |picture: &chiaroscuro::gpu::Picture| picture.light.iter().map(|t| f64::from(t[1])).sum::<f64>();
+    let spoiled = render(&mut renderer, &loaded, &settings, SIZE);
+    assert!(mean(&spoiled) < 0.9 * mean(&fresh), "no light is left");
+    settings.lights[0].intensity = 1.01;
+    let still = render(&mut renderer, &loaded, &settings, SIZE);
+    assert!(mean(&still) < 0.9 * mean(&fresh), "a live control does not refill it");
+    settings.lights[0].position = [1.31, -0.8, 1.7];
+    let moved = render(&mut renderer, &loaded, &settings, SIZE);
+    assert!(mean(&moved) > 0.95 * mean(&fresh), "moving the light does");
+}
+
+/// Bricks are skipped: not a bit may change. Sheets are streamed in chunks: the ring's layers move,
+/// so fetches between them round differently, and nothing else.
+#[test]
+fn skipping_changes_no_bit_and_chunks_only_rounding() {
+    let loaded = Loaded::new(scenes::creature(48, DVec3::new(1.0, 1.0, 1.3)));
+    let mut looks = vec![scenes::look(), three_lights()];
+    looks[0].sampling.slab = 2.0;
+    looks[0].sampling.quadrature = Quadrature::Two;
+    looks[0].shadows.quadrature = Quadrature::Two;
+    looks[1].camera.distance = 11.0;
+    looks[1].sampling.kernel = Kernel::Gaussian { sigma: 0.8 };
+    let mut inside = scenes::look();
+    inside.lights[0] = scenes::light(LightKind::Perspective, [0.1, -0.4, 0.5]);
+    inside.camera.distance = 0.6;
+    looks.push(inside);
+    for (at, settings) in looks.iter().enumerate() {
+        let picture = |options: &RenderOptions| {
+            let mut renderer = Renderer::new(&context()).expect("a renderer");
+            renderer.render(&loaded.volume, &loaded.bricks, settings, [120, 90], options).expect("a picture")
+        };
+        let usual = picture(&RenderOptions::default());
+        let plodding =
+            picture(&RenderOptions { leaping: false, fill_everything: true, ..RenderOptions::default() });
+        assert_eq!(usual.light, plodding.light, "look {at}: leaping changes the picture");
+        for chunk in [1, 5, 1000] {
+            let chunked = picture(&RenderOptions { chunk: Some(chunk), ..RenderOptions::default() });
+            let differences = usual.light.iter().flatten().zip(chunked.light.iter().flatten());
+            let worst = differences.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(worst <= F16_STEP, "look {at}: chunks of {chunk} slabs change the picture by {worst}");
+        }
+    }
+}
+
+#[test]
+fn the_same_settings_give_the_same_bytes() {
+    let (loaded, settings) = (loaded(), three_lights());
+    let picture = || render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
+    let first = picture();
+    assert_eq!(first, picture());
+    // After unrelated work on the same renderer, too.
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut other = settings.clone();
+    other.lights[0].position = [0.0, 0.0, 1.0];
+    other.transfer.points[2].opacity = 0.9;
+    render(&mut renderer, &loaded, &other, [30, 70]);
+    attenuation(&mut renderer, &loaded, &other, 1);
+    assert_eq!(first, render(&mut renderer, &loaded, &settings, SIZE));
+}

@@ -1,0 +1,189 @@
+//! The GPU against the independent f64 reference: stage by stage with the same weights, and
+//! against the paper's literal footprints.
+
+use crate::common::{Loaded, attenuation, context, render};
+use crate::compare::{compare, flat32, flat64, wide};
+use crate::scenes;
+use crate::thresholds::{LITERAL, SAME_WEIGHTS};
+use chiaroscuro::gpu::{Renderer, stored_density};
+use chiaroscuro::model::{Camera, Deposit, Kernel, LightKind, Projection, Quadrature, Resolution, Settings};
+use chiaroscuro::reference::{Options, Reference, Weights};
+use glam::DVec3;
+
+const SIZE: [u32; 2] = [96, 80];
+
+fn round_to_f16(value: f32) -> f32 {
+    half::f16::from_f32(value).to_f32()
+}
+
+/// Sheets, light volumes and picture of one look, each against the reference.
+fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
+    let loaded = Loaded::new(scenes::creature(48, spacing_mm));
+    let context = context();
+    assert_eq!(
+        stored_density(&context, &loaded.volume, 0.3),
+        round_to_f16(0.3),
+        "8-bit data are stored as f16"
+    );
+    let options = Options { rounding: Some(round_to_f16), ..Options::default() };
+    let reference = Reference::new(&loaded.volume, settings, options);
+    let mut renderer = Renderer::new(&context).expect("a renderer");
+    let mut failures = Vec::new();
+    for light in (0..settings.lights.len()).filter(|&light| settings.lights[light].needs_volume()) {
+        let sheets = reference.light_sheets(light);
+        for (view, expected) in sheets.iter().enumerate() {
+            let found = renderer
+                .light_sheets(&loaded.volume, &loaded.bricks, settings, light, view)
+                .expect("sheets are read back");
+            let what = format!("{name}: sheets of light {light}, view {view}");
+            failures.extend(compare(&what, &wide(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
+        }
+        let found = attenuation(&mut renderer, &loaded, settings, light);
+        let expected = reference.back_project(&sheets);
+        let what = format!("{name}: light volume {light}");
+        failures.extend(compare(&what, &wide(&found), &expected.values, SAME_WEIGHTS).err());
+    }
+    let found = render(&mut renderer, &loaded, settings, SIZE);
+    let expected = reference.picture(SIZE, &reference.attenuations());
+    failures.extend(
+        compare(&format!("{name}: picture"), &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).err(),
+    );
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn parallel_light_and_turned_perspective_camera() {
+    check("parallel", DVec3::ONE, &scenes::look());
+}
+
+#[test]
+fn perspective_light_and_orthographic_camera() {
+    let mut settings = scenes::look();
+    settings.lights = vec![scenes::light(LightKind::Perspective, [1.6, -1.2, 2.2])];
+    settings.camera = Camera { projection: Projection::Orthographic, ..settings.camera };
+    check("perspective light", DVec3::ONE, &settings);
+}
+
+#[test]
+fn anisotropic_voxels() {
+    let mut settings = scenes::look();
+    settings.lights = vec![
+        scenes::light(LightKind::Perspective, [-2.0, 1.2, 1.9]),
+        scenes::light(LightKind::Parallel, [0.3, -1.0, 0.9]),
+    ];
+    check("anisotropic", DVec3::new(1.0, 0.8, 1.6), &settings);
+}
+
+#[test]
+fn a_light_inside_the_volume() {
+    let mut settings = scenes::look();
+    settings.lights = vec![scenes::light(LightKind::Perspective, [-0.45, -0.35, 0.4])];
+    check("light inside", DVec3::ONE, &settings);
+}
+
+#[test]
+fn gaussian_kernel_thin_slabs_two_points() {
+    let mut settings = scenes::look();
+    settings.sampling.kernel = Kernel::Gaussian { sigma: 0.6 };
+    settings.sampling.slab = 0.5;
+    settings.sampling.quadrature = Quadrature::Two;
+    settings.shadows.kernel = Kernel::Gaussian { sigma: 0.55 };
+    settings.shadows.slab = 0.5;
+    settings.shadows.quadrature = Quadrature::Two;
+    check("gaussian", DVec3::ONE, &settings);
+}
+
+#[test]
+fn prefiltered_kernel_and_literal_deposit() {
+    let mut settings = scenes::look();
+    settings.sampling.kernel = Kernel::Prefiltered;
+    settings.shadows.kernel = Kernel::Prefiltered;
+    settings.shadows.deposit = Deposit::Front;
+    check("prefiltered", DVec3::ONE, &settings);
+}
+
+#[test]
+fn first_touch() {
+    let mut settings = scenes::look();
+    settings.shadows.first_touch = true;
+    check("first touch", DVec3::ONE, &settings);
+}
+
+#[test]
+fn light_volume_at_half_resolution() {
+    let mut settings = scenes::look();
+    settings.shadows.resolution = Resolution::Half;
+    check("half resolution", DVec3::ONE, &settings);
+}
+
+#[test]
+fn several_lights_and_every_cure_for_darkness() {
+    let mut settings = scenes::look();
+    settings.lights = vec![
+        scenes::light(LightKind::Parallel, [1.3, -0.8, 1.7]),
+        scenes::light(LightKind::Perspective, [-1.8, 1.5, 2.0]),
+        scenes::light(LightKind::Parallel, [-0.2, -1.0, 0.3]),
+    ];
+    settings.lights[0].color = [1.0, 0.8, 0.5];
+    settings.lights[1].intensity = 0.7;
+    settings.lights[2].casts_shadows = false;
+    settings.lights[2].color = [0.3, 0.5, 1.0];
+    settings.shadows.ambient_offset = 0.1;
+    settings.shadows.gain = 1.6;
+    settings.shadows.strength = 0.85;
+    settings.shadows.bias_voxels = 1.2;
+    settings.shadows.balance = 1.3;
+    settings.shading.specular = 0.6;
+    settings.shading.emission = 0.05;
+    settings.lighting.scale = 0.6;
+    check("several lights", DVec3::ONE, &settings);
+}
+
+#[test]
+fn kernels_stretched_by_small_pictures_and_near_lights() {
+    let mut settings = scenes::look();
+    // Far away: pixels are two to three voxels wide.
+    settings.camera.distance = 14.0;
+    settings.lights = vec![scenes::light(LightKind::Perspective, [1.9, -1.5, 1.4])];
+    check("stretched", DVec3::ONE, &settings);
+}
+
+#[test]
+fn an_eye_inside_the_volume() {
+    let mut settings = scenes::look();
+    settings.camera = Camera { distance: 0.35, fov_y_deg: 70.0, target: [0.4, 0.3, 0.2], ..settings.camera };
+    check("eye inside", DVec3::ONE, &settings);
+}
+
+/// The picture by the paper's literal footprints in f64, against the GPU's.
+fn check_literal(n: usize, kind: LightKind, position: [f64; 3]) {
+    let mut settings = scenes::look();
+    settings.lights = vec![scenes::light(kind, position)];
+    settings.sampling.quadrature = Quadrature::Two;
+    settings.shadows.quadrature = Quadrature::Two;
+    let loaded = Loaded::new(scenes::creature(n, DVec3::ONE));
+    let options = Options { weights: Weights::Footprint, ..Options::default() };
+    let reference = Reference::new(&loaded.volume, &settings, options);
+    let expected = reference.picture(SIZE, &reference.attenuations());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let found = render(&mut renderer, &loaded, &settings, SIZE);
+    let what = format!("literal footprints, {kind:?}, {n}³");
+    compare(&what, &flat32(&found.light), &flat64(&expected), LITERAL).unwrap_or_else(|err| panic!("{err}"));
+}
+
+#[test]
+fn literal_footprints_parallel() {
+    check_literal(48, LightKind::Parallel, [1.3, -0.8, 1.7]);
+}
+
+#[test]
+fn literal_footprints_perspective() {
+    check_literal(48, LightKind::Perspective, [2.0, -1.3, 2.4]);
+}
+
+#[test]
+#[ignore = "takes minutes of scattering in f64: cargo test --test rendering -- --ignored"]
+fn literal_footprints_at_128() {
+    check_literal(128, LightKind::Parallel, [1.3, -0.8, 1.7]);
+    check_literal(128, LightKind::Perspective, [2.0, -1.3, 2.4]);
+}

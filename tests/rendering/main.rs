@@ -1,0 +1,12 @@
+//! Tests of the renderer on a graphics adapter: against the f64 reference and against closed forms.
+//!
+//! Without an adapter they fail: a check that did not run must be seen.
+
+mod caching;
+mod closed_form;
+mod common;
+mod compare;
+mod gpu_vs_reference;
+mod mutations;
+mod scenes;
+mod thresholds;

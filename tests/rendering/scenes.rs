@@ -1,0 +1,121 @@
+//! Small scenes for comparisons: a volume with shells, rods and soft parts, and looks for it.
+
+use chiaroscuro::data::{Samples, Volume};
+use chiaroscuro::model::{
+    Camera, ControlPoint, Interpolation, Length, Light, LightKind, Projection, Settings, TransferFunction,
+};
+use glam::DVec3;
+
+/// Something with thin and thick, hard and soft parts, without any symmetry.
+pub(crate) fn creature(n: usize, spacing_mm: DVec3) -> Volume {
+    let half = n as f64 / 2.0;
+    let soft = 1.5 / half;
+    let values = (0..n * n * n)
+        .map(|at| {
+            let p = DVec3::new((at % n) as f64, (at / n % n) as f64, (at / n / n) as f64);
+            let p = (p + 0.5) / half - 1.0;
+            let ball = |c: DVec3, r: f64| (p - c).length() - r;
+            let rod = |a: DVec3, b: DVec3, r: f64| {
+                let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+                (p - a - (b - a) * t).length() - r
+            };
+            let plate = ((p.z + 0.62).abs() - 0.08).max(p.x.abs() - 0.78).max(p.y.abs() - 0.74);
+            let parts = [
+                (ball(DVec3::new(0.1, -0.1, 0.05), 0.38).abs() - 0.09, 170.0),
+                (ball(DVec3::new(0.15, -0.05, 0.0), 0.15), 90.0),
+                (rod(DVec3::new(-0.6, 0.3, 0.6), DVec3::new(0.5, 0.5, 0.3), 0.09), 220.0),
+                (rod(DVec3::new(0.5, -0.6, -0.4), DVec3::new(0.4, -0.5, 0.7), 0.11), 250.0),
+                (plate, 120.0),
+            ];
+            let solid =
+                parts.iter().map(|(d, v)| v * (0.5 - d / (2.0 * soft)).clamp(0.0, 1.0)).fold(0.0, f64::max);
+            let haze = 40.0 * (1.0 - (p - DVec3::new(-0.4, -0.3, 0.2)).length_squared() / 0.15).max(0.0);
+            solid.max(haze).round() as u8
+        })
+        .collect();
+    Volume::with_spacing("creature", [n; 3], spacing_mm, Samples::U8(values)).expect("a valid volume")
+}
+
+/// Opacities from thin haze to nearly solid.
+pub(crate) fn transfer() -> TransferFunction {
+    let point = |value, color, opacity| ControlPoint { value, color, opacity };
+    TransferFunction {
+        points: vec![
+            point(8.0, [0.3, 0.3, 0.5], 0.0),
+            point(60.0, [0.55, 0.35, 0.25], 0.04),
+            point(110.0, [0.8, 0.5, 0.35], 0.3),
+            point(170.0, [0.75, 0.75, 0.7], 0.5),
+            point(250.0, [1.0, 0.9, 0.6], 0.8),
+        ],
+        interpolation: Interpolation::Opacity,
+    }
+}
+
+/// One light and a turned camera.
+pub(crate) fn look() -> Settings {
+    Settings {
+        camera: Camera {
+            azimuth_deg: 37.0,
+            elevation_deg: 24.0,
+            roll_deg: 8.0,
+            distance: 4.4,
+            ..Camera::default()
+        },
+        lights: vec![light(LightKind::Parallel, [1.3, -0.8, 1.7])],
+        transfer: transfer(),
+        opacity_unit: Length::Voxels(1.0),
+        ..Settings::default()
+    }
+}
+
+/// A white light that casts shadows.
+pub(crate) fn light(kind: LightKind, position: [f64; 3]) -> Light {
+    Light { kind, position, ..Light::default() }
+}
+
+/// A homogeneous block: `inside` gives the voxels that are full.
+pub(crate) fn block(n: usize, inside: impl Fn([usize; 3]) -> bool) -> Volume {
+    let values =
+        (0..n * n * n).map(|at| if inside([at % n, at / n % n, at / n / n]) { 255 } else { 0 }).collect();
+    Volume::with_spacing("block", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
+}
+
+/// A homogeneous ball with a soft edge one voxel wide.
+pub(crate) fn ball(n: usize, centre: DVec3, radius: f64) -> Volume {
+    let values = (0..n * n * n)
+        .map(|at| {
+            let p = DVec3::new((at % n) as f64, (at / n % n) as f64, (at / n / n) as f64);
+            (255.0 * (radius - (p - centre).length() + 0.5).clamp(0.0, 1.0)).round() as u8
+        })
+        .collect();
+    Volume::with_spacing("ball", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
+}
+
+/// Extinction proportional to density: `per_voxel` where it is full.
+pub(crate) fn linear_extinction(per_voxel: f64) -> TransferFunction {
+    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    TransferFunction {
+        points: vec![point(0.0, 0.0), point(255.0, 1.0 - (-per_voxel).exp())],
+        interpolation: Interpolation::Extinction,
+    }
+}
+
+/// A camera that looks along an axis of the volume from outside, without perspective.
+pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
+    Camera {
+        projection: Projection::Orthographic,
+        azimuth_deg,
+        elevation_deg,
+        distance: 4.0,
+        ..Camera::default()
+    }
+}
+
+/// Material that answers to light evenly from all sides: no normals, no ambient.
+pub(crate) fn isotropic(settings: &mut Settings) {
+    settings.shading.ambient = 0.0;
+    settings.shading.diffuse = 1.0;
+    settings.shading.specular = 0.0;
+    // Above any gradient that a volume can have.
+    settings.shading.surface_gradient = 10.0;
+}

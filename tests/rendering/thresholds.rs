@@ -1,0 +1,52 @@
+//! Every limit of the rendering tests, with its reason. Pictures are compared in linear,
+//! premultiplied light before tone mapping; 1/255 is one step of an 8-bit display.
+
+use super::compare::Limit;
+
+/// GPU against reference with the same weights: what is left are f16 sheets and light volumes
+/// (2^−11 each), f32 positions and the early exit at 1/4096.
+pub(crate) const SAME_WEIGHTS: Limit = Limit { max: 2.0 / 255.0, rmse: 0.25 / 255.0 };
+
+/// GPU against literal, un-normalised footprints: the quadrature over a slab and the normalisation
+/// differ by design; the largest single difference is at silhouettes and is not limited.
+pub(crate) const LITERAL: Limit = Limit { max: f64::INFINITY, rmse: 1.0 / 255.0 };
+
+/// Partition of unity with filtering hardware (8 fractional bits).
+pub(crate) const UNITY: f64 = 2e-3;
+
+/// Beer–Lambert, relative, by extinction per voxel and slab thickness: (μ, Δs, tolerance).
+pub(crate) const BEER_LAMBERT: [(f64, f64, f64); 5] =
+    [(0.1, 1.0, 0.005), (0.3, 1.0, 0.005), (0.7, 1.0, 0.02), (0.3, 0.25, 0.003), (0.7, 0.25, 0.003)];
+
+/// Opacity of a homogeneous chord, absolute.
+pub(crate) const CHORD_OPACITY: f64 = 2e-3;
+
+/// Change of the picture's mean when slabs become four times thinner, relative.
+pub(crate) const SLAB_MEAN_CHANGE: f64 = 0.005;
+
+/// Headlight identity C = ½, at Δs = ¼ and Δs = 1, relative.
+pub(crate) const HEADLIGHT_FINE: f64 = 0.02;
+/// See [`HEADLIGHT_FINE`].
+pub(crate) const HEADLIGHT_COARSE: f64 = 0.10;
+
+/// Shadow of a ball on what lies behind it, RMSE beyond three voxels from its edge, and centre.
+pub(crate) const BALL_SHADOW: f64 = 0.01;
+
+/// Mean luminance over a quarter turn of the camera: peak to peak, and from frame to frame.
+pub(crate) const ROTATION_RANGE: f64 = 0.005;
+/// See [`ROTATION_RANGE`].
+pub(crate) const ROTATION_STEP: f64 = 0.001;
+
+/// By how much halving the slab must shrink the error: first order, and second order.
+pub(crate) const ORDER_FRONT: f64 = 1.8;
+/// See [`ORDER_FRONT`].
+pub(crate) const ORDER_MEAN: f64 = 3.4;
+
+/// A light volume in use against a fresh one: one step of a 16-bit float near 1.
+pub(crate) const F16_STEP: f32 = 1.0 / 2048.0;
+
+/// A point light 100 volumes away against a parallel one, RMSE.
+pub(crate) const FAR_LIGHT: f64 = 0.005;
+
+/// The chord law under oblique rays, relative.
+pub(crate) const OBLIQUE_CHORD: f64 = 0.01;
