@@ -47,10 +47,10 @@ pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
     // step rises quickly, so that surfaces are crisp and shadows fall on something.
     let stops = [
         (start, [0.42, 0.20, 0.14], 0.0),
-        (start + 0.35 * (bulk - start), [0.66, 0.36, 0.24], 0.12),
-        (bulk, [0.87, 0.62, 0.42], 0.38),
-        (bright, [0.96, 0.88, 0.72], 0.75),
-        (1.0f64.max(bright + 0.01), [1.0, 0.97, 0.92], 0.9),
+        (start + 0.35 * (bulk - start), [0.66, 0.36, 0.24], 0.3),
+        (bulk, [0.87, 0.62, 0.42], 0.65),
+        (bright, [0.96, 0.88, 0.72], 0.88),
+        (1.0f64.max(bright + 0.01), [1.0, 0.97, 0.92], 0.96),
     ];
     let points = stops
         .map(|(density, color, opacity)| ControlPoint { value: volume.value_of(density), color, opacity })
