@@ -13,6 +13,9 @@ use crate::plan::MAX_STRETCH_LEVEL;
 /// Voxels of nothing before the data in the pyramid: one texel of its coarsest level.
 const PYRAMID_PADDING: usize = 4;
 
+/// Voxels along an axis: brick coordinates are packed into ten bits each.
+const MAX_VOXELS: usize = 1024 * BRICK_EDGE;
+
 /// Upload block: small enough that one takes a few milliseconds.
 const UPLOAD_BYTES: usize = 4 << 20;
 
@@ -55,6 +58,14 @@ impl GpuVolume {
         bricks: &Arc<Bricks>,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
+        if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
+            return Err(GpuError::OverLimit {
+                what: "the volume".to_owned(),
+                size: size as u64,
+                limit: MAX_VOXELS as u64,
+                help: "a part of it, or fewer voxels, helps",
+            });
+        }
         let unorm = density_is_unorm(context, volume);
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let density = context.texture(&texture_3d(

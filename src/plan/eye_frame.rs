@@ -6,6 +6,10 @@ use super::sheet_frame::{Placement, SheetFrame};
 use crate::math::SceneSpace;
 use crate::model::{Camera, Projection};
 
+/// Most slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
+/// that very flat voxels do not make a ray endless.
+const MAX_SLABS: f64 = 4096.0;
+
 /// Nearest distance from a perspective eye that is drawn, as a share of the distance to the target.
 const NEAR_SHARE: f64 = 1e-3;
 
@@ -43,7 +47,7 @@ pub fn eye_frame(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64)
             // Pixel centres lie half a pixel from the picture's edge.
             first_pixel: DVec2::splat(0.5) - middle,
             size,
-            slab: slab * scene.smallest_edge(),
+            slab: slab * scene.smallest_edge().max(2.0 * scene.support_radius() / MAX_SLABS),
             near,
         },
     )

@@ -11,6 +11,10 @@ use crate::model::{Light, LightKind, Shadows};
 /// it, the volume fits a cone of ± asin(1/1.5) = 42°, no wider than one face of a cube.
 const SPLIT_RADII: f64 = 1.5;
 
+/// Most pixels across a sheet: very flat voxels would need more than a texture can hold, and get
+/// pixels wider than their smallest edge instead.
+const MAX_PIXELS: f64 = 2000.0;
+
 /// Largest width of the reverse kernel in pixels: close to a light inside the volume pixels become
 /// arbitrarily small, and there the kernel is narrower than a voxel instead of ever more fetches.
 pub const MAX_KERNEL_PIXELS: f64 = 4.0;
@@ -77,8 +81,8 @@ impl LightView {
 
 /// The views of a light over a scene, with the pitch, slab and resolution that `shadows` asks for.
 pub fn light_views(light: &Light, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
-    let edge = scene.smallest_edge() * shadows.resolution.divisor() as f64;
     let radius = scene.support_radius();
+    let edge = (scene.smallest_edge() * shadows.resolution.divisor() as f64).max(2.0 * radius / MAX_PIXELS);
     let position = DVec3::from(light.position);
     match light.kind {
         LightKind::Parallel => {
@@ -237,6 +241,16 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn flat_voxels_do_not_need_endless_sheets() {
+        let flat = SceneSpace::new([10, 10, 400], DAffine3::from_scale(DVec3::new(0.01, 0.01, 5.0)));
+        let light = Light { position: [1.0, 1.0, 1.0], ..Light::default() };
+        for view in light_views(&light, &Shadows::default(), &flat) {
+            assert!(view.frame.size.iter().all(|&n| n <= 2048), "{:?}", view.frame.size);
+            assert!(view.frame.slab_count <= 2048);
         }
     }
 
