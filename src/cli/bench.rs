@@ -47,14 +47,15 @@ pub(super) struct BenchArgs {
 
 /// Runs the cases and prints them.
 pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
-    let context = Context::headless()?;
     let wants = |case: &str| args.only.as_deref().is_none_or(|only| only == case);
     let mut cases = Vec::new();
     let mut ratios = serde_json::Map::new();
+    let loaded = args.look.load(&args.volume)?;
+    let look = args.look.look(&loaded)?;
+    let context = Context::headless()?;
     if wants("orbit") || wants("light-drag") || wants("light-build") {
-        let loaded = args.look.load(&args.volume)?;
         let mut renderer = Renderer::new(&context)?;
-        let settings = args.look.settings(&mut renderer, &loaded)?;
+        let settings = look.settings(&mut renderer, &loaded)?;
         let mut bench = Bench { args, loaded: &loaded, renderer, settings };
         let (with, without) = bench.orbit(&mut cases)?;
         ratios

@@ -26,8 +26,9 @@ pub(super) struct LightVolumeArgs {
 /// Fills and writes one attenuation volume.
 pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let loaded = args.scene.load()?;
+    let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&Context::headless()?)?;
-    let settings = args.scene.settings(&mut renderer, &loaded)?;
+    let settings = look.settings(&mut renderer, &loaded)?;
     let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
     let size = [16, 16];
     renderer.draw(&loaded.volume, &loaded.bricks, &settings, size, &options)?;

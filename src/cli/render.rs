@@ -40,10 +40,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     };
     say("loading the volume");
     let loaded = args.scene.load()?;
+    let look = args.scene.look(&loaded)?;
     let context = Context::headless()?;
     let mut renderer = Renderer::new(&context)?;
     say("finding the look");
-    let settings = args.scene.settings(&mut renderer, &loaded)?;
+    let settings = look.settings(&mut renderer, &loaded)?;
     say("rendering");
     let options = RenderOptions {
         transparent: args.transparent,
@@ -55,7 +56,6 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         renderer = Renderer::new(&context)?;
     }
     let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
-    export_png(&picture, args.transparent, &args.output)?;
     if let Some(path) = &args.report {
         let took = renderer.report();
         let report = json!({
@@ -79,6 +79,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             "settings": settings,
         });
         write_atomically(path, format!("{report:#}\n").as_bytes())?;
+    }
+    if let Err(err) = export_png(&picture, args.transparent, &args.output) {
+        // A report without its picture would mislead.
+        if let Some(path) = &args.report {
+            std::fs::remove_file(path).ok();
+        }
+        return Err(err.into());
     }
     print_line(&format!("{}", args.output.display()));
     Ok(())

@@ -154,8 +154,8 @@ impl SceneArgs {
     }
 
     /// Finds the look.
-    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Loaded) -> Result<Settings, CliError> {
-        self.look.settings(renderer, loaded)
+    pub(super) fn look(&self, loaded: &Loaded) -> Result<Look, CliError> {
+        self.look.look(loaded)
     }
 }
 
@@ -172,9 +172,9 @@ impl LookArgs {
         Ok(Loaded::new(volume))
     }
 
-    /// The automatic look, with preset, session and single settings laid over it. Lights are
-    /// balanced as the viewer does on load, unless preset or session say how.
-    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Loaded) -> Result<Settings, CliError> {
+    /// The automatic look, with preset and session laid over it, and the single settings to come.
+    /// All of them are checked here, before anything slow begins.
+    pub(super) fn look(&self, loaded: &Loaded) -> Result<Look, CliError> {
         let mut settings = auto::first_settings(&loaded.volume, &loaded.histogram);
         let mut balanced = false;
         let overlays =
@@ -193,9 +193,33 @@ impl LookArgs {
             }
             settings = next;
         }
-        if !balanced {
+        let look = Look { settings, balanced, set: self.set.clone(), shadows: self.shadows };
+        look.with_single_settings(look.settings.clone())?;
+        Ok(look)
+    }
+}
+
+/// A look that is complete but for *Balance*, which needs the GPU.
+#[derive(Debug)]
+pub(super) struct Look {
+    settings: Settings,
+    balanced: bool,
+    set: Vec<String>,
+    shadows: Option<ShadowArg>,
+}
+
+impl Look {
+    /// The settings. Lights are balanced as the viewer does on load, unless preset or session say
+    /// how; single settings are laid over the result.
+    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Loaded) -> Result<Settings, CliError> {
+        let mut settings = self.settings.clone();
+        if !self.balanced {
             settings.shadows.balance = balance(renderer, &loaded.volume, &loaded.bricks, &settings)?;
         }
+        self.with_single_settings(settings)
+    }
+
+    fn with_single_settings(&self, mut settings: Settings) -> Result<Settings, CliError> {
         for assignment in &self.set {
             let (path, value) = assignment.split_once('=').ok_or_else(|| {
                 CliError::Usage(format!(
@@ -219,10 +243,10 @@ fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliE
     let name = path.display().to_string();
     let builtin = BUILTIN_PRESETS.iter().find(|(known, _)| what == "preset" && *known == name);
     let text = match builtin {
-        Some((_, text)) => (*text).to_owned(),
+        Some((_, text)) => text.as_bytes().to_vec(),
         None => read_small(what, path)?,
     };
-    let value = serde_json::from_str(&text).map_err(|err| CliError::Preset {
+    let value = serde_json::from_slice(&text).map_err(|err| CliError::Preset {
         what,
         path: name.clone(),
         source: crate::model::PresetError::Syntax(err),
@@ -230,17 +254,17 @@ fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliE
     Ok((value, name))
 }
 
-/// Reads a text file, but not a huge one, nor a device.
-fn read_small(what: &'static str, path: &Path) -> Result<String, CliError> {
+/// Reads a file, but not a huge one, nor a device.
+fn read_small(what: &'static str, path: &Path) -> Result<Vec<u8>, CliError> {
     use std::io::Read as _;
     let failed = |source| CliError::Read { what, path: path.display().to_string(), source };
     let metadata = std::fs::metadata(path).map_err(failed)?;
     if !metadata.is_file() {
         return Err(failed(std::io::Error::other("not a regular file")));
     }
-    let mut text = String::new();
+    let mut text = Vec::new();
     std::fs::File::open(path)
-        .and_then(|file| file.take(MAX_PRESET_BYTES).read_to_string(&mut text))
+        .and_then(|file| file.take(MAX_PRESET_BYTES).read_to_end(&mut text))
         .map_err(failed)?;
     Ok(text)
 }

@@ -48,9 +48,13 @@ impl Context {
     /// When there is no adapter or it cannot store the textures that we need.
     pub fn headless() -> Result<Self, GpuError> {
         let no_adapter = |why: String| GpuError::NoAdapter { why, help: ADAPTER_HELP };
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            // Vulkan, Metal, DX12; `WGPU_BACKEND` narrows it.
+            backends: wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY),
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
         let wanted = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default().to_lowercase();
-        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
         adapters.retain(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted));
         adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
             wgpu::DeviceType::DiscreteGpu => 0,

@@ -30,11 +30,12 @@ pub enum ExportError {
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), ExportError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let failed = |source| ExportError::Write { path: path.to_owned(), source };
+    // The temporary file's own name means nothing to the user: keep the kind of error alone.
     let mut file = tempfile::Builder::new()
         .prefix(".chiaroscuro-")
         .suffix(".part")
         .tempfile_in(folder)
-        .map_err(failed)?;
+        .map_err(|err| failed(err.kind().into()))?;
     file.write_all(contents).map_err(failed)?;
     // Otherwise a crash just after the rename could leave an empty file under the old name.
     file.as_file().sync_all().map_err(failed)?;

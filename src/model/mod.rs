@@ -8,6 +8,7 @@ mod camera;
 mod length;
 mod light;
 mod preset;
+mod sanitise;
 mod settings;
 mod transfer;
 

@@ -43,7 +43,8 @@ fn live_controls_rebuild_no_light_and_change_the_picture() {
     let (loaded, settings) = (loaded(), three_lights());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let before = render(&mut renderer, &loaded, &settings, SIZE);
-    let changes: [(&str, fn(&mut Settings)); 9] = [
+    type Change = fn(&mut Settings);
+    let changes: [(&str, Change); 9] = [
         ("colour", |s| s.lights[0].color = [1.0, 0.2, 0.1]),
         ("intensity", |s| s.lights[1].intensity = 0.3),
         ("gain", |s| s.shadows.gain = 1.7),

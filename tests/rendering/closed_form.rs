@@ -45,7 +45,7 @@ fn middle_red(picture: &Picture) -> f64 {
     f64::from(picture.light[h / 2 * w + w / 2][0])
 }
 
-/// 1. A constant stays constant under the kernel, wherever it is sampled: the ratio of successive
+/// No. 1: A constant stays constant under the kernel, wherever it is sampled: the ratio of successive
 /// sheets of a light gives the density back.
 #[test]
 fn kernels_are_a_partition_of_unity() {
@@ -81,7 +81,7 @@ fn kernels_are_a_partition_of_unity() {
     }
 }
 
-/// 2. Light falls off exponentially in homogeneous material, times what the kernel does to an
+/// No. 2: Light falls off exponentially in homogeneous material, times what the kernel does to an
 /// exponential: e^(μ²σ²/2) from the reverse splat, sinh(μΔs/2)/(μΔs/2) from the slab.
 #[test]
 fn beer_lambert_in_a_homogeneous_block() {
@@ -115,13 +115,13 @@ fn beer_lambert_in_a_homogeneous_block() {
     }
 }
 
-/// 3. What a ray sees of homogeneous material is 1 − e^(−μ·chord), whatever the slab.
+/// No. 3: What a ray sees of homogeneous material is 1 − e^(−μ·chord), whatever the slab.
 #[test]
 fn opacity_of_a_chord() {
     let n = 48;
     let block = Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (12..36).contains(c))));
     let ball = Loaded::new(scenes::ball(n, DVec3::splat(23.5), 14.0));
-    for (name, loaded, chord) in [("block", &block, 24.0), ("ball", &ball, 28.0)] {
+    for (name, loaded, chord) in [("block", &block, 24.0f64), ("ball", &ball, 28.0)] {
         let mut means = Vec::new();
         for (slab, quadrature) in
             [(0.25, Quadrature::One), (0.5, Quadrature::One), (1.0, Quadrature::One), (2.0, Quadrature::Two)]
@@ -130,7 +130,7 @@ fn opacity_of_a_chord() {
             settings.sampling.slab = slab;
             settings.sampling.quadrature = quadrature;
             let picture = render(&mut renderer(), loaded, &settings, [96, 96]);
-            let expected = 1.0 - (-0.05 * chord as f64).exp();
+            let expected = 1.0 - (-0.05 * chord).exp();
             let found = if name == "ball" {
                 f64::from(picture.light[48 * 96 + 48][3])
             } else {
@@ -157,7 +157,7 @@ fn headlight(deposit: Deposit, slab: f64) -> f64 {
     middle_red(&render(&mut renderer(), &loaded, &settings, [48, 48]))
 }
 
-/// 4. Light from the eye's direction, material that scatters evenly, optically thick:
+/// No. 4: Light from the eye's direction, material that scatters evenly, optically thick:
 /// C = ∫ T·T dτ = ½, whatever the density.
 #[test]
 fn headlight_gives_one_half() {
@@ -176,7 +176,7 @@ fn headlight_gives_one_half() {
     assert!(front[0] / front[1] > 1.6 && front[1] / front[2] > 1.4, "front: {front:?}");
 }
 
-/// 5. Behind a ball of radius r the light is e^(−2μ√(r² − b²)) at distance b from its axis.
+/// No. 5: Behind a ball of radius r the light is e^(−2μ√(r² − b²)) at distance b from its axis.
 #[test]
 fn shadow_of_a_ball() {
     let n = 60;
@@ -203,7 +203,7 @@ fn shadow_of_a_ball() {
     assert!((middle - exact).abs() <= BALL_SHADOW, "{middle} not {exact}");
 }
 
-/// 7. A ball looks the same from everywhere: no popping while the camera or the light turns.
+/// No. 7: A ball looks the same from everywhere: no popping while the camera or the light turns.
 #[test]
 fn turning_does_not_change_brightness() {
     let loaded = Loaded::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
@@ -251,7 +251,7 @@ fn steady(what: &str, means: &[f64]) {
     assert!(range <= ROTATION_RANGE && step <= ROTATION_STEP, "{what}: range {range}, step {step}");
 }
 
-/// 8. Thinner light slabs converge: first order with the literal deposit, second with the mean.
+/// No. 8: Thinner light slabs converge: first order with the literal deposit, second with the mean.
 #[test]
 fn thinner_slabs_converge() {
     let loaded = Loaded::new(scenes::ball(40, DVec3::splat(19.5), 13.0));
@@ -272,7 +272,7 @@ fn thinner_slabs_converge() {
     }
 }
 
-/// 15. A point light a hundred volumes away is a parallel light.
+/// No. 15: A point light a hundred volumes away is a parallel light.
 #[test]
 fn a_far_point_light_is_parallel() {
     let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
@@ -287,7 +287,7 @@ fn a_far_point_light_is_parallel() {
     compare("far light", &far, &near, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// 18. Path lengths are those of the oblique rays: a point light at 1.5 N, and a perspective eye.
+/// No. 18: Path lengths are those of the oblique rays: a point light at 1.5 N, and a perspective eye.
 #[test]
 fn oblique_rays_have_longer_paths() {
     let n = 48;
@@ -337,7 +337,7 @@ fn oblique_rays_have_longer_paths() {
     }
 }
 
-/// 17. Noise, emptiness and solidity give numbers, and nothing is exactly the background.
+/// No. 17: Noise, emptiness and solidity give numbers, and nothing is exactly the background.
 #[test]
 fn extremes_stay_finite() {
     let noise: Vec<u8> = (0..32usize.pow(3)).map(|i| (i.wrapping_mul(2654435761) >> 13) as u8).collect();

@@ -2,6 +2,8 @@
 //!
 //! Without an adapter they fail: a check that did not run must be seen.
 
+#![expect(clippy::print_stdout, reason = "what was measured, for whoever reads the log of a failure")]
+
 mod caching;
 mod closed_form;
 mod common;
