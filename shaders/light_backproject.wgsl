@@ -46,6 +46,8 @@ override QUADRATURE: u32 = 1u;
 
 // Of a kernel close to a light inside the volume, in pixels (src/plan/light_frame.rs).
 const MAX_KERNEL_PIXELS = 4.0;
+// Pairs under its diameter of 16 pixels, which can cut 17 of them.
+const MAX_PAIRS = 9u;
 
 fn sheet(pixel: vec2f, slab: f32) -> f32 {
     let size = vec3f(vec2f(view.frame.size), f32(view.layers));
@@ -107,17 +109,26 @@ fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
     let first = vec3i(ceil(vec3f(pixel, slab) - reach));
     let last = vec3i(floor(vec3f(pixel, slab) + reach));
     let size = vec3i(vec2i(view.frame.size), i32(view.frame.slab_count));
+    // The kernel is a product: the pairs across are the same in every row and sheet.
+    var across: array<vec2f, MAX_PAIRS>;
+    var columns = 0u;
+    for (var i = first.x; i <= last.x && columns < MAX_PAIRS; i += 2) {
+        across[columns] = pair(i, size.x, pixel.x, pixels);
+        columns += 1u;
+    }
     var sum = 0.0;
     var weights = 0.0;
     for (var k = max(first.z, 0); k <= last.z; k += 2) {
         let z = slab_pair(k, size.z, slab, slabs);
+        let w = layer(k) + z.x;
         for (var j = first.y; j <= last.y; j += 2) {
             let y = pair(j, size.y, pixel.y, pixels);
-            for (var i = first.x; i <= last.x; i += 2) {
-                let x = pair(i, size.x, pixel.x, pixels);
-                let weight = x.y * y.y * z.y;
-                sum += weight * sheet(vec2f(f32(i) + x.x, f32(j) + y.x), layer(k) + z.x);
-                weights += weight;
+            let v = f32(j) + y.x;
+            let weight = y.y * z.y;
+            for (var c = 0u; c < columns; c += 1u) {
+                let x = across[c];
+                sum += weight * x.y * sheet(vec2f(f32(first.x + 2 * i32(c)) + x.x, v), w);
+                weights += weight * x.y;
             }
         }
     }
