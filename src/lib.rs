@@ -20,6 +20,7 @@
 //! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's
 //! longest edge spans [−1, 1]) → sheets (pixels and depth along an axis of projection).
 
+pub mod app;
 pub mod cli;
 pub mod data;
 pub mod gpu;

@@ -2,12 +2,15 @@
 
 use std::process::ExitCode;
 
+use chiaroscuro::app::{self, Options};
 use chiaroscuro::cli::{self, CliError};
 
 fn main() -> ExitCode {
-    env_logger::Builder::from_env(
-        env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error"),
-    )
-    .init();
-    ExitCode::from(cli::main(|_request| Err(CliError::Window("not built yet".to_owned()))))
+    let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error");
+    env_logger::Builder::from_env(quiet).init();
+    ExitCode::from(cli::main(|request| {
+        let options =
+            Options { source: request.source, load: request.load, session: request.session, adjust: None };
+        app::run(options).map_err(|err| CliError::Window(err.to_string()))
+    }))
 }

@@ -11,6 +11,7 @@ const ADAPTER_HELP: &str =
 /// A device with its queue and what we need to know about it. Cheap to clone.
 #[derive(Debug, Clone)]
 pub struct Context {
+    adapter: wgpu::Adapter,
     /// Makes resources.
     pub device: wgpu::Device,
     /// Takes work.
@@ -118,7 +119,8 @@ impl Context {
             }
         });
         let unorm16 = features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
-        Ok(Self { device, queue, info: adapter.get_info(), storage_format, unorm16, complaint })
+        let (adapter, info) = (adapter.clone(), adapter.get_info());
+        Ok(Self { adapter, device, queue, info, storage_format, unorm16, complaint })
     }
 
     /// The same device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
@@ -129,6 +131,19 @@ impl Context {
             self.storage_format = wgpu::TextureFormat::R32Float;
         }
         self
+    }
+
+    /// Another device on the same adapter, for work beside a window: long work on the window's own
+    /// queue would hold up its frames, and a surface cannot be resized while others submit to it.
+    ///
+    /// # Errors
+    /// When the adapter gives no second device.
+    pub fn sibling(&self) -> Result<Self, GpuError> {
+        let (device, queue) =
+            pollster::block_on(self.adapter.request_device(&device_descriptor(&self.adapter)))
+                .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
+        let sibling = Self::new(&self.adapter, device, queue)?;
+        Ok(Self { storage_format: self.storage_format, ..sibling })
     }
 
     /// Whether the adapter is the CPU.

@@ -1,0 +1,100 @@
+//! The middle of the window: the picture, pixel for pixel, and the mouse on it.
+
+use eframe::egui::{self, Color32, Mesh, Pos2, Rect, Role, Sense, Shape, Vec2, WidgetInfo, pos2};
+
+use super::light_handles::LightHandles;
+use super::viewport::Viewport;
+use super::{orbit, theme};
+use crate::gpu::GpuError;
+use crate::model::Settings;
+
+/// The picture's rectangle in points and its size in physical pixels, on the pixel grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Canvas {
+    /// In points; every edge is at a whole physical pixel.
+    pub rect: Rect,
+    /// In physical pixels.
+    pub size: [u32; 2],
+}
+
+impl Canvas {
+    /// The largest rectangle on the pixel grid within another.
+    pub(super) fn within(rect: Rect, pixels_per_point: f32) -> Self {
+        // A hair of tolerance: 799.9999 is pixel 800.
+        let up = |x: f32| (x * pixels_per_point - 0.01).ceil();
+        let down = |x: f32| (x * pixels_per_point + 0.01).floor();
+        let (left, top) = (up(rect.min.x), up(rect.min.y));
+        let (right, bottom) = (down(rect.max.x).max(left), down(rect.max.y).max(top));
+        Self {
+            rect: Rect::from_min_max(
+                pos2(left, top) / pixels_per_point,
+                pos2(right, bottom) / pixels_per_point,
+            ),
+            size: [(right - left) as u32, (bottom - top) as u32],
+        }
+    }
+}
+
+/// What the canvas works with.
+pub(super) struct Stage<'a> {
+    /// The look; camera and lights may be changed by the mouse.
+    pub settings: &'a mut Settings,
+    /// The renderer's side.
+    pub viewport: &'a mut Viewport,
+    /// The handles of the lights.
+    pub handles: &'a mut LightHandles,
+    /// The light whose handle is marked.
+    pub selected_light: &'a mut usize,
+    /// Of the open volume, in scene units; `None` without a volume.
+    pub support_radius: Option<f64>,
+}
+
+/// Shows the picture and everything that is done with the mouse on it.
+pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), GpuError>) {
+    let Stage { settings, viewport, handles, selected_light, support_radius } = stage;
+    let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
+    let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
+    ui.painter().rect_filled(canvas.rect, 0.0, theme::STAGE);
+    let Some(support_radius) = support_radius else { return (canvas, Ok(())) };
+    orbit::navigate(
+        ui,
+        &response,
+        &mut settings.camera,
+        f64::from(canvas.rect.height()),
+        !handles.takes_wheel,
+    );
+    // Painted first, filled in when the lights have been moved: no frame of delay.
+    let picture = ui.painter().add(Shape::Noop);
+    handles.show(ui, canvas.rect, settings, support_radius, selected_light);
+    settings.sanitise();
+    let result =
+        if canvas.size.contains(&0) { Ok(()) } else { viewport.advance(settings, canvas.size, ui.ctx()) };
+    if let Some(texture) = viewport.texture() {
+        let mut mesh = Mesh::with_texture(texture);
+        let whole = Rect::from_min_size(Pos2::ZERO, Vec2::splat(1.0));
+        mesh.add_rect_with_uv(canvas.rect, whole, Color32::WHITE);
+        ui.painter().set(picture, mesh);
+    }
+    (canvas, result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_canvas_lies_on_the_pixel_grid() {
+        for pixels_per_point in [1.0f32, 1.25, 1.5, 1.75, 2.0, 3.0] {
+            let rect = Rect::from_min_max(pos2(0.3, 23.7), pos2(701.1, 555.5));
+            let canvas = Canvas::within(rect, pixels_per_point);
+            for edge in [canvas.rect.min.x, canvas.rect.min.y, canvas.rect.max.x, canvas.rect.max.y] {
+                let pixel = edge * pixels_per_point;
+                assert!((pixel - pixel.round()).abs() < 1e-3, "{pixel} at {pixels_per_point}");
+            }
+            let width = canvas.rect.width() * pixels_per_point;
+            assert!((width - canvas.size[0] as f32).abs() < 1e-3);
+        }
+        assert_eq!(Canvas::within(Rect::from_min_max(pos2(5.0, 5.0), pos2(4.0, 5.0)), 1.0).size, [0, 0]);
+    }
+}

@@ -1,0 +1,192 @@
+//! Carries out commands and takes in what threads have finished.
+
+use std::path::Path;
+
+use eframe::egui;
+
+use super::commands::Command;
+use super::files::{self, Purpose};
+use super::history::History;
+use super::loader::{Opened, Outcome};
+use super::volume_facts::VolumeFacts;
+use super::work::Work;
+use super::{App, export, panels};
+use crate::gpu::{GpuError, Renderer};
+use crate::model::auto;
+
+impl App {
+    /// Does what the user asked for.
+    pub(super) fn execute(&mut self, command: Command, frame: &eframe::Frame, ctx: &egui::Context) {
+        match command {
+            Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
+            Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
+            Command::Open(source) => self.open(&source, ctx),
+            Command::CancelOpening => self.loader.cancel(),
+            Command::SaveSettings => match self.session.clone() {
+                Some(path) => self.save_settings(&path),
+                None => self.files.ask(Purpose::SaveSettings, frame, ctx),
+            },
+            Command::LoadSettings => self.files.ask(Purpose::LoadSettings, frame, ctx),
+            Command::Export => self.export.open(self.viewport_size()),
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::Undo => self.history.undo(&mut self.settings),
+            Command::Redo => self.history.redo(&mut self.settings),
+            Command::ResetView => self.settings.camera = self.defaults.camera.clone(),
+            Command::AddLight => {
+                if let Some(index) = panels::add_light(&mut self.settings) {
+                    self.selected_light = index;
+                }
+            }
+            Command::AutomaticTransfer => {
+                if let (Some((volume, _)), Some(facts)) = (self.viewport.volume(), &self.volume) {
+                    self.settings.transfer = auto::transfer(&volume, &facts.histogram);
+                }
+            }
+            Command::Balance => self.start_balance(ctx),
+            Command::ToggleSide => self.side_open ^= true,
+            Command::ToggleHandles => self.handles.hidden ^= true,
+            Command::ShowHelp => self.help.keys = true,
+            Command::ShowAbout => self.help.about = true,
+        }
+        ctx.request_repaint();
+    }
+
+    /// Takes in what threads have finished.
+    pub(super) fn collect(&mut self, ctx: &egui::Context) {
+        match self.loader.take() {
+            None => {}
+            Some(Outcome::Opened(opened)) => self.take_in(*opened, ctx),
+            Some(Outcome::Cancelled) => self.messages.note("Opening was cancelled"),
+            Some(Outcome::Failed { short, details }) => self.messages.error(short, details),
+        }
+        if let Some(result) = self.balance.as_ref().and_then(Work::take) {
+            self.balance = None;
+            match result {
+                Ok(Ok(balance)) => {
+                    self.settings.shadows.balance = balance;
+                    self.settings.sanitise();
+                }
+                Ok(Err(err)) => self.messages.error("the balance could not be measured", err.to_string()),
+                Err(panic) => self.messages.error("the balance could not be measured", panic),
+            }
+        }
+        match self.export.take() {
+            None => {}
+            Some(Ok(path)) => self.messages.note(format!("Exported {}", path.display())),
+            Some(Err(err)) => self.messages.error("the picture was not exported", err),
+        }
+        if let Some((purpose, path)) = self.files.take() {
+            self.chosen(purpose, &path, ctx);
+        }
+    }
+
+    /// The windows over the picture.
+    pub(super) fn windows(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
+        if let Some((purpose, path)) = self.files.ui(ctx) {
+            self.chosen(purpose, &path, ctx);
+        }
+        match self.export.ui(ctx, self.viewport_size()) {
+            None => {}
+            Some(export::Request::Choose) => self.files.ask(Purpose::ExportPicture, frame, ctx),
+            Some(export::Request::Export) => self.start_export(ctx),
+        }
+    }
+
+    fn viewport_size(&self) -> [u32; 2] {
+        self.canvas.map_or([1280, 720], |canvas| canvas.size.map(|n| n.max(1)))
+    }
+
+    /// A file was chosen or typed.
+    fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
+        match purpose {
+            Purpose::OpenVolume => self.open(&path.display().to_string(), ctx),
+            Purpose::ExportPicture => self.export.set_path(path),
+            Purpose::SaveSettings => self.save_settings(path),
+            Purpose::LoadSettings => self.load_settings(path),
+        }
+    }
+
+    fn save_settings(&mut self, path: &Path) {
+        match files::save_settings(path, &self.settings) {
+            Ok(()) => self.messages.note(format!("Saved {}", path.display())),
+            Err(err) => self.messages.error("the settings were not saved", err),
+        }
+    }
+
+    fn load_settings(&mut self, path: &Path) {
+        match files::load_settings(path, &self.settings) {
+            Ok((settings, warnings)) => {
+                self.settings = settings;
+                if !warnings.is_empty() {
+                    self.messages.note(warnings.join("; "));
+                }
+            }
+            Err(err) => self.messages.error("the settings were not loaded", err),
+        }
+    }
+
+    /// A volume is ready: it replaces the one before.
+    fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
+        let Opened { source, volume, bricks, histogram, renderer, settings } = opened;
+        self.messages.clear();
+        self.defaults = settings.clone();
+        self.settings = settings;
+        // Session and command line speak of the first volume.
+        if std::mem::take(&mut self.session_is_due)
+            && let Some(path) = self.session.clone().filter(|path| path.exists())
+        {
+            self.load_settings(&path);
+        }
+        if let Some(adjust) = self.adjust.take() {
+            self.settings = adjust(std::mem::take(&mut self.settings));
+            self.settings.sanitise();
+        }
+        self.volume = Some(VolumeFacts::of(source, &volume, histogram));
+        self.viewport.set_scene(renderer, volume, bricks);
+        self.history = History::default();
+        self.selected_light = 0;
+        let name = self.volume_name().unwrap_or_default();
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{name} – Chiaroscuro")));
+    }
+
+    fn start_balance(&mut self, ctx: &egui::Context) {
+        let Some((volume, bricks)) = self.viewport.volume().filter(|_| self.balance.is_none()) else {
+            return;
+        };
+        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
+        let task = move || {
+            let mut renderer = Renderer::new(&context.sibling()?)?;
+            crate::gpu::balance(&mut renderer, &volume, &bricks, &settings)
+        };
+        match Work::start("balance", ctx, task) {
+            Ok(work) => self.balance = Some(work),
+            Err(err) => self.messages.error("the balance could not be measured", err.to_string()),
+        }
+    }
+
+    pub(super) fn start_export(&mut self, ctx: &egui::Context) {
+        let Some((volume, bricks)) = self.viewport.volume() else {
+            self.messages.note("There is no picture to export yet");
+            return;
+        };
+        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
+        if let Err(err) = self.export.start(export::Subject { context, volume, bricks, settings }, ctx) {
+            self.messages.error("the picture was not exported", err);
+        }
+    }
+
+    /// The renderer gave up on something. When the device is gone, the settings are made safe.
+    pub(super) fn rendering_failed(&mut self, err: &GpuError) {
+        if !self.viewport.is_lost() {
+            self.messages.error("the picture could not be rendered", err.to_string());
+            return;
+        }
+        let path =
+            self.session.clone().unwrap_or_else(|| std::env::temp_dir().join("chiaroscuro-rescued.json"));
+        let rescue = match files::save_settings(&path, &self.settings) {
+            Ok(()) => format!("the settings were saved to {}", path.display()),
+            Err(failure) => format!("the settings could not be saved: {failure}"),
+        };
+        self.messages.error("the graphics device was lost; start again to go on", format!("{err}; {rescue}"));
+    }
+}

@@ -1,0 +1,174 @@
+//! Files: dialogs on threads, the window for typing a path, dropped files, settings.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+
+use super::work::Work;
+use crate::model::{Settings, load_json, to_json};
+
+/// What a dialog is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// A volume to open.
+    OpenVolume,
+    /// Settings to apply.
+    LoadSettings,
+    /// Where to save settings.
+    SaveSettings,
+    /// Where to export a picture.
+    ExportPicture,
+}
+
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Self::OpenVolume => "Open volume",
+            Self::LoadSettings => "Load settings",
+            Self::SaveSettings => "Save settings",
+            Self::ExportPicture => "Export picture",
+        }
+    }
+
+    fn hint(self) -> &'static str {
+        match self {
+            Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
+            Self::LoadSettings | Self::SaveSettings => "a .json file",
+            Self::ExportPicture => "a .png file",
+        }
+    }
+}
+
+/// A dialog that closes sooner than this was never open: there is no desktop portal.
+const NO_DIALOG: Duration = Duration::from_millis(400);
+
+#[derive(Debug)]
+struct Dialog {
+    purpose: Purpose,
+    started: Instant,
+    work: Work<Option<PathBuf>>,
+}
+
+/// The typed-path window.
+#[derive(Debug)]
+struct Typed {
+    purpose: Purpose,
+    text: String,
+    focus: bool,
+}
+
+/// Dialogs that are open.
+#[derive(Debug, Default)]
+pub(super) struct Files {
+    dialog: Option<Dialog>,
+    typed: Option<Typed>,
+}
+
+impl Files {
+    /// Opens the desktop's file dialog; without one, the window for typing a path.
+    pub(super) fn ask(&mut self, purpose: Purpose, frame: &eframe::Frame, ctx: &egui::Context) {
+        if self.dialog.is_some() {
+            return;
+        }
+        let dialog = rfd::AsyncFileDialog::new().set_title(purpose.title()).set_parent(frame);
+        type Pending = std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
+        let pending: Pending = match purpose {
+            Purpose::OpenVolume => {
+                let filters = ["nrrd", "nhdr", "raw", "gz"];
+                Box::pin(dialog.add_filter("Volumes", &filters).add_filter("All files", &["*"]).pick_file())
+            }
+            Purpose::LoadSettings => Box::pin(dialog.add_filter("Settings", &["json"]).pick_file()),
+            Purpose::SaveSettings => {
+                Box::pin(dialog.add_filter("Settings", &["json"]).set_file_name("settings.json").save_file())
+            }
+            Purpose::ExportPicture => {
+                Box::pin(dialog.add_filter("PNG picture", &["png"]).set_file_name("picture.png").save_file())
+            }
+        };
+        let task = move || pollster::block_on(pending).map(|file| file.path().to_owned());
+        match Work::start("file-dialog", ctx, task) {
+            Ok(work) => self.dialog = Some(Dialog { purpose, started: Instant::now(), work }),
+            Err(err) => {
+                log::warn!("no file dialog: {err}");
+                self.type_path(purpose);
+            }
+        }
+    }
+
+    /// Opens the window for typing a path.
+    pub(super) fn type_path(&mut self, purpose: Purpose) {
+        self.typed = Some(Typed { purpose, text: String::new(), focus: true });
+    }
+
+    /// What the user chose, once.
+    pub(super) fn take(&mut self) -> Option<(Purpose, PathBuf)> {
+        let dialog = self.dialog.as_ref()?;
+        let chosen = dialog.work.take()?;
+        let (purpose, quick) = (dialog.purpose, dialog.started.elapsed() < NO_DIALOG);
+        self.dialog = None;
+        match chosen {
+            Ok(Some(path)) => return Some((purpose, path)),
+            Ok(None) if !quick => {}
+            Ok(None) => self.type_path(purpose),
+            Err(panic) => {
+                log::warn!("the file dialog failed: {panic}");
+                self.type_path(purpose);
+            }
+        }
+        None
+    }
+
+    /// Shows the window for typing a path, if it is open. Gives what was typed.
+    pub(super) fn ui(&mut self, ctx: &egui::Context) -> Option<(Purpose, PathBuf)> {
+        let typed = self.typed.as_mut()?;
+        let (mut open, mut accepted, mut cancelled) = (true, false, false);
+        let window =
+            egui::Window::new(typed.purpose.title()).id(egui::Id::unique("typed path")).open(&mut open);
+        window.collapsible(false).resizable(false).default_pos([140.0, 110.0]).show(ctx, |ui| {
+            ui.horizontal(|ui| {
+                let label = ui.label("Path");
+                let field = egui::TextEdit::singleline(&mut typed.text).hint_text(typed.purpose.hint());
+                let field = ui.add(field.desired_width(380.0)).labelled_by(label.id);
+                if std::mem::take(&mut typed.focus) {
+                    field.request_focus();
+                }
+                accepted = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            });
+            ui.horizontal(|ui| {
+                let verb = match typed.purpose {
+                    Purpose::OpenVolume => "Open",
+                    Purpose::LoadSettings => "Load",
+                    Purpose::SaveSettings => "Save",
+                    Purpose::ExportPicture => "Use",
+                };
+                accepted |= ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
+                cancelled = ui.button("Cancel").clicked();
+            });
+        });
+        let chosen = (accepted && !typed.text.trim().is_empty())
+            .then(|| (typed.purpose, PathBuf::from(typed.text.trim())));
+        if chosen.is_some() || cancelled || !open {
+            self.typed = None;
+        }
+        chosen
+    }
+}
+
+/// The first file that was dropped on the window.
+pub(super) fn dropped(ctx: &egui::Context) -> Option<PathBuf> {
+    ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()))
+}
+
+/// Writes settings, whole or not at all.
+pub(super) fn save_settings(path: &Path, settings: &Settings) -> Result<(), String> {
+    crate::gpu::write_atomically(path, to_json(settings).as_bytes()).map_err(|err| err.to_string())
+}
+
+/// Reads settings and lays them over others. Warnings say what was not understood.
+pub(super) fn load_settings(path: &Path, over: &Settings) -> Result<(Settings, Vec<String>), String> {
+    let shown = path.display();
+    let text = std::fs::read_to_string(path)
+        .map_err(|err| format!("could not read the settings: {err} ({shown})"))?;
+    load_json(over, &text).map_err(|err| format!("could not use the settings: {err} ({shown})"))
+}

@@ -1,0 +1,62 @@
+//! The windows "Keys and mouse" and "About".
+
+use eframe::egui;
+
+use super::commands::SHORTCUTS;
+use super::viewport::Facts;
+
+/// What the mouse does, in the picture and in the editor.
+const MOUSE: [(&str, &str); 8] = [
+    ("Drag the picture", "orbit"),
+    ("Shift-drag or middle drag", "pan"),
+    ("Wheel", "nearer or further"),
+    ("Drag a light's handle", "move the light"),
+    ("Wheel on a perspective light's handle", "its distance"),
+    ("Click in the transfer function", "add a point"),
+    ("Drag a point, or arrow keys", "move it"),
+    ("Double click, or Delete", "remove it"),
+];
+
+/// Which of the windows are open.
+#[derive(Debug, Default)]
+pub(super) struct Help {
+    /// "Keys and mouse".
+    pub keys: bool,
+    /// "About".
+    pub about: bool,
+}
+
+impl Help {
+    /// Shows the windows that are open.
+    pub(super) fn ui(&mut self, ctx: &egui::Context, facts: &Facts) {
+        let window =
+            egui::Window::new("Keys and mouse").open(&mut self.keys).resizable(false).collapsible(false);
+        window.default_pos([180.0, 60.0]).show(ctx, |ui| {
+            egui::Grid::new("keys").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
+                for (gesture, effect) in MOUSE {
+                    ui.label(gesture);
+                    ui.label(effect);
+                    ui.end_row();
+                }
+                for (shortcut, command) in &SHORTCUTS {
+                    ui.label(ctx.format_shortcut(shortcut));
+                    ui.label(command.label().trim_end_matches('…'));
+                    ui.end_row();
+                }
+            });
+        });
+        let window =
+            egui::Window::new("About Chiaroscuro").open(&mut self.about).resizable(false).collapsible(false);
+        window.default_pos([180.0, 60.0]).show(ctx, |ui| {
+            ui.strong(format!("Chiaroscuro {}", env!("CARGO_PKG_VERSION")));
+            ui.label("See the shape of volume data: true volumetric shadows by sheet-buffer splatting.");
+            ui.label("After Splatting With Shadows (Nulkar and Mueller, 2001).");
+            ui.separator();
+            ui.label(format!("Graphics adapter {}", facts.adapter));
+            ui.label(format!("Interface {}", facts.driver));
+            if facts.software {
+                ui.label("This is a software adapter: previews are coarser, the final picture is the same.");
+            }
+        });
+    }
+}

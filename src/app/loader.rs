@@ -1,0 +1,152 @@
+//! Opens volumes on a thread of their own, up to the first look.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use eframe::egui;
+
+use super::work::Work;
+use crate::data::load::{self, LoadControl, LoadOptions};
+use crate::data::{Bricks, Histogram, Volume};
+use crate::gpu::{Context, Renderer, first_look};
+use crate::model::Settings;
+
+/// Bins of the histogram that the transfer function editor shows.
+const HISTOGRAM_BINS: usize = 1024;
+
+/// A volume that is ready to be shown.
+#[derive(Debug)]
+pub(super) struct Opened {
+    /// What was asked for: a path or the name of a built-in volume.
+    pub source: String,
+    /// The voxels.
+    pub volume: Arc<Volume>,
+    /// Their bricks.
+    pub bricks: Arc<Bricks>,
+    /// Their histogram.
+    pub histogram: Histogram,
+    /// A renderer that has the volume on the GPU.
+    pub renderer: Renderer,
+    /// A first look at it.
+    pub settings: Settings,
+}
+
+/// How an attempt to open a volume ended.
+#[derive(Debug)]
+pub(super) enum Outcome {
+    /// With a volume.
+    Opened(Box<Opened>),
+    /// The user stopped it.
+    Cancelled,
+    /// With a message: what, and all that is known.
+    Failed { short: String, details: String },
+}
+
+#[derive(Debug)]
+struct Running {
+    source: String,
+    control: Arc<LoadControl>,
+    phase: Arc<AtomicU8>,
+    work: Work<Outcome>,
+}
+
+/// Opens one volume at a time; a new request replaces the one before.
+#[derive(Debug)]
+pub(super) struct Loader {
+    context: Context,
+    options: LoadOptions,
+    running: Option<Running>,
+}
+
+/// What the user is told, by phase.
+const PHASES: [&str; 4] = ["reading", "counting values", "uploading", "finding a first look"];
+
+impl Loader {
+    /// A loader that uploads to a device.
+    pub(super) fn new(context: Context, options: LoadOptions) -> Self {
+        Self { context, options, running: None }
+    }
+
+    /// Starts to open a file or a built-in volume.
+    pub(super) fn open(&mut self, source: &str, ctx: &egui::Context) -> Result<(), String> {
+        self.cancel();
+        let control = Arc::new(LoadControl::new());
+        let phase = Arc::new(AtomicU8::new(0));
+        let task = {
+            let (context, options) = (self.context.clone(), self.options.clone());
+            let (control, phase, source) = (Arc::clone(&control), Arc::clone(&phase), source.to_owned());
+            move || open(source, &context, &options, &control, &phase)
+        };
+        let work =
+            Work::start("loader", ctx, task).map_err(|err| format!("no thread for the loader: {err}"))?;
+        self.running = Some(Running { source: source.to_owned(), control, phase, work });
+        Ok(())
+    }
+
+    /// Stops opening; what is open stays.
+    pub(super) fn cancel(&self) {
+        if let Some(running) = &self.running {
+            running.control.cancel();
+        }
+    }
+
+    /// What became of it, once.
+    pub(super) fn take(&mut self) -> Option<Outcome> {
+        let running = self.running.as_ref()?;
+        let outcome = running.work.take()?.unwrap_or_else(|panic| Outcome::Failed {
+            short: format!("Opening {} failed", running.source),
+            details: format!("the loader stopped unexpectedly: {panic}"),
+        });
+        self.running = None;
+        Some(outcome)
+    }
+
+    /// What is being opened, what is being done, and how much of it is done where that is known.
+    pub(super) fn progress(&self) -> Option<(&str, &'static str, Option<f32>)> {
+        let running = self.running.as_ref()?;
+        let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
+        let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
+        Some((&running.source, PHASES[phase], fraction.map(|fraction| fraction as f32)))
+    }
+}
+
+fn open(
+    source: String,
+    context: &Context,
+    options: &LoadOptions,
+    control: &LoadControl,
+    phase: &AtomicU8,
+) -> Outcome {
+    let volume = match load::open(&source, options, control) {
+        Ok(volume) => Arc::new(volume),
+        Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
+        Err(err) => {
+            let short =
+                err.explanation().map_or_else(|| err.to_string(), |why| format!("{}: {}", why.what, why.why));
+            return Outcome::Failed { short, details: err.to_string() };
+        }
+    };
+    phase.store(1, Ordering::Relaxed);
+    let bricks = Arc::new(Bricks::of(&volume));
+    let histogram = Histogram::of(&volume, HISTOGRAM_BINS);
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    phase.store(2, Ordering::Relaxed);
+    // Beside the window's device, not on it: the first look is long work.
+    let look = context.sibling().and_then(|beside| {
+        let mut renderer = Renderer::new(&beside)?;
+        phase.store(3, Ordering::Relaxed);
+        let settings = first_look(&mut renderer, &volume, &bricks, &histogram)?;
+        Ok((Renderer::new(context)?, settings))
+    });
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    match look {
+        Ok((renderer, settings)) => {
+            Outcome::Opened(Box::new(Opened { source, volume, bricks, histogram, renderer, settings }))
+        }
+        Err(err) => Outcome::Failed { short: format!("cannot show {source}"), details: err.to_string() },
+    }
+}

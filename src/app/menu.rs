@@ -1,0 +1,108 @@
+//! The menu bar.
+
+use eframe::egui::{self, Button, ThemePreference};
+
+use super::commands::Command;
+use crate::data::synthetic;
+use crate::model::{MAX_LIGHTS, Projection, Settings};
+
+/// What the menu shows as chosen.
+pub(super) struct Menu<'a> {
+    /// The look.
+    pub settings: &'a mut Settings,
+    /// The open volume's name and size, for the middle of the bar.
+    pub title: String,
+    /// Whether there is a step back, and one forward.
+    pub undo_redo: (bool, bool),
+    /// Whether the side panel is there.
+    pub side: bool,
+    /// Whether the handles are there.
+    pub handles: bool,
+    /// What the user asks for.
+    pub commands: &'a mut Vec<Command>,
+}
+
+/// Shows the bar.
+pub(super) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    egui::Panel::top("menu").resizable(false).show(ui, |ui| {
+        egui::MenuBar::new().ui(ui, |ui| {
+            ui.menu_button("File", |ui| file(ui, menu));
+            ui.menu_button("Edit", |ui| {
+                let (undo, redo) = menu.undo_redo;
+                item(ui, menu, Command::Undo, undo);
+                item(ui, menu, Command::Redo, redo);
+            });
+            ui.menu_button("View", |ui| view(ui, menu));
+            ui.menu_button("Light", |ui| light(ui, menu));
+            ui.menu_button("Help", |ui| {
+                item(ui, menu, Command::ShowHelp, true);
+                item(ui, menu, Command::ShowAbout, true);
+            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.add(egui::Label::new(egui::RichText::new(&menu.title).weak()).truncate());
+            });
+        });
+    });
+}
+
+fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool) {
+    let button = Button::new(command.label()).shortcut_text(command.shortcut_text(ui.ctx()));
+    if ui.add_enabled(enabled, button).clicked() {
+        menu.commands.push(command);
+    }
+}
+
+fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    item(ui, menu, Command::OpenDialog, true);
+    item(ui, menu, Command::OpenPath, true);
+    ui.menu_button("Open built-in", |ui| {
+        for name in synthetic::NAMES {
+            if ui.button(name).clicked() {
+                menu.commands.push(Command::Open(format!("builtin:{name}")));
+            }
+        }
+    });
+    ui.separator();
+    item(ui, menu, Command::SaveSettings, true);
+    item(ui, menu, Command::LoadSettings, true);
+    ui.separator();
+    item(ui, menu, Command::Export, true);
+    ui.separator();
+    item(ui, menu, Command::Quit, true);
+}
+
+fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    item(ui, menu, Command::ResetView, true);
+    ui.separator();
+    let projection = &mut menu.settings.camera.projection;
+    ui.radio_value(projection, Projection::Perspective, "Perspective");
+    ui.radio_value(projection, Projection::Orthographic, "Orthographic");
+    ui.separator();
+    for (command, mut shown) in [(Command::ToggleSide, menu.side), (Command::ToggleHandles, menu.handles)] {
+        let label = format!("{} ({})", command.label(), command.shortcut_text(ui.ctx()));
+        if ui.checkbox(&mut shown, label).clicked() {
+            menu.commands.push(command);
+        }
+    }
+    ui.separator();
+    let mut theme = ui.ctx().options(|options| options.theme_preference);
+    for (choice, name) in [
+        (ThemePreference::Dark, "Dark"),
+        (ThemePreference::Light, "Light"),
+        (ThemePreference::System, "As the system"),
+    ] {
+        if ui.radio_value(&mut theme, choice, name).changed() {
+            ui.ctx().set_theme(choice);
+        }
+    }
+}
+
+fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    let room = menu.settings.lights.len() < MAX_LIGHTS;
+    item(ui, menu, Command::AddLight, room);
+    item(ui, menu, Command::Balance, true);
+    ui.separator();
+    for light in &mut menu.settings.lights {
+        ui.checkbox(&mut light.on, &light.name);
+    }
+}

@@ -1,0 +1,365 @@
+//! The window.
+//!
+//! Panels change one [`Settings`] value; the viewport turns it into a picture. Only `viewport`, the
+//! loader and the export worker know the renderer; panels see settings and read-only facts.
+
+mod canvas;
+mod commands;
+mod execute;
+mod export;
+mod files;
+mod help;
+mod history;
+mod light_handles;
+mod loader;
+mod menu;
+mod messages;
+mod orbit;
+mod panels;
+mod refine;
+mod status;
+mod status_file;
+mod theme;
+mod transfer_editor;
+mod viewport;
+mod volume_facts;
+mod work;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui;
+
+use self::canvas::{Canvas, Stage};
+use self::commands::Command;
+use self::export::Export;
+use self::files::Files;
+use self::help::Help;
+use self::history::History;
+use self::light_handles::LightHandles;
+use self::loader::Loader;
+use self::messages::Messages;
+use self::status_file::StatusFile;
+use self::transfer_editor::TransferEditor;
+use self::viewport::Viewport;
+use self::volume_facts::VolumeFacts;
+use self::work::Work;
+use crate::data::load::LoadOptions;
+use crate::gpu::{Context, GpuError, device_descriptor};
+use crate::model::Settings;
+
+/// What is opened when nothing is named.
+const DEFAULT_SOURCE: &str = "builtin:chair";
+
+/// Changes settings once.
+pub type Adjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
+
+/// What the command line says about the window.
+#[derive(Default)]
+pub struct Options {
+    /// A file or `builtin:NAME[:N]`; the built-in scene when not given.
+    pub source: Option<String>,
+    /// How files are read.
+    pub load: LoadOptions,
+    /// Where settings are saved; laid over the first look if the file exists.
+    pub session: Option<PathBuf>,
+    /// Applied to the first volume's settings, after the session.
+    pub adjust: Option<Adjustment>,
+}
+
+impl std::fmt::Debug for Options {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Options")
+            .field("source", &self.source)
+            .field("session", &self.session)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum AppError {
+    /// No device that can be used.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The window system refused.
+    #[error("the window could not be opened: {0}; a running desktop session is needed")]
+    Window(#[from] eframe::Error),
+    /// The operating system gave no thread.
+    #[error("no thread could be started: {0}")]
+    Thread(#[from] std::io::Error),
+}
+
+/// How the window's device is opened: with the limits and features that the renderer can use.
+pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
+    let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = Arc::new(device_descriptor);
+    setup
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// When there is no display or no usable graphics adapter.
+pub fn run(options: Options) -> Result<(), AppError> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Chiaroscuro")
+        .with_app_id("chiaroscuro")
+        .with_inner_size([1280.0, 800.0])
+        .with_min_inner_size([560.0, 420.0])
+        .with_icon(icon());
+    let wgpu_options =
+        eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup().into(), ..Default::default() };
+    // Without dithering the picture reaches the screen byte for byte.
+    let native = eframe::NativeOptions { viewport, wgpu_options, dithering: false, ..Default::default() };
+    eframe::run_native("Chiaroscuro", native, Box::new(|cc| Ok(Box::new(App::new(cc, options)?))))?;
+    Ok(())
+}
+
+/// A ball half in the light.
+fn icon() -> egui::IconData {
+    const SIZE: u32 = 64;
+    let texel = |i: u32| {
+        let at = |n: u32| (f64::from(n) + 0.5) / f64::from(SIZE) * 2.2 - 1.1;
+        let (x, y) = (at(i % SIZE), at(i / SIZE));
+        let depth = 1.0 - x * x - y * y;
+        if depth <= 0.0 {
+            return [0; 4];
+        }
+        let light = (0.75 * (-0.65 * x - 0.6 * y + 0.47 * depth.sqrt())).max(0.0) + 0.08;
+        [255.0, 222.0, 176.0]
+            .map(|c: f64| (c * light.min(1.0).powf(1.0 / 2.2)) as u8)
+            .into_iter()
+            .chain([255])
+            .collect::<Vec<_>>()
+            .try_into()
+            .unwrap_or([0; 4])
+    };
+    egui::IconData { rgba: (0..SIZE * SIZE).flat_map(texel).collect(), width: SIZE, height: SIZE }
+}
+
+/// The window's state.
+pub struct App {
+    settings: Settings,
+    /// The first look at the open volume: what reset buttons put back.
+    defaults: Settings,
+    volume: Option<VolumeFacts>,
+    viewport: Viewport,
+    canvas: Option<Canvas>,
+    loader: Loader,
+    balance: Option<Work<Result<f64, GpuError>>>,
+    export: Export,
+    files: Files,
+    session: Option<PathBuf>,
+    /// The session has not been laid over the first look yet.
+    session_is_due: bool,
+    adjust: Option<Adjustment>,
+    history: History,
+    handles: LightHandles,
+    editor: TransferEditor,
+    selected_light: usize,
+    side_open: bool,
+    help: Help,
+    messages: Messages,
+    status_file: StatusFile,
+}
+
+impl std::fmt::Debug for App {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("App")
+            .field("settings", &self.settings)
+            .field("volume", &self.volume)
+            .finish_non_exhaustive()
+    }
+}
+
+impl App {
+    /// Starts in a window and begins to open the first volume.
+    ///
+    /// # Errors
+    /// When the window's device cannot be used.
+    pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
+        let no_wgpu = || GpuError::Refused("the window has no wgpu device".to_owned());
+        let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
+        let context = Context::new(&paint.adapter, paint.device.clone(), paint.queue.clone())?;
+        theme::apply(&cc.egui_ctx);
+        let Options { source, load, session, adjust } = options;
+        let mut app = Self {
+            settings: Settings::default(),
+            defaults: Settings::default(),
+            volume: None,
+            viewport: Viewport::new(context.clone(), paint, &cc.egui_ctx)?,
+            canvas: None,
+            loader: Loader::new(context, load),
+            balance: None,
+            export: Export::default(),
+            files: Files::default(),
+            session_is_due: session.is_some(),
+            session,
+            adjust,
+            history: History::default(),
+            handles: LightHandles::default(),
+            editor: TransferEditor::default(),
+            selected_light: 0,
+            side_open: true,
+            help: Help::default(),
+            messages: Messages::default(),
+            status_file: StatusFile::from_environment(),
+        };
+        app.open(source.as_deref().unwrap_or(DEFAULT_SOURCE), &cc.egui_ctx);
+        Ok(app)
+    }
+
+    /// The look as it is now.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
+    pub fn is_idle(&self) -> bool {
+        self.loader.progress().is_none() && self.viewport.is_idle(&self.settings)
+    }
+
+    /// Where the picture is, in points, and its size in physical pixels.
+    pub fn viewport_rect(&self) -> Option<(egui::Rect, [u32; 2])> {
+        self.canvas.map(|canvas| (canvas.rect, canvas.size))
+    }
+
+    /// Where the handles of the lights that are on are, in points.
+    pub fn light_handle_positions(&self) -> &[egui::Pos2] {
+        self.handles.positions()
+    }
+
+    /// How often light volumes were filled for this volume.
+    pub fn light_rebuilds(&self) -> u64 {
+        self.viewport.facts(&self.settings).light_rebuilds
+    }
+
+    /// Name of the open volume.
+    pub fn volume_name(&self) -> Option<&str> {
+        self.volume.as_ref().map(|volume| volume.name.as_str())
+    }
+
+    /// What went wrong since the volume was opened.
+    pub fn errors(&self) -> &[String] {
+        self.messages.errors()
+    }
+
+    /// Opens a file or a built-in volume; what is open stays until it is there.
+    pub fn open(&mut self, source: &str, ctx: &egui::Context) {
+        if let Err(err) = self.loader.open(source, ctx) {
+            self.messages.error("cannot open", err);
+        }
+    }
+
+    /// Exports the picture as the export window does.
+    pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
+        self.export.set_size(size);
+        self.export.set_path(path);
+        self.start_export(ctx);
+    }
+
+    /// Whether a picture is being exported.
+    pub fn is_exporting(&self) -> bool {
+        self.export.is_busy()
+    }
+
+    fn title(&self) -> String {
+        let Some(volume) = &self.volume else { return String::new() };
+        let [nx, ny, nz] = volume.dims;
+        let [sx, sy, sz] = volume.spacing_mm;
+        format!("{} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3} mm", volume.name)
+    }
+
+    /// The panels around the picture.
+    fn surroundings(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        let title = self.title();
+        let undo_redo = (self.history.can_undo(&self.settings), self.history.can_redo(&self.settings));
+        let (side, handles) = (self.side_open, !self.handles.hidden);
+        menu::show(
+            ui,
+            &mut menu::Menu { settings: &mut self.settings, title, undo_redo, side, handles, commands },
+        );
+        let facts = self.viewport.facts(&self.settings);
+        status::show(ui, &facts, self.loader.progress(), commands);
+        self.messages.ui(ui);
+        if let Some(volume) = &self.volume {
+            let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
+            panel.size_range(90.0..=420.0).show(ui, |ui| {
+                self.editor.ui(ui, &mut self.settings, volume, commands);
+            });
+        }
+        let panel = egui::Panel::right("side").resizable(false).exact_size(theme::SIDE_WIDTH);
+        panel.show_collapsible(ui, &mut self.side_open, |ui| {
+            panels::show(
+                ui,
+                &mut panels::Panels {
+                    settings: &mut self.settings,
+                    defaults: &self.defaults,
+                    volume: self.volume.as_ref(),
+                    selected_light: &mut self.selected_light,
+                    balancing: self.balance.is_some(),
+                    commands,
+                },
+            );
+        });
+        self.help.ui(ui.ctx(), &facts);
+    }
+
+    /// The picture.
+    fn picture(&mut self, ui: &mut egui::Ui) {
+        let stage = Stage {
+            settings: &mut self.settings,
+            viewport: &mut self.viewport,
+            handles: &mut self.handles,
+            selected_light: &mut self.selected_light,
+            support_radius: self.volume.as_ref().map(|volume| volume.scene.support_radius()),
+        };
+        let shown = egui::CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, stage));
+        let (canvas, result) = shown.inner;
+        self.canvas = Some(canvas);
+        if let Err(err) = result {
+            self.rendering_failed(&err);
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.collect(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        let mut commands = Vec::new();
+        if let Some(path) = files::dropped(&ctx) {
+            commands.push(Command::Open(path.display().to_string()));
+        }
+        self.surroundings(ui, &mut commands);
+        self.picture(ui);
+        commands::from_keys(&ctx, &mut commands);
+        self.windows(frame, &ctx);
+        self.history.observe(&ctx, &self.settings);
+        for command in commands {
+            self.execute(command, frame, &ctx);
+        }
+        let state = status_file::State {
+            loading: self.loader.progress().is_some(),
+            idle: self.is_idle(),
+            canvas: self.canvas.filter(|_| self.volume.is_some()),
+            handles: self.handles.positions(),
+            light_rebuilds: self.light_rebuilds(),
+            errors: self.messages.errors(),
+            pixels_per_point: ctx.pixels_per_point(),
+        };
+        self.status_file.update(&state);
+        if self.loader.progress().is_some() {
+            // The progress bar moves.
+            ctx.request_repaint_after(std::time::Duration::from_millis(100));
+        }
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::STAGE.to_normalized_gamma_f32()
+    }
+}

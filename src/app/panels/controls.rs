@@ -1,0 +1,154 @@
+//! The rows of the side panel: label, control with typed value and unit, reset.
+
+use std::ops::RangeInclusive;
+
+use eframe::egui::{self, Align, Layout, Response, Slider, Ui, Vec2};
+
+use super::super::theme;
+
+/// A number with a slider.
+#[derive(Debug, Clone)]
+pub(super) struct Number {
+    label: &'static str,
+    tip: &'static str,
+    range: RangeInclusive<f64>,
+    unit: &'static str,
+    log: bool,
+    decimals: usize,
+}
+
+impl Number {
+    /// A slider over a range.
+    pub(super) fn new(label: &'static str, range: RangeInclusive<f64>, tip: &'static str) -> Self {
+        Self { label, tip, range, unit: "", log: false, decimals: 2 }
+    }
+
+    /// Behind the number.
+    pub(super) fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    /// Equal ratios have equal lengths.
+    pub(super) fn log(mut self) -> Self {
+        self.log = true;
+        self
+    }
+
+    /// Digits behind the point.
+    pub(super) fn decimals(mut self, decimals: usize) -> Self {
+        self.decimals = decimals;
+        self
+    }
+
+    /// Shows the row. `default`: what the reset button puts back.
+    pub(super) fn show(self, ui: &mut Ui, value: &mut f64, default: f64) -> Response {
+        let Self { label, tip, range, unit, log, decimals } = self;
+        row(ui, label, tip, |ui| {
+            let spacing = ui.spacing().item_spacing.x;
+            let room = ui.available_width() - theme::VALUE_WIDTH - theme::RESET_WIDTH - 3.0 * spacing;
+            ui.spacing_mut().slider_width = room.max(30.0);
+            ui.spacing_mut().interact_size.x = theme::VALUE_WIDTH;
+            let slider = Slider::new(value, range).suffix(unit).logarithmic(log).max_decimals(decimals);
+            // Settings from files may lie beyond the slider: they stay until the user moves it.
+            let slider = slider.clamping(egui::SliderClamping::Edits);
+            let response = ui.name_inputs(label, |ui| ui.add(slider)).on_hover_text(tip);
+            if reset(ui, label, (*value - default).abs() > 1e-9) || response.double_clicked() {
+                *value = default;
+            }
+            response
+        })
+    }
+}
+
+/// A row: a label of the usual width, then what `add` shows.
+pub(super) fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.horizontal(|ui| {
+        let size = Vec2::new(theme::LABEL_WIDTH, ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(theme::LABEL_WIDTH);
+            ui.add(egui::Label::new(label).truncate().selectable(false)).on_hover_text(tip);
+        });
+        add(ui)
+    })
+    .inner
+}
+
+/// The button that puts a value back; it is there only when there is something to put back.
+fn reset(ui: &mut Ui, label: &str, differs: bool) -> bool {
+    let size = Vec2::new(theme::RESET_WIDTH, ui.spacing().interact_size.y);
+    if !differs {
+        ui.allocate_exact_size(size, egui::Sense::hover());
+        return false;
+    }
+    let (area, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Reset {label}")));
+    let lit = response.hovered() || response.has_focus();
+    let ink = if lit { theme::ACCENT } else { ui.visuals().weak_text_color() };
+    circular_arrow(ui, area.center(), ink);
+    response.on_hover_text(format!("Reset {}", label.to_lowercase())).clicked()
+}
+
+/// Three quarters of a circle with an arrowhead, turning back.
+fn circular_arrow(ui: &Ui, middle: egui::Pos2, ink: egui::Color32) {
+    const RADIUS: f32 = 4.5;
+    let at = |turn: f32, radius: f32| middle + radius * Vec2::angled(turn * std::f32::consts::TAU);
+    let arc: Vec<egui::Pos2> = (0..=18).map(|i| at(-0.2 + 0.75 * i as f32 / 18.0, RADIUS)).collect();
+    ui.painter().line(arc, egui::Stroke::new(1.4, ink));
+    let tip = at(-0.32, RADIUS);
+    let head = vec![tip, at(-0.2, RADIUS + 3.0), at(-0.2, RADIUS - 3.0)];
+    ui.painter().add(egui::Shape::convex_polygon(head, ink, egui::Stroke::NONE));
+}
+
+/// One of a few values, side by side.
+pub(super) fn choice<T: PartialEq + Copy>(
+    ui: &mut Ui,
+    label: &str,
+    tip: &str,
+    value: &mut T,
+    options: &[(T, &str, &str)],
+) -> bool {
+    row(ui, label, tip, |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let mut changed = false;
+        for (option, name, option_tip) in options {
+            let response = ui.selectable_label(value == option, *name).on_hover_text(*option_tip);
+            if response.clicked() && value != option {
+                *value = *option;
+                changed = true;
+            }
+        }
+        changed
+    })
+}
+
+/// A switch.
+pub(super) fn switch(ui: &mut Ui, label: &'static str, tip: &str, value: &mut bool) -> Response {
+    ui.checkbox(value, label).on_hover_text(tip)
+}
+
+/// An sRGB colour, stored as the button shows it.
+pub(in crate::app) fn color(ui: &mut Ui, name: &str, srgb: &mut [f32; 3]) -> Response {
+    let mut bytes = srgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
+    let response = ui.name_inputs(name, |ui| ui.color_edit_button_srgb(&mut bytes));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColorWell, true, name));
+    if response.changed() {
+        *srgb = bytes.map(|c| f32::from(c) / 255.0);
+    }
+    response.on_hover_text(name)
+}
+
+/// A section of the panel.
+pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
+    let header = egui::CollapsingHeader::new(egui::RichText::new(title).strong());
+    header.default_open(open).show_unindented(ui, |ui| {
+        add(ui);
+        ui.add_space(4.0);
+    });
+    ui.separator();
+}
+
+/// Rarely needed things, folded away.
+pub(super) fn advanced(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
+    egui::CollapsingHeader::new("Advanced").id_salt(salt).show_unindented(ui, add);
+}

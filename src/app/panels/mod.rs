@@ -1,0 +1,45 @@
+//! The side panel. Panels see settings and read-only facts, never the renderer.
+
+mod camera;
+pub(super) mod controls;
+mod data;
+mod lights;
+mod sampling;
+mod shading;
+mod shadows;
+
+use eframe::egui;
+
+use super::commands::Command;
+use super::volume_facts::VolumeFacts;
+use crate::model::Settings;
+
+pub(super) use lights::add_light;
+
+/// What panels work with.
+pub(super) struct Panels<'a> {
+    /// The look.
+    pub settings: &'a mut Settings,
+    /// What reset buttons put back.
+    pub defaults: &'a Settings,
+    /// The open volume.
+    pub volume: Option<&'a VolumeFacts>,
+    /// The light whose handle is marked.
+    pub selected_light: &'a mut usize,
+    /// A balance is being measured.
+    pub balancing: bool,
+    /// What the user asks for.
+    pub commands: &'a mut Vec<Command>,
+}
+
+/// Shows all sections, in the order in which people work.
+pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(2.0);
+        controls::section(ui, "Lights", true, |ui| lights::show(ui, panels));
+        controls::section(ui, "Shadows", true, |ui| shadows::show(ui, panels));
+        controls::section(ui, "Shading", false, |ui| shading::show(ui, panels));
+        controls::section(ui, "Camera", false, |ui| camera::show(ui, panels));
+        controls::section(ui, "Data", false, |ui| data::show(ui, panels));
+    });
+}

@@ -1,0 +1,39 @@
+//! Kernel, slab and quadrature: the same rows for the light's and for the eye's pass.
+
+use eframe::egui::Ui;
+
+use super::controls::{Number, choice};
+use crate::model::{Kernel, Quadrature};
+
+/// σ where a Gaussian is chosen anew.
+const SIGMA: f64 = 0.6;
+
+/// Shows the three rows.
+pub(super) fn show(ui: &mut Ui, kernel: &mut Kernel, slab: &mut f64, quadrature: &mut Quadrature) {
+    let sigma = if let Kernel::Gaussian { sigma } = kernel { *sigma } else { SIGMA };
+    let kernels = [
+        (Kernel::BSpline, "B-spline", "The default: smooth, an exact partition of unity"),
+        (
+            Kernel::Gaussian { sigma },
+            "Gaussian",
+            "Of a width of your choice: narrower is sharper and lets more light pass",
+        ),
+        (
+            Kernel::Prefiltered,
+            "Quick",
+            "The volume blurred once, then one look-up: several times faster, nearly the same",
+        ),
+    ];
+    choice(ui, "Kernel", "How a voxel is spread over the sheets", kernel, &kernels);
+    if let Kernel::Gaussian { sigma } = kernel {
+        let tip = "Width of the Gaussian; smaller ones are sharper and brighten dark interiors";
+        Number::new("Sigma", 0.4..=0.8, tip).unit(" vox").show(ui, sigma, SIGMA);
+    }
+    let tip = "Thickness of a sheet in edges of the smallest voxel; thinner is slower and more exact";
+    Number::new("Slab", 0.25..=2.0, tip).unit(" vox").show(ui, slab, 1.0);
+    let quadratures = [
+        (Quadrature::One, "1 point", "The middle of every slab: fast"),
+        (Quadrature::Two, "2 points", "Twice the work; for export and comparison"),
+    ];
+    choice(ui, "Quadrature", "Samples per slab along the ray", quadrature, &quadratures);
+}

@@ -1,0 +1,340 @@
+//! The resolution controller: how coarse a preview must be to keep up with the user.
+//!
+//! Pure arithmetic. It predicts milliseconds from what earlier batches took and chooses the finest
+//! look that fits the frame budget; the viewport carries it out.
+
+use crate::model::{Kernel, Resolution, Settings};
+
+/// Milliseconds per frame while something moves.
+const BUDGET_MS: f64 = 33.0;
+/// The same on a software adapter.
+const SOFTWARE_BUDGET_MS: f64 = 66.0;
+/// Milliseconds that one batch of a refinement may take on the GPU.
+const BATCH_MS: f64 = 30.0;
+/// A change of settings this long ago (seconds) is over: time to refine.
+pub(super) const REST_S: f64 = 0.15;
+
+/// How a request is rendered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Look {
+    /// Window pixels per rendered pixel along an axis.
+    pub scale: u32,
+    /// For light volumes that are not there yet.
+    pub coarse: Option<Resolution>,
+    /// Eye pass with the prefiltered kernel.
+    pub quick_eye: bool,
+    /// Light pass with the prefiltered kernel.
+    pub quick_light: bool,
+}
+
+impl Look {
+    /// What exports show too.
+    pub(super) const FULL: Self = Self { scale: 1, coarse: None, quick_eye: false, quick_light: false };
+
+    /// Pixels to be rendered for a viewport.
+    pub(super) fn size(self, viewport: [u32; 2]) -> [u32; 2] {
+        viewport.map(|n| n.div_ceil(self.scale).max(1))
+    }
+
+    /// The settings to be rendered for the wanted ones.
+    pub(super) fn settings(self, wanted: &Settings) -> Settings {
+        let mut settings = wanted.clone();
+        if self.quick_eye {
+            settings.sampling.kernel = Kernel::Prefiltered;
+        }
+        if self.quick_light {
+            settings.shadows.kernel = Kernel::Prefiltered;
+        }
+        settings
+    }
+}
+
+/// The kinds of steps that cost differently.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cost {
+    /// Uploads and such, by step.
+    Other,
+    /// Light pass, by step.
+    Light(Look),
+    /// Eye pass, by pixel.
+    Eye(Look),
+}
+
+/// Light volumes that a request needs and that are not there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Missing {
+    /// How many must be filled.
+    pub count: usize,
+    /// Whether others can be used as they are.
+    pub others: bool,
+}
+
+/// A running estimate, which the first measurement replaces.
+#[derive(Debug, Clone, Copy)]
+struct Estimate {
+    ms: f64,
+    measured: bool,
+}
+
+impl Estimate {
+    const fn guess(ms: f64) -> Self {
+        Self { ms, measured: false }
+    }
+
+    fn scale(&mut self, factor: f64) {
+        let factor = factor.clamp(0.02, 50.0);
+        // Halfway in the logarithm: a hiccup does not decide, a trend does.
+        self.ms = (self.ms * if self.measured { factor.sqrt() } else { factor }).clamp(1e-9, 1e5);
+        self.measured = true;
+    }
+
+    fn observe(&mut self, ms: f64) {
+        self.scale(ms / self.ms);
+    }
+
+    /// Up at once, down slowly: the empty rows above an object say nothing about the object.
+    fn bound(&mut self, factor: f64) {
+        self.ms = (self.ms * factor.clamp(0.7, 50.0)).clamp(1e-9, 1e5);
+        self.measured = true;
+    }
+}
+
+/// Learns what things cost here.
+#[derive(Debug, Clone)]
+pub(super) struct Refine {
+    software: bool,
+    other_step: Estimate,
+    /// By resolution and by quick kernel.
+    light_step: [[Estimate; 2]; 3],
+    light_build: [[Estimate; 2]; 3],
+    /// Milliseconds per pixel of whole pictures: exact and quick, by scale. Neighbouring rays share
+    /// less of what they read in small pictures, whose pixels cost more.
+    eye_pixel: [[Estimate; 3]; 2],
+    /// Exact and quick: a first picture was seen, whose time was that of compiling, too.
+    warm: [bool; 2],
+    /// The same for the rows that cost most at full quality, which decides how many fit in a batch.
+    eye_busy_pixel: Estimate,
+}
+
+fn resolution_index(coarse: Option<Resolution>) -> usize {
+    match coarse.unwrap_or(Resolution::Full) {
+        Resolution::Full => 0,
+        Resolution::Half => 1,
+        Resolution::Quarter => 2,
+    }
+}
+
+fn scale_index(scale: u32) -> usize {
+    scale.ilog2().min(2) as usize
+}
+
+impl Refine {
+    /// Cautious guesses for an adapter.
+    pub(super) fn new(software: bool) -> Self {
+        let slow = if software { 20.0 } else { 1.0 };
+        let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
+        Self {
+            software,
+            other_step: Estimate::guess(10.0),
+            light_step: [build(2.0), build(0.5), build(0.2)],
+            light_build: [build(400.0), build(60.0), build(10.0)],
+            eye_pixel: [[1.0, 1.5, 2.3], [0.4, 0.6, 0.9]]
+                .map(|row| row.map(|ms| Estimate::guess(ms * slow * 2e-5))),
+            warm: [false; 2],
+            eye_busy_pixel: Estimate::guess(slow * 5e-5),
+        }
+    }
+
+    /// Milliseconds per frame while something moves.
+    fn budget_ms(&self) -> f64 {
+        if self.software { SOFTWARE_BUDGET_MS } else { BUDGET_MS }
+    }
+
+    /// Milliseconds that a batch may take. A preview that fits in a frame is not cut up: every batch
+    /// costs a frame of the window.
+    pub(super) fn batch_ms(&self, look: Look) -> f64 {
+        if look == Look::FULL { BATCH_MS } else { 1.5 * self.budget_ms() }
+    }
+
+    /// Milliseconds that one step (or pixel) is expected to take.
+    pub(super) fn unit_ms(&self, cost: Cost) -> f64 {
+        match cost {
+            Cost::Other => self.other_step.ms,
+            Cost::Light(look) => {
+                self.light_step[resolution_index(look.coarse)][usize::from(look.quick_light)].ms
+            }
+            Cost::Eye(Look::FULL) => self.eye_busy_pixel.ms,
+            Cost::Eye(look) => self.eye_pixel[usize::from(look.quick_eye)][scale_index(look.scale)].ms,
+        }
+    }
+
+    /// Rows of a picture that one batch can hold.
+    pub(super) fn rows(&self, look: Look, width: u32) -> u32 {
+        let row_ms = self.unit_ms(Cost::Eye(look)) * f64::from(width);
+        // Never so few that the submissions cost more than the work.
+        ((self.batch_ms(look) / row_ms) as u32).max(4)
+    }
+
+    /// Learns from a batch: what it was made of, as predicted milliseconds, and what it took.
+    pub(super) fn learn(&mut self, parts: &[(Cost, f64)], took_ms: f64) {
+        let predicted: f64 = parts.iter().map(|part| part.1).sum();
+        if !(predicted > 0.0 && took_ms.is_finite()) {
+            return;
+        }
+        for &(cost, part) in parts {
+            // What is a small part of the batch says little about its own cost.
+            if part < 0.2 * predicted {
+                continue;
+            }
+            let factor = took_ms.max(0.05) / predicted;
+            match cost {
+                Cost::Other => self.other_step.scale(factor),
+                Cost::Light(look) => {
+                    self.light_step[resolution_index(look.coarse)][usize::from(look.quick_light)]
+                        .scale(factor);
+                }
+                Cost::Eye(Look::FULL) => self.eye_busy_pixel.bound(factor),
+                // Learnt by the whole picture.
+                Cost::Eye(_) => {}
+            }
+        }
+    }
+
+    /// Learns what the eye pass of a whole picture took.
+    pub(super) fn learn_picture(&mut self, look: Look, pixels: f64, ms: f64) {
+        let quick = usize::from(look.quick_eye);
+        let warm = std::mem::replace(&mut self.warm[quick], true);
+        if !(warm && ms.is_finite() && pixels > 0.0) {
+            return;
+        }
+        let at = scale_index(look.scale);
+        let before = self.eye_pixel[quick][at].ms;
+        self.eye_pixel[quick][at].observe(ms.max(0.05) / pixels);
+        let factor = self.eye_pixel[quick][at].ms / before;
+        // A new view or another transfer function makes pictures of all sizes cheaper or dearer.
+        for (other, estimate) in self.eye_pixel[quick].iter_mut().enumerate() {
+            if other != at {
+                estimate.ms = (estimate.ms * factor).clamp(1e-9, 1e5);
+            }
+        }
+    }
+
+    /// Learns what filling one light volume took in all.
+    pub(super) fn learn_build(&mut self, look: Look, ms: f64) {
+        let quick = usize::from(look.quick_light);
+        let at = resolution_index(look.coarse);
+        self.light_build[at][quick].observe(ms.max(0.05));
+        // A resolution that was never tried: eight times the voxels, a little less than the time.
+        for finer in (0..at).rev() {
+            if !self.light_build[finer][quick].measured {
+                self.light_build[finer][quick].ms = self.light_build[finer + 1][quick].ms * 6.0;
+            }
+        }
+    }
+
+    /// The look of a preview: the finest that keeps the frame budget.
+    pub(super) fn preview(&self, viewport: [u32; 2], missing: Missing) -> Look {
+        let budget = self.budget_ms();
+        let pixels = f64::from(viewport[0]) * f64::from(viewport[1]);
+        let quick_light = self.software && missing.count > 0 && !missing.others;
+        let (mut coarse, mut light_ms) = (None, 0.0);
+        if missing.count > 0 {
+            // Up to two thirds of the frame go to the light that moves.
+            let room = budget * 0.66;
+            for choice in [None, Some(Resolution::Half), Some(Resolution::Quarter)] {
+                coarse = choice;
+                let quick = usize::from(quick_light && choice.is_some());
+                light_ms = self.light_build[resolution_index(choice)][quick].ms * missing.count as f64;
+                if light_ms <= room {
+                    break;
+                }
+            }
+        }
+        let exact_ms = self.eye_pixel[0][0].ms * pixels;
+        if coarse.is_none() && exact_ms + light_ms <= budget {
+            return Look::FULL;
+        }
+        let quick_eye = self.software;
+        let eye = &self.eye_pixel[usize::from(quick_eye)];
+        let eye_ms = |scale: u32| eye[scale_index(scale)].ms * pixels / f64::from(scale * scale);
+        let fits = |scale: u32| eye_ms(scale) + light_ms <= budget;
+        let scale = [1, 2].into_iter().find(|&scale| fits(scale)).unwrap_or(4);
+        // A light volume of the full resolution may have been forgotten: then rather a coarse one.
+        let fallback = if self.software { Resolution::Quarter } else { Resolution::Half };
+        let quick_light = quick_light && coarse.is_some();
+        Look { scale, coarse: coarse.or((missing.count == 0).then_some(fallback)), quick_eye, quick_light }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured(software: bool, eye_ms_per_megapixel: f64, full_build_ms: f64) -> Refine {
+        let mut refine = Refine::new(software);
+        for look in [Look::FULL, Look { quick_eye: true, ..Look::FULL }] {
+            let factor = if look.quick_eye { 0.3 } else { 1.0 };
+            for _ in 0..8 {
+                refine.learn_picture(look, 1e6, eye_ms_per_megapixel * factor);
+            }
+        }
+        for (coarse, share) in
+            [(None, 1.0), (Some(Resolution::Half), 0.15), (Some(Resolution::Quarter), 0.03)]
+        {
+            refine.learn_build(Look { coarse, ..Look::FULL }, full_build_ms * share);
+            refine.learn_build(Look { coarse, quick_light: true, ..Look::FULL }, full_build_ms * share * 0.4);
+        }
+        refine
+    }
+
+    const ONE: Missing = Missing { count: 1, others: false };
+
+    #[test]
+    fn a_fast_card_previews_at_full_quality() {
+        let refine = measured(false, 2.0, 5.0);
+        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL);
+    }
+
+    #[test]
+    fn a_slow_one_goes_coarse_in_steps() {
+        let refine = measured(false, 20.0, 60.0);
+        let still = refine.preview([1000, 1000], Missing::default());
+        assert_eq!((still.scale, still.quick_eye), (1, false));
+        let moving = refine.preview([1000, 1000], ONE);
+        assert_eq!(moving.coarse, Some(Resolution::Half));
+        let software = measured(true, 600.0, 1000.0);
+        let moving = software.preview([1000, 700], ONE);
+        assert_eq!(moving.coarse, Some(Resolution::Quarter));
+        assert!(moving.quick_eye && moving.quick_light && moving.scale >= 2, "{moving:?}");
+    }
+
+    #[test]
+    fn a_usable_light_volume_keeps_its_kernel() {
+        let software = measured(true, 600.0, 1000.0);
+        assert!(!software.preview([800, 600], Missing { count: 1, others: true }).quick_light);
+        assert!(!software.preview([800, 600], Missing::default()).quick_light);
+    }
+
+    #[test]
+    fn estimates_follow_what_is_measured() {
+        let mut refine = Refine::new(true);
+        let cost = Cost::Light(Look::FULL);
+        for _ in 0..20 {
+            let predicted = refine.unit_ms(cost) * 10.0;
+            refine.learn(&[(cost, predicted)], 25.0);
+        }
+        assert!((refine.unit_ms(cost) - 2.5).abs() < 0.1);
+        let cost = Cost::Eye(Look::FULL);
+        let rows = refine.rows(Look::FULL, 1000);
+        refine.learn(&[(cost, 30.0)], 0.1);
+        let after_empty_rows = refine.rows(Look::FULL, 1000);
+        assert!(after_empty_rows > rows && after_empty_rows < 2 * rows);
+        refine.learn(&[(cost, 30.0)], 300.0);
+        assert!(
+            refine.rows(Look::FULL, 1000) <= after_empty_rows / 9,
+            "a batch that was too long is the last"
+        );
+        refine.learn(&[(cost, 1.0)], f64::INFINITY);
+        assert!(refine.unit_ms(cost).is_finite(), "a lost device teaches nothing");
+    }
+}

@@ -1,0 +1,78 @@
+//! Colours, sizes and spacing: the one place for all of them.
+
+use eframe::egui::{self, Color32, FontId, TextStyle, Theme, Vec2};
+
+/// Width of the side panel in points.
+pub(super) const SIDE_WIDTH: f32 = 316.0;
+/// Height of the transfer function editor in points.
+pub(super) const EDITOR_HEIGHT: f32 = 158.0;
+/// Width of the labels in front of the controls.
+pub(super) const LABEL_WIDTH: f32 = 106.0;
+/// Width of a typed value behind a slider.
+pub(super) const VALUE_WIDTH: f32 = 62.0;
+/// Width of the button that puts a value back.
+pub(super) const RESET_WIDTH: f32 = 16.0;
+
+/// Radius of a light's handle.
+pub(super) const HANDLE_RADIUS: f32 = 8.0;
+/// How far from the border of the picture a handle stays.
+pub(super) const HANDLE_INSET: f32 = 14.0;
+/// Radius of a control point of a transfer function.
+pub(super) const POINT_RADIUS: f32 = 5.0;
+/// Seconds that handles take to appear and to go.
+pub(super) const FADE_S: f32 = 0.25;
+
+/// What is selected or active.
+pub(super) const ACCENT: Color32 = Color32::from_rgb(0xe9, 0xae, 0x4a);
+/// The lighting curve.
+pub(super) const LIGHT_CURVE: Color32 = Color32::from_rgb(0xff, 0xc1, 0x4d);
+/// The eye's curve, over its colours.
+pub(super) const EYE_CURVE: Color32 = Color32::from_rgb(0xe8, 0xec, 0xf2);
+/// Histogram bars.
+pub(super) const HISTOGRAM: Color32 = Color32::from_rgb(0x4a, 0x52, 0x60);
+/// The two fields of the checkerboard behind colours.
+pub(super) const CHECKER: [Color32; 2] =
+    [Color32::from_rgb(0x22, 0x25, 0x2b), Color32::from_rgb(0x2b, 0x2f, 0x36)];
+/// Edge of a field of the checkerboard.
+pub(super) const CHECKER_EDGE: f32 = 8.0;
+/// Around handles and points, so that they can be told from any picture.
+pub(super) const OUTLINE: Color32 = Color32::from_rgb(0x0c, 0x0d, 0x10);
+/// Lines that help while a light is moved.
+pub(super) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
+/// Behind the picture while there is none.
+pub(super) const STAGE: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
+
+const PANEL: Color32 = Color32::from_rgb(0x1e, 0x20, 0x26);
+const WELL: Color32 = Color32::from_rgb(0x14, 0x16, 0x1a);
+const TEXT: Color32 = Color32::from_rgb(0xd4, 0xd8, 0xe0);
+const WEAK_TEXT: Color32 = Color32::from_rgb(0x98, 0xa0, 0xae);
+
+/// Gives the window its looks: dark unless the user says otherwise.
+pub(super) fn apply(ctx: &egui::Context) {
+    ctx.set_theme(egui::ThemePreference::Dark);
+    ctx.style_mut_of(Theme::Dark, |style| {
+        let visuals = &mut style.visuals;
+        visuals.panel_fill = PANEL;
+        visuals.window_fill = PANEL;
+        visuals.extreme_bg_color = WELL;
+        visuals.weak_text_color = Some(WEAK_TEXT);
+        visuals.widgets.noninteractive.fg_stroke.color = TEXT;
+        visuals.widgets.inactive.fg_stroke.color = TEXT;
+        visuals.selection.bg_fill = Color32::from_rgb(0x6a, 0x4c, 0x16);
+        visuals.selection.stroke.color = Color32::from_rgb(0xff, 0xe6, 0xb8);
+    });
+    ctx.all_styles_mut(|style| {
+        style.spacing.item_spacing = Vec2::new(6.0, 5.0);
+        style.spacing.interact_size.y = 20.0;
+        style.text_styles.insert(TextStyle::Body, FontId::proportional(13.0));
+        style.text_styles.insert(TextStyle::Button, FontId::proportional(13.0));
+        style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
+        style.visuals.slider_trailing_fill = true;
+    });
+}
+
+/// An sRGB colour of the settings for the painter.
+pub(super) fn color(srgb: [f32; 3]) -> Color32 {
+    let [r, g, b] = srgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
+    Color32::from_rgb(r, g, b)
+}

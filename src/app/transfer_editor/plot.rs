@@ -1,0 +1,250 @@
+//! What the transfer function editor paints.
+
+use eframe::egui::{
+    self, Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Response, Rgba, Shape, Stroke, Ui, Vec2, pos2,
+};
+
+use super::theme;
+use crate::data::Histogram;
+use crate::model::{Settings, TransferFunction};
+
+/// Points between two samples of a curve.
+const SAMPLE_STEP: f32 = 2.0;
+/// Room around the plot, so that points at its borders can be grabbed.
+const MARGIN: Vec2 = Vec2::new(8.0, 7.0);
+/// Even where nearly nothing is opaque the colour can be told.
+const LEAST_FILL: f32 = 0.25;
+
+/// Value and opacity as places in the window.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axes {
+    /// The whole area, with its margin.
+    pub area: Rect,
+    /// The smallest and the largest value.
+    pub range: (f64, f64),
+    plot: Rect,
+}
+
+impl Axes {
+    /// Axes over an area.
+    pub(super) fn new(area: Rect, range: (f64, f64)) -> Self {
+        // A volume with a single value still needs an axis.
+        let range = if range.1 > range.0 { range } else { (range.0, range.0 + 1.0) };
+        Self { area, range, plot: area.shrink2(MARGIN) }
+    }
+
+    /// Where a value and an opacity are.
+    pub(super) fn position(&self, value: f64, opacity: f64) -> Pos2 {
+        let x = ((value - self.range.0) / (self.range.1 - self.range.0)).clamp(0.0, 1.0) as f32;
+        pos2(
+            self.plot.min.x + x * self.plot.width(),
+            self.plot.max.y - opacity.clamp(0.0, 1.0) as f32 * self.plot.height(),
+        )
+    }
+
+    /// Value and opacity at a place, within the axes.
+    pub(super) fn values(&self, at: Pos2) -> (f64, f64) {
+        let x = f64::from(((at.x - self.plot.min.x) / self.plot.width()).clamp(0.0, 1.0));
+        let y = f64::from(((self.plot.max.y - at.y) / self.plot.height()).clamp(0.0, 1.0));
+        (self.range.0 + x * (self.range.1 - self.range.0), y)
+    }
+
+    /// Places along the value axis at which curves are sampled.
+    fn samples(&self) -> impl Iterator<Item = (f32, f64)> + use<> {
+        let Self { plot, range, .. } = *self;
+        let count = (plot.width() / SAMPLE_STEP).ceil().max(1.0) as usize;
+        (0..=count).map(move |i| {
+            let share = i as f64 / count as f64;
+            (plot.min.x + share as f32 * plot.width(), range.0 + share * (range.1 - range.0))
+        })
+    }
+
+    /// Width of the plot in points.
+    pub(super) fn width(&self) -> f32 {
+        self.plot.width()
+    }
+
+    fn y(&self, opacity: f64) -> f32 {
+        self.plot.max.y - opacity.clamp(0.0, 1.0) as f32 * self.plot.height()
+    }
+}
+
+/// Linear light as an sRGB colour of the settings.
+pub(super) fn srgb(linear: [f64; 3]) -> [f32; 3] {
+    let [r, g, b] = linear.map(|c| c as f32);
+    let color = Color32::from(Rgba::from_rgb(r, g, b));
+    [color.r(), color.g(), color.b()].map(|c| f32::from(c) / 255.0)
+}
+
+/// Two greys behind everything, so that transparency can be seen.
+pub(super) fn checkerboard(painter: &Painter, area: Rect) {
+    painter.rect_filled(area, 3.0, theme::CHECKER[0]);
+    let mut mesh = Mesh::default();
+    let edge = theme::CHECKER_EDGE;
+    let (columns, rows) = ((area.width() / edge) as usize, (area.height() / edge) as usize);
+    for row in 0..=rows {
+        for column in (row % 2..=columns).step_by(2) {
+            let min = area.min + Vec2::new(column as f32, row as f32) * edge;
+            mesh.add_colored_rect(
+                Rect::from_min_size(min, Vec2::splat(edge)).intersect(area),
+                theme::CHECKER[1],
+            );
+        }
+    }
+    painter.add(Shape::mesh(mesh));
+}
+
+/// Voxels per bar: at most one bar per point of width, and one per value where those are fewer.
+pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> Vec<u64> {
+    let bins = histogram.counts.len();
+    if let Some(levels) = levels.filter(|&levels| levels <= bins && levels <= width as usize) {
+        // Each value has a bin of its own; those between are empty.
+        let bin = |level: usize| (level * bins / (levels - 1).max(1)).min(bins - 1);
+        return (0..levels).map(|level| histogram.counts[bin(level)]).collect();
+    }
+    let columns = (width as usize).clamp(1, bins);
+    let first = |column: usize| column * bins / columns;
+    (0..columns).map(|column| histogram.counts[first(column)..first(column + 1)].iter().sum()).collect()
+}
+
+/// Bars of the histogram.
+pub(super) fn histogram(painter: &Painter, axes: &Axes, counts: &[u64], log: bool) {
+    let columns = counts.len();
+    let height = |count: u64| if log { (count as f64).ln_1p() } else { count as f64 };
+    // The background would dwarf everything else on a linear scale.
+    let mut sorted = counts.to_vec();
+    sorted.sort_unstable();
+    let top = if log { sorted[columns - 1] } else { sorted[(columns * 99 / 100).min(columns - 1)] };
+    let full = height(top).max(1e-9);
+    let mut mesh = Mesh::default();
+    let width = axes.plot.width() / columns as f32;
+    for (column, &count) in counts.iter().enumerate().filter(|bar| *bar.1 > 0) {
+        let tall = (height(count) / full).min(1.0) as f32 * axes.plot.height();
+        let left = axes.plot.min.x + column as f32 * width;
+        let bar = Rect::from_min_max(pos2(left, axes.plot.max.y - tall), pos2(left + width, axes.plot.max.y));
+        mesh.add_colored_rect(bar, theme::HISTOGRAM);
+    }
+    painter.add(Shape::mesh(mesh));
+}
+
+/// The eye's curve, filled with its colours.
+pub(super) fn eye_curve(painter: &Painter, axes: &Axes, function: &TransferFunction, edited: bool) {
+    let mut mesh = Mesh::default();
+    let mut line = Vec::new();
+    for (x, value) in axes.samples() {
+        let opacity = function.opacity_at(value);
+        let [r, g, b] = function.at(value).0.map(|c| c as f32);
+        let fill = LEAST_FILL + (1.0 - LEAST_FILL) * opacity as f32;
+        let color = Color32::from(Rgba::from_rgb(r, g, b)).gamma_multiply(fill);
+        let y = axes.y(opacity);
+        line.push(pos2(x, y));
+        mesh.colored_vertex(pos2(x, y), color);
+        mesh.colored_vertex(pos2(x, axes.plot.max.y), color);
+        let next = mesh.vertices.len() as u32;
+        if next >= 4 {
+            mesh.add_triangle(next - 4, next - 3, next - 2);
+            mesh.add_triangle(next - 3, next - 2, next - 1);
+        }
+    }
+    painter.add(Shape::mesh(mesh));
+    let strength = if edited { 1.0 } else { 0.5 };
+    painter.add(Shape::line(line, Stroke::new(1.5, theme::EYE_CURVE.gamma_multiply(strength))));
+}
+
+/// The lighting curve: a line, dashed while it follows the eye's.
+pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, edited: bool) {
+    let linked = settings.lighting.linked;
+    let function = if linked { &settings.transfer } else { &settings.lighting.curve };
+    let scale = settings.lighting.scale;
+    // The scale multiplies the extinction, not the opacity.
+    let scaled = |value: f64| 1.0 - (-function.at(value).1 * scale).exp();
+    let line: Vec<Pos2> = axes.samples().map(|(x, value)| pos2(x, axes.y(scaled(value)))).collect();
+    let stroke = Stroke::new(if edited { 2.0 } else { 1.2 }, theme::LIGHT_CURVE);
+    if linked {
+        painter.extend(Shape::dashed_line(&line, stroke, 5.0, 5.0));
+    } else {
+        painter.add(Shape::line(line, stroke));
+    }
+}
+
+/// The ends of the axes.
+pub(super) fn labels(painter: &Painter, axes: &Axes) {
+    let (font, ink) = (FontId::proportional(11.0), theme::EYE_CURVE.gamma_multiply(0.75));
+    let plot = axes.plot;
+    let text = |at: Pos2, align: Align2, text: String| {
+        let shadow = theme::OUTLINE.gamma_multiply(0.9);
+        painter.text(at + Vec2::splat(1.0), align, &text, font.clone(), shadow);
+        painter.text(at, align, text, font.clone(), ink);
+    };
+    text(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.0, axes.range));
+    text(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.1, axes.range));
+    text(plot.left_top(), Align2::LEFT_TOP, "opacity 1".to_owned());
+}
+
+/// A value with as many digits as the range deserves.
+fn number(value: f64, range: (f64, f64)) -> String {
+    let span = (range.1 - range.0).abs().max(1e-300);
+    let decimals = (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// A control point.
+pub(super) fn point(painter: &Painter, at: Pos2, radius: f32, color: Color32, selected: bool) {
+    painter.circle_filled(at, radius + 1.5, theme::OUTLINE);
+    let ring = if selected { theme::ACCENT } else { theme::EYE_CURVE };
+    painter.circle(at, radius, color, Stroke::new(if selected { 2.0 } else { 1.5 }, ring));
+}
+
+/// Value and opacity under the pointer.
+pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Settings) {
+    let Some(at) = response.hover_pos() else { return };
+    let (value, _) = axes.values(at);
+    let painter = ui.painter_at(axes.area);
+    let line = Stroke::new(1.0, theme::EYE_CURVE.gamma_multiply(0.35));
+    painter.vline(at.x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), line);
+    let opacity = settings.transfer.opacity_at(value);
+    let text = format!("{} · opacity {opacity:.2}", number(value, axes.range));
+    let right = at.x < axes.area.center().x;
+    let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };
+    let place = pos2(at.x + dx, axes.plot.min.y + 14.0);
+    let font = FontId::proportional(11.0);
+    painter.text(place + Vec2::splat(1.0), align, &text, font.clone(), theme::OUTLINE);
+    painter.text(place, align, text, font, theme::EYE_CURVE);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::vec2;
+
+    #[test]
+    fn places_and_values_agree() {
+        let axes = Axes::new(Rect::from_min_size(pos2(7.0, 400.0), vec2(900.0, 120.0)), (-1000.0, 3000.0));
+        let at = axes.position(250.0, 0.37);
+        let (value, opacity) = axes.values(at);
+        assert!((value - 250.0).abs() < 0.5 && (opacity - 0.37).abs() < 1e-3, "{value} {opacity}");
+        assert_eq!(axes.values(pos2(-50.0, 9000.0)), (-1000.0, 0.0));
+        assert!(Axes::new(axes.area, (5.0, 5.0)).position(5.0, 0.0).x.is_finite());
+    }
+
+    #[test]
+    fn every_voxel_is_in_a_bar() {
+        use crate::data::{Samples, Volume};
+        let values = Samples::U8((0..=199).chain(0..=55).collect());
+        let volume = Volume::with_spacing("ramp", [16, 4, 4], glam::DVec3::ONE, values).unwrap();
+        let histogram = Histogram::of(&volume, 1024);
+        let per_value = bars(&histogram, Some(200), 900.0);
+        assert_eq!(per_value.len(), 200);
+        assert!(per_value.iter().enumerate().all(|(value, &count)| count == if value <= 55 { 2 } else { 1 }));
+        for width in [0.0, 150.0, 900.0, 5000.0] {
+            assert_eq!(bars(&histogram, None, width).iter().sum::<u64>(), 256);
+        }
+    }
+
+    #[test]
+    fn numbers_have_sensible_digits() {
+        assert_eq!(number(1024.0, (0.0, 4095.0)), "1024");
+        assert_eq!(number(0.5, (0.0, 1.0)), "0.50");
+        assert_eq!(number(0.00125, (0.0, 0.004)), "0.00125");
+    }
+}

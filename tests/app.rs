@@ -1,0 +1,232 @@
+//! The real window, driven without a display: pointer, keys and widgets by their names.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use chiaroscuro::app::{App, Options, wgpu_setup};
+use chiaroscuro::data::Bricks;
+use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
+use chiaroscuro::gpu::{Context, RenderOptions, Renderer, export_png};
+use chiaroscuro::model::{LightKind, Projection};
+use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+/// A minute: software adapters on shared cores are slow.
+const PATIENCE: Duration = Duration::from_mins(1);
+
+const SCENE: &str = "builtin:chair:32";
+
+/// The window of the tests. It is taller than wide panels need, so that nothing is scrolled away.
+fn window() -> Harness<'static, App> {
+    let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
+    let mut setup = wgpu_setup();
+    // As the tests of the renderer: the first adapter that there is, software included.
+    setup.power_preference = wgpu::PowerPreference::None;
+    let mut harness = Harness::builder()
+        .with_size(Vec2::new(760.0, 860.0))
+        .with_step_dt(0.1)
+        .wgpu_setup(setup.into())
+        .build_eframe(|cc| App::new(cc, options).expect("a window"));
+    wait_until_idle(&mut harness);
+    harness
+}
+
+/// Lets frames pass until a condition holds.
+fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: impl Fn(&App) -> bool) {
+    let start = Instant::now();
+    loop {
+        harness.step();
+        if condition(harness.state()) {
+            return;
+        }
+        assert!(start.elapsed() < PATIENCE, "{what}: errors {:?}", harness.state().errors());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn wait_until_idle(harness: &mut Harness<'_, App>) {
+    wait_until(harness, "never idle", App::is_idle);
+}
+
+/// Presses, moves in steps and releases, with the window running.
+fn drag(harness: &mut Harness<'_, App>, from: Pos2, by: Vec2) {
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.hover_at(from);
+    harness.step();
+    harness.event(button(from, true));
+    harness.step();
+    for i in 1..=4 {
+        harness.hover_at(from + by * (i as f32 / 4.0));
+        harness.step();
+    }
+    harness.event(button(from + by, false));
+    harness.step();
+}
+
+/// The bytes of the picture in the window, and its size.
+fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
+    // Handles fade out when the pointer is gone.
+    harness.remove_cursor();
+    harness.run_steps(12);
+    wait_until_idle(harness);
+    let (rect, size) = harness.state().viewport_rect().expect("a picture");
+    let image = harness.render().expect("a picture of the window");
+    let (x, y) = (rect.min.x.round() as u32, rect.min.y.round() as u32);
+    let mut bytes = Vec::new();
+    for row in 0..size[1] {
+        for column in 0..size[0] {
+            bytes.extend(image.get_pixel(x + column, y + row).0);
+        }
+    }
+    (bytes, size)
+}
+
+/// What the renderer makes of the window's settings, on a device of its own.
+fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> chiaroscuro::gpu::Picture {
+    let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
+    let volume = Arc::new(volume);
+    let bricks = Arc::new(Bricks::of(&volume));
+    let context = Context::headless().expect("an adapter");
+    let mut renderer = Renderer::new(&context).expect("a renderer");
+    let settings = harness.state().settings();
+    renderer.render(&volume, &bricks, settings, size, &RenderOptions::default()).expect("a picture")
+}
+
+fn click(harness: &mut Harness<'_, App>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(3);
+}
+
+#[test]
+fn the_window_shows_what_the_renderer_makes() {
+    let mut harness = window();
+    assert_eq!(harness.state().volume_name(), Some("chair"));
+    harness.check_accessibility();
+    let (shown, size) = picture(&mut harness);
+    assert!(shown == render(&harness, size).shown, "the window shows other bytes than the renderer makes");
+}
+
+#[test]
+fn lights_and_camera_follow_the_mouse() {
+    let mut harness = window();
+    let (before, _) = picture(&mut harness);
+    let rebuilds = harness.state().light_rebuilds();
+
+    // Orbit: nothing is refilled.
+    let settings = harness.state().settings().clone();
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    drag(&mut harness, rect.left_bottom() + vec2(40.0, -30.0), vec2(60.0, -25.0));
+    wait_until_idle(&mut harness);
+    let orbited = harness.state().settings().clone();
+    assert_ne!(orbited.camera, settings.camera);
+    assert_eq!(orbited.lights, settings.lights);
+    assert_eq!(harness.state().light_rebuilds(), rebuilds, "orbiting refilled a light volume");
+    let (turned, size) = picture(&mut harness);
+    assert!(turned != before);
+    assert!(turned == render(&harness, size).shown, "after an orbit");
+
+    // The key light's handle.
+    harness.hover_at(rect.center());
+    harness.run_steps(2);
+    let handle = harness.state().light_handle_positions()[0];
+    let to_middle = (rect.center() - handle).normalized() * 60.0;
+    drag(&mut harness, handle, to_middle);
+    wait_until_idle(&mut harness);
+    let moved = harness.state().settings().clone();
+    assert_ne!(moved.lights[0].position, orbited.lights[0].position);
+    assert_eq!(moved.camera, orbited.camera, "the light's drag turned the camera too");
+    assert!(harness.state().light_rebuilds() > rebuilds);
+    let (lit, size) = picture(&mut harness);
+    assert!(lit != turned);
+    assert!(lit == render(&harness, size).shown, "after a light drag");
+
+    // Undo puts the light back.
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings().lights[0].position, orbited.lights[0].position);
+}
+
+#[test]
+fn the_transfer_function_is_edited_in_its_plot() {
+    let mut harness = window();
+    let before = harness.state().settings().transfer.clone();
+    let point = harness.get_by_label("Eye point 2").rect().center();
+    drag(&mut harness, point, vec2(14.0, -12.0));
+    let after = harness.state().settings().transfer.clone();
+    assert_eq!(after.points.len(), before.points.len());
+    assert!(
+        after.points[1].value > before.points[1].value && after.points[1].opacity > before.points[1].opacity
+    );
+    assert_eq!(after.points[0], before.points[0]);
+
+    // A click on the empty plot adds a point, Delete removes it.
+    let plot = harness.get_by_label("Transfer function").rect();
+    let empty = plot.left_top() + vec2(30.0, 30.0);
+    drag(&mut harness, empty, Vec2::ZERO);
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().transfer.points.len(), before.points.len() + 1);
+    harness.key_press(egui::Key::Delete);
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().transfer.points.len(), before.points.len());
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn panels_change_settings() {
+    let mut harness = window();
+    click(&mut harness, "Perspective");
+    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Perspective);
+    click(&mut harness, "Parallel");
+    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Parallel);
+    click(&mut harness, "Camera");
+    // The section slides open.
+    harness.run_steps(8);
+    click(&mut harness, "Orthographic");
+    assert_eq!(harness.state().settings().camera.projection, Projection::Orthographic);
+
+    click(&mut harness, "Light opacity follows the eye's");
+    let settings = harness.state().settings();
+    assert!(!settings.lighting.linked);
+    assert_eq!(settings.lighting.curve, settings.transfer, "a fresh curve starts as the eye's");
+
+    harness.get_by_role_and_label(Role::Slider, "Strength").set_value_accesskit(0.5);
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().shadows.strength, 0.5);
+    wait_until_idle(&mut harness);
+    let (shown, size) = picture(&mut harness);
+    assert!(shown == render(&harness, size).shown);
+}
+
+#[test]
+fn exports_are_what_the_renderer_makes() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let (exported, expected): (PathBuf, PathBuf) =
+        (folder.path().join("window.png"), folder.path().join("own.png"));
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&exported, [200, 150], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    export_png(&render(&harness, [200, 150]), false, &expected).unwrap();
+    assert!(std::fs::read(exported).unwrap() == std::fs::read(expected).unwrap());
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn a_missing_file_leaves_the_volume_alone() {
+    let mut harness = window();
+    let before = harness.state().settings().clone();
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("/no/such/volume.nrrd", &ctx);
+    wait_until(&mut harness, "no error", |app| !app.errors().is_empty());
+    assert!(harness.query_by_label_contains("there is no such file").is_some());
+    assert_eq!(harness.state().volume_name(), Some("chair"));
+    assert_eq!(harness.state().settings(), &before);
+    wait_until_idle(&mut harness);
+}
