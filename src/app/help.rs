@@ -31,7 +31,7 @@ impl Help {
     pub(super) fn ui(&mut self, ctx: &egui::Context, facts: &Facts) {
         let window =
             egui::Window::new("Keys and mouse").open(&mut self.keys).resizable(false).collapsible(false);
-        window.default_pos([180.0, 60.0]).show(ctx, |ui| {
+        window.default_pos([420.0, 50.0]).show(ctx, |ui| {
             egui::Grid::new("keys").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
                 for (gesture, effect) in MOUSE {
                     ui.label(gesture);
@@ -47,7 +47,7 @@ impl Help {
         });
         let window =
             egui::Window::new("About Chiaroscuro").open(&mut self.about).resizable(false).collapsible(false);
-        window.default_pos([180.0, 60.0]).show(ctx, |ui| {
+        window.default_pos([420.0, 50.0]).show(ctx, |ui| {
             ui.strong(format!("Chiaroscuro {}", env!("CARGO_PKG_VERSION")));
             ui.label("See the shape of volume data: true volumetric shadows by sheet-buffer splatting.");
             ui.label("After Splatting With Shadows (Nulkar and Mueller, 2001).");

@@ -37,7 +37,7 @@ pub(super) struct State<'a> {
 
 impl State<'_> {
     fn json(&self) -> Value {
-        let pixels = |points: f32| f64::from((points * self.pixels_per_point).round());
+        let pixels = |points: f32| (points * self.pixels_per_point).round() as i64;
         let viewport = self.canvas.map(|canvas| {
             let at = canvas.rect.min;
             json!({"x": pixels(at.x), "y": pixels(at.y), "width": canvas.size[0], "height": canvas.size[1]})

@@ -42,6 +42,7 @@ pub(super) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
 /// Behind the picture while there is none.
 pub(super) const STAGE: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
 
+const ERROR: Color32 = Color32::from_rgb(0xff, 0x8a, 0x7a);
 const PANEL: Color32 = Color32::from_rgb(0x1e, 0x20, 0x26);
 const WELL: Color32 = Color32::from_rgb(0x14, 0x16, 0x1a);
 const TEXT: Color32 = Color32::from_rgb(0xd4, 0xd8, 0xe0);
@@ -56,6 +57,7 @@ pub(super) fn apply(ctx: &egui::Context) {
         visuals.window_fill = PANEL;
         visuals.extreme_bg_color = WELL;
         visuals.weak_text_color = Some(WEAK_TEXT);
+        visuals.error_fg_color = ERROR;
         visuals.widgets.noninteractive.fg_stroke.color = TEXT;
         visuals.widgets.inactive.fg_stroke.color = TEXT;
         visuals.selection.bg_fill = Color32::from_rgb(0x6a, 0x4c, 0x16);

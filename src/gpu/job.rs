@@ -145,7 +145,8 @@ impl Job {
     /// Cuts the rows that are still to be drawn into bands of `rows`.
     pub fn set_band(&mut self, rows: u32) {
         let rows = rows.max(1);
-        let mut cut = VecDeque::with_capacity(self.steps.len());
+        let before = self.steps.len();
+        let mut cut = VecDeque::with_capacity(before);
         for step in self.steps.drain(..) {
             match step {
                 Step::Eye(Range { start, end }) => {
@@ -166,6 +167,8 @@ impl Job {
                 other => cut.push_back(other),
             }
         }
+        // Progress counts what is left of what there is.
+        self.total = self.total - before + cut.len();
         self.steps = cut;
     }
 }

@@ -76,7 +76,7 @@ impl Viewport {
             match &self.running {
                 Some(running) if running.look == Look::FULL => {
                     let label = running.job.stage().map_or("drawing the picture", crate::gpu::Stage::label);
-                    Doing::Refining(label, running.job.progress())
+                    Doing::Refining(label, running.job.progress().clamp(0.0, 1.0))
                 }
                 _ => Doing::Preview,
             }
