@@ -7,11 +7,22 @@
 @group(0) @binding(1) var clamped: sampler;
 @group(0) @binding(2) var coarser: texture_storage_3d<STORAGE_FORMAT, write>;
 
+// A dispatch fills some slices: a whole level could keep a slow adapter busy for seconds.
+struct Slices {
+    first: u32,
+    end: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+@group(0) @binding(3) var<uniform> slices: Slices;
+
 const OFFSET = 0.625;
 
 @compute @workgroup_size(8, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if (any(id >= textureDimensions(coarser))) {
+fn main(@builtin(global_invocation_id) invocation: vec3u) {
+    let id = invocation + vec3u(0u, 0u, slices.first);
+    if (any(id >= textureDimensions(coarser)) || id.z >= slices.end) {
         return;
     }
     let centre = vec3f(id) * 2.0 + 1.0;

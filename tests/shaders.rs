@@ -275,6 +275,8 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         ("display.wgsl", layout!(Display { top, bottom, transparent, clip, pad0, pad1 })),
+        ("prefilter.wgsl", layout!(Slices { first, end, pad0, pad1 })),
+        ("downsample.wgsl", layout!(Slices { first, end, pad0, pad1 })),
     ]
 }
 

@@ -8,7 +8,7 @@ use eframe::egui;
 use super::work::Work;
 use crate::data::load::{self, LoadControl, LoadOptions};
 use crate::data::{Bricks, Histogram, Volume};
-use crate::gpu::{Context, Renderer, first_look};
+use crate::gpu::{Context, Renderer, ShaderLibrary, first_look};
 use crate::model::Settings;
 
 /// Bins of the histogram that the transfer function editor shows.
@@ -54,6 +54,8 @@ struct Running {
 #[derive(Debug)]
 pub(super) struct Loader {
     context: Context,
+    /// The pipelines of the window's device, for every volume's renderer.
+    shaders: ShaderLibrary,
     options: LoadOptions,
     running: Option<Running>,
 }
@@ -62,9 +64,16 @@ pub(super) struct Loader {
 const PHASES: [&str; 4] = ["reading", "counting values", "uploading", "finding a first look"];
 
 impl Loader {
-    /// A loader that uploads to a device.
-    pub(super) fn new(context: Context, options: LoadOptions) -> Self {
-        Self { context, options, running: None }
+    /// A loader for volumes that a device will show. Begins to make its pipelines.
+    pub(super) fn new(context: Context, options: LoadOptions) -> std::io::Result<Self> {
+        let shaders = ShaderLibrary::new(&context);
+        let ahead = shaders.clone();
+        std::thread::Builder::new().name("warm-up".to_owned()).spawn(move || {
+            if let Err(err) = ahead.warm_up() {
+                log::error!("pipelines could not be made ahead of time: {err}");
+            }
+        })?;
+        Ok(Self { context, shaders, options, running: None })
     }
 
     /// Starts to open a file or a built-in volume.
@@ -73,9 +82,10 @@ impl Loader {
         let control = Arc::new(LoadControl::new());
         let phase = Arc::new(AtomicU8::new(0));
         let task = {
-            let (context, options) = (self.context.clone(), self.options.clone());
+            let (context, shaders, options) =
+                (self.context.clone(), self.shaders.clone(), self.options.clone());
             let (control, phase, source) = (Arc::clone(&control), Arc::clone(&phase), source.to_owned());
-            move || open(source, &context, &options, &control, &phase)
+            move || open(source, (&context, shaders), &options, &control, &phase)
         };
         let work =
             Work::start("loader", ctx, task).map_err(|err| format!("no thread for the loader: {err}"))?;
@@ -112,7 +122,7 @@ impl Loader {
 
 fn open(
     source: String,
-    context: &Context,
+    (context, shaders): (&Context, ShaderLibrary),
     options: &LoadOptions,
     control: &LoadControl,
     phase: &AtomicU8,
@@ -138,7 +148,7 @@ fn open(
         let mut renderer = Renderer::new(&beside)?;
         phase.store(3, Ordering::Relaxed);
         let settings = first_look(&mut renderer, &volume, &bricks, &histogram)?;
-        Ok((Renderer::new(context)?, settings))
+        Ok((Renderer::with_shaders(context, shaders)?, settings))
     });
     if control.is_cancelled() {
         return Outcome::Cancelled;

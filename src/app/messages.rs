@@ -1,8 +1,13 @@
-//! The line at the bottom that says what went wrong; details on click, never in the way.
+//! What went wrong, or went well, in the status bar; details on click, never in the way.
+//!
+//! The bar is always there, so that a message does not change the size of the picture.
 
 use eframe::egui::{self, RichText};
 
 use super::theme;
+
+/// How long a note stays; errors stay until they are dismissed.
+const NOTE_S: f64 = 5.0;
 
 /// A message to the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,6 +22,8 @@ struct Message {
 pub(super) struct Messages {
     current: Option<Message>,
     expanded: bool,
+    /// When the note goes, in seconds of the window's clock; set when it is first shown.
+    until_s: Option<f64>,
     /// Since the last volume was opened, for automation.
     errors: Vec<String>,
 }
@@ -37,6 +44,7 @@ impl Messages {
 
     fn show(&mut self, message: Message) {
         self.expanded = false;
+        self.until_s = None;
         self.current = Some(message);
     }
 
@@ -50,24 +58,32 @@ impl Messages {
         &self.errors
     }
 
-    /// Shows the line, if there is anything to say.
+    /// Shows the message in a row, if there is anything to say.
     pub(super) fn ui(&mut self, ui: &mut egui::Ui) {
         let Some(message) = &self.current else { return };
-        let mut closed = false;
-        egui::Panel::bottom("message").resizable(false).show(ui, |ui| {
-            ui.horizontal(|ui| {
-                let color = if message.is_error { ui.visuals().error_fg_color } else { theme::ACCENT };
-                ui.label(RichText::new(&message.short).color(color));
-                if !message.details.is_empty() && ui.small_button("Details").clicked() {
-                    self.expanded ^= true;
-                }
-                closed = ui.small_button("Dismiss").clicked();
-            });
-            if self.expanded {
-                ui.label(&message.details);
-            }
-        });
-        if closed {
+        let now_s = ui.input(|input| input.time);
+        let mut over = false;
+        if !message.is_error {
+            let until_s = *self.until_s.get_or_insert(now_s + NOTE_S);
+            over = now_s >= until_s;
+            ui.request_repaint_after(std::time::Duration::from_secs_f64((until_s - now_s).max(0.0)));
+        }
+        let color = if message.is_error { ui.visuals().error_fg_color } else { theme::ACCENT };
+        ui.separator();
+        ui.label(RichText::new(&message.short).color(color));
+        if !message.details.is_empty() && ui.small_button("Details").clicked() {
+            self.expanded ^= true;
+        }
+        over |= ui.small_button("Dismiss").clicked();
+        if self.expanded {
+            let above_bar = egui::vec2(8.0, -36.0);
+            egui::Window::new("What happened")
+                .open(&mut self.expanded)
+                .collapsible(false)
+                .anchor(egui::Align2::LEFT_BOTTOM, above_bar)
+                .show(ui.ctx(), |ui| ui.label(&message.details));
+        }
+        if over {
             self.current = None;
         }
     }

@@ -51,6 +51,9 @@ use crate::model::Settings;
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
 
+/// A frame that keeps the window's thread longer is felt.
+const LONG_FRAME_MS: f64 = 50.0;
+
 /// Changes settings once.
 pub type Adjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
 
@@ -161,6 +164,8 @@ pub struct App {
     side_open: bool,
     help: Help,
     messages: Messages,
+    /// The longest frame so far; see `status_file`.
+    longest_ui_ms: f64,
     status_file: StatusFile,
 }
 
@@ -190,7 +195,7 @@ impl App {
             volume: None,
             viewport: Viewport::new(context.clone(), paint, &cc.egui_ctx)?,
             canvas: None,
-            loader: Loader::new(context, load),
+            loader: Loader::new(context, load)?,
             balance: None,
             export: Export::default(),
             files: Files::default(),
@@ -204,6 +209,7 @@ impl App {
             side_open: true,
             help: Help::default(),
             messages: Messages::default(),
+            longest_ui_ms: 0.0,
             status_file: StatusFile::from_environment(),
         };
         app.open(source.as_deref().unwrap_or(DEFAULT_SOURCE), &cc.egui_ctx);
@@ -281,8 +287,7 @@ impl App {
             &mut menu::Menu { settings: &mut self.settings, title, undo_redo, side, handles, commands },
         );
         let facts = self.viewport.facts(&self.settings);
-        status::show(ui, &facts, self.loader.progress(), commands);
-        self.messages.ui(ui);
+        status::show(ui, &facts, self.loader.progress(), &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
             panel.size_range(90.0..=420.0).show(ui, |ui| {
@@ -331,6 +336,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        let start = std::time::Instant::now();
         let mut commands = Vec::new();
         if let Some(path) = files::dropped(&ctx) {
             commands.push(Command::Open(path.display().to_string()));
@@ -343,7 +349,13 @@ impl eframe::App for App {
         for command in commands {
             self.execute(command, frame, &ctx);
         }
+        let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
+        if ui_ms > LONG_FRAME_MS {
+            log::debug!("the window's thread was busy for {ui_ms:.0} ms");
+        }
+        self.longest_ui_ms = self.longest_ui_ms.max(ui_ms);
         let state = status_file::State {
+            longest_ui_ms: self.longest_ui_ms,
             loading: self.loader.progress().is_some(),
             idle: self.is_idle(),
             canvas: self.canvas.filter(|_| self.volume.is_some()),

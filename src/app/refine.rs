@@ -5,10 +5,11 @@
 
 use crate::model::{Kernel, Resolution, Settings};
 
-/// Milliseconds per frame while something moves.
+/// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
-/// The same on a software adapter.
-const SOFTWARE_BUDGET_MS: f64 = 66.0;
+/// The same on a software adapter: a frame of 66 ms, of which the window itself takes about 25. It
+/// works within the submission, so this is also how long the window's thread is kept.
+const SOFTWARE_BUDGET_MS: f64 = 40.0;
 /// Milliseconds that one batch of a refinement may take on the GPU.
 const BATCH_MS: f64 = 30.0;
 /// A change of settings this long ago (seconds) is over: time to refine.
@@ -41,6 +42,8 @@ impl Look {
         let mut settings = wanted.clone();
         if self.quick_eye {
             settings.sampling.kernel = Kernel::Prefiltered;
+            // A preview may show a little wood grain.
+            settings.sampling.slab = settings.sampling.slab.max(1.0);
         }
         if self.quick_light {
             settings.shadows.kernel = Kernel::Prefiltered;

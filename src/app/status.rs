@@ -3,6 +3,7 @@
 use eframe::egui::{self, ProgressBar, RichText};
 
 use super::commands::Command;
+use super::messages::Messages;
 use super::theme;
 use super::viewport::{Doing, Facts};
 
@@ -14,6 +15,7 @@ pub(super) fn show(
     ui: &mut egui::Ui,
     facts: &Facts,
     opening: Option<Opening<'_>>,
+    messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
     egui::Panel::bottom("status").resizable(false).show(ui, |ui| {
@@ -28,6 +30,7 @@ pub(super) fn show(
             } else {
                 doing(ui, facts.doing);
             }
+            messages.ui(ui);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.add(egui::Label::new(figures(facts)).truncate()).on_hover_text(&facts.driver);
             });

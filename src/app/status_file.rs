@@ -2,8 +2,8 @@
 //!
 //! With `CHIAROSCURO_STATUS=PATH` in the environment this small JSON file is rewritten whenever it
 //! changes: `{"state": "idle" | "refining" | "loading", "viewport": {"x", "y", "width", "height"},
-//! "light_handles": [{"x", "y"}, …], "light_rebuilds": n, "errors": […]}`. Lengths are physical
-//! pixels from the window's inner top left. `idle` means that the full-quality picture of the
+//! "light_handles": [{"x", "y"}, …], "light_rebuilds": n, "longest_ui_ms": n, "errors": […]}`.
+//! Lengths are physical pixels from the window's inner top left. `idle` means that the full-quality picture of the
 //! current settings is on screen.
 
 use std::path::PathBuf;
@@ -29,6 +29,8 @@ pub(super) struct State<'a> {
     pub handles: &'a [Pos2],
     /// How often light volumes were filled.
     pub light_rebuilds: u64,
+    /// The longest that one frame of the window kept its thread, in milliseconds.
+    pub longest_ui_ms: f64,
     /// Errors so far.
     pub errors: &'a [String],
     /// Physical pixels per point.
@@ -56,6 +58,7 @@ impl State<'_> {
             "viewport": viewport,
             "light_handles": handles,
             "light_rebuilds": self.light_rebuilds,
+            "longest_ui_ms": self.longest_ui_ms.round(),
             "errors": self.errors,
         })
     }

@@ -7,14 +7,14 @@ use super::tables::{Tables, dilation, view_entry};
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
 use crate::math::SceneSpace;
-use crate::model::{Light, LightKind, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm};
+use crate::model::{Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm};
 use crate::plan::{SheetFrame, eye_frame};
 
 /// Everything that the eye pass of one picture needs besides the volume.
 pub(super) struct EyePass {
     frame: SheetFrame,
     uniform: uniforms::Eye,
-    constants: Vec<(&'static str, f64)>,
+    constants: [(&'static str, f64); 6],
     shadowed: usize,
 }
 
@@ -42,15 +42,8 @@ impl EyePass {
         for (slot, (light, volume)) in packed.iter_mut().zip(&on) {
             *slot = pack_light(light, *volume, settings);
         }
-        let [kernel, sigma] = kernel_constants(settings.sampling.kernel);
-        let constants = vec![
-            kernel,
-            sigma,
-            quadrature_constant(settings.sampling.quadrature),
-            ("STRETCH", f64::from(u8::from(frame.max_stretch_level() > 0.0))),
-            ("LIGHTS", on.len() as f64),
-            ("SHADOWED", shadowed as f64),
-        ];
+        let stretch = frame.max_stretch_level() > 0.0;
+        let constants = constants(&settings.sampling, stretch, on.len(), shadowed);
         let [sx, sy, sz] = rows(&scene.scene_from_index);
         let [ix, iy, iz] = rows(&scene.index_from_scene);
         let (eye, w) = match settings.camera.projection {
@@ -127,6 +120,20 @@ impl EyePass {
         pass.dispatch_workgroups(self.frame.size[0].div_ceil(8), (rows.end - rows.start).div_ceil(8), 1);
         Ok(())
     }
+}
+
+/// The variant of the shader for a kernel, for pixels wider than voxels or not, and for so many
+/// lights, of which some have attenuation volumes.
+pub(super) fn constants(
+    sampling: &Sampling,
+    stretch: bool,
+    lights: usize,
+    shadowed: usize,
+) -> [(&'static str, f64); 6] {
+    let [kernel, sigma] = kernel_constants(sampling.kernel);
+    let stretch = ("STRETCH", f64::from(u8::from(stretch)));
+    let counts = [("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)];
+    [kernel, sigma, quadrature_constant(sampling.quadrature), stretch, counts[0], counts[1]]
 }
 
 fn pack_light(light: &Light, volume: Option<&LightVolume>, settings: &Settings) -> uniforms::Light {

@@ -46,7 +46,8 @@ impl Stage {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
     Upload(Range<usize>),
-    Pyramid(u32),
+    /// Level, slices.
+    Pyramid(u32, Range<u32>),
     /// Light build, view, first slab.
     March(usize, usize, u32),
     Backproject(usize, usize, u32),
@@ -58,7 +59,7 @@ impl Step {
     pub(super) fn stage(&self) -> Stage {
         match self {
             Self::Upload(_) => Stage::Upload,
-            Self::Pyramid(_) => Stage::Pyramid,
+            Self::Pyramid(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) => Stage::LightBackproject,
             Self::Eye(_) => Stage::Eye,

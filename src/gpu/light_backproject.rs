@@ -74,6 +74,19 @@ fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
     DAffine3 { matrix3: to_light, translation: -(to_light * view.anchor) } * scene.scene_from_index
 }
 
+/// The variant of the shader for a kernel, wider than four pixels and slabs or not.
+pub(super) fn constants(shadows: &Shadows, wide: bool) -> [(&'static str, f64); 5] {
+    let [kernel, sigma] = kernel_constants(shadows.kernel);
+    let flag = |on: bool| f64::from(u8::from(on));
+    [
+        kernel,
+        sigma,
+        quadrature_constant(shadows.quadrature),
+        ("FIRST_TOUCH", flag(shadows.first_touch)),
+        ("WIDE", flag(wide)),
+    ]
+}
+
 /// Writes the voxels that the slabs `begin .. end` complete.
 pub(super) fn backproject(
     gpu: Gpu<'_>,
@@ -93,15 +106,7 @@ pub(super) fn backproject(
         && (view.kernel_edge / view.frame.slab - 1.0).abs() < 1e-9
         && shadows.quadrature == Quadrature::One
         && shadows.kernel != Kernel::Prefiltered;
-    let [kernel, sigma] = kernel_constants(shadows.kernel);
-    let constants = [
-        kernel,
-        sigma,
-        quadrature_constant(shadows.quadrature),
-        ("FIRST_TOUCH", f64::from(u8::from(shadows.first_touch))),
-        ("WIDE", f64::from(u8::from(!four_taps))),
-    ];
-    let pipeline = shaders.pipeline("light_backproject.wgsl", &constants)?;
+    let pipeline = shaders.pipeline("light_backproject.wgsl", &constants(shadows, !four_taps))?;
     let [x, y, z] = rows(&light_from_index(&volume.scene, view));
     let uniform = uniforms::Backprojection {
         frame: uniforms::SheetFrame::new(&view.frame),

@@ -79,6 +79,19 @@ impl Sheets {
     }
 }
 
+/// The variant of the shader for a kernel and deposit, for pixels wider than voxels or not.
+pub(super) fn constants(shadows: &Shadows, stretch: bool) -> [(&'static str, f64); 5] {
+    let [kernel, sigma] = kernel_constants(shadows.kernel);
+    let flag = |on: bool| f64::from(u8::from(on));
+    [
+        kernel,
+        sigma,
+        quadrature_constant(shadows.quadrature),
+        ("STRETCH", flag(stretch)),
+        ("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)),
+    ]
+}
+
 /// Marches the slabs `begin .. end` of a view.
 pub(super) fn march(
     gpu: Gpu<'_>,
@@ -91,15 +104,7 @@ pub(super) fn march(
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, nothing: _ } = gpu;
     let stretch = view.frame.max_stretch_level();
-    let [kernel, sigma] = kernel_constants(shadows.kernel);
-    let constants = [
-        kernel,
-        sigma,
-        quadrature_constant(shadows.quadrature),
-        ("STRETCH", f64::from(u8::from(stretch > 0.0))),
-        ("DEPOSIT_FRONT", f64::from(u8::from(shadows.deposit == Deposit::Front))),
-    ];
-    let pipeline = shaders.pipeline("light_march.wgsl", &constants)?;
+    let pipeline = shaders.pipeline("light_march.wgsl", &constants(shadows, stretch > 0.0))?;
     let uniform = uniforms::March {
         frame: uniforms::SheetFrame::new(&view.frame),
         begin: slabs.0,

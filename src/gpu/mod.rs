@@ -23,6 +23,7 @@ mod shader;
 mod tables;
 pub mod uniforms;
 mod volume;
+mod warm_up;
 
 pub use context::{Context, device_descriptor};
 pub use error::GpuError;

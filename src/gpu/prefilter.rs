@@ -1,5 +1,8 @@
 //! Fills the pyramid: `prefilter.wgsl` makes level 0 from the density, `downsample.wgsl` the others.
 
+use std::ops::Range;
+
+use super::uniforms;
 use super::volume::{GpuVolume, entry};
 use super::{Context, GpuError, ShaderLibrary};
 
@@ -8,12 +11,29 @@ pub(super) fn levels(volume: &GpuVolume) -> u32 {
     volume.pyramid.mip_level_count()
 }
 
-/// Fills one level. The one above must be complete.
+/// Texels per step: 8 fetches each, some 20 ms on a software adapter.
+const STEP_TEXELS: u32 = 1 << 19;
+
+/// The slices of a level, cut into short steps.
+pub(super) fn steps(volume: &GpuVolume, level: u32) -> Vec<Range<u32>> {
+    let [width, height, depth] = texels(volume, level);
+    let slices = (STEP_TEXELS / (width * height)).max(1);
+    (0..depth).step_by(slices as usize).map(|first| first..depth.min(first + slices)).collect()
+}
+
+/// Texels of a level along x, y, z.
+fn texels(volume: &GpuVolume, level: u32) -> [u32; 3] {
+    let size = volume.pyramid.size();
+    [size.width, size.height, size.depth_or_array_layers].map(|n| (n >> level).max(1))
+}
+
+/// Fills some slices of one level. The finer level must be complete.
 pub(super) fn fill(
     context: &Context,
     shaders: &ShaderLibrary,
     volume: &GpuVolume,
     level: u32,
+    slices: &Range<u32>,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let view_of = |level: u32| {
@@ -29,6 +49,8 @@ pub(super) fn fill(
         _ => ("downsample.wgsl", view_of(level - 1)),
     };
     let pipeline = shaders.pipeline(shader, &[])?;
+    let uniform = uniforms::Slices { first: slices.start, end: slices.end, pad0: 0, pad1: 0 };
+    let uniform = context.buffer("Pyramid::slices", &[uniform], wgpu::BufferUsages::UNIFORM);
     let bind_group = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("Pyramid::bind_group"),
         layout: &pipeline.get_bind_group_layout(0),
@@ -36,16 +58,16 @@ pub(super) fn fill(
             entry(0, wgpu::BindingResource::TextureView(&source)),
             entry(1, wgpu::BindingResource::Sampler(&volume.clamped)),
             entry(2, wgpu::BindingResource::TextureView(&view_of(level))),
+            entry(3, uniform.as_entire_binding()),
         ],
     });
-    let size = volume.pyramid.size();
-    let texels = [size.width, size.height, size.depth_or_array_layers].map(|n| (n >> level).max(1));
+    let [width, height, _] = texels(volume, level);
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some("Pyramid::fill"),
         timestamp_writes: None,
     });
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &bind_group, &[]);
-    pass.dispatch_workgroups(texels[0].div_ceil(8), texels[1].div_ceil(4), texels[2].div_ceil(4));
+    pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(4), (slices.end - slices.start).div_ceil(4));
     Ok(())
 }

@@ -248,7 +248,11 @@ impl Renderer {
             for first in (0..slices).step_by(fresh.slices_per_step()) {
                 steps.push(Step::Upload(first..slices.min(first + fresh.slices_per_step())));
             }
-            steps.extend((0..prefilter::levels(&fresh)).map(Step::Pyramid));
+            for level in 0..prefilter::levels(&fresh) {
+                steps.extend(
+                    prefilter::steps(&fresh, level).into_iter().map(|slices| Step::Pyramid(level, slices)),
+                );
+            }
             self.volume = Some(fresh);
             self.uploaded = false;
             self.tables = None;
@@ -318,9 +322,10 @@ impl Renderer {
         let gpu = Gpu { context: &self.context, shaders: &self.shaders, volume, nothing: &self.nothing };
         match step {
             Step::Upload(slices) => volume.upload(&self.context, slices.clone()),
-            Step::Pyramid(level) => {
-                prefilter::fill(&self.context, &self.shaders, volume, *level, encoder)?;
-                self.uploaded = level + 1 == prefilter::levels(volume);
+            Step::Pyramid(level, slices) => {
+                prefilter::fill(&self.context, &self.shaders, volume, *level, slices, encoder)?;
+                // The last of them: what follows is no pyramid.
+                self.uploaded = !matches!(job.steps.front(), Some(Step::Pyramid(..)));
             }
             Step::March(at, view, begin) => {
                 let build = &mut job.builds[*at];

@@ -63,10 +63,11 @@ impl ShaderLibrary {
     /// When the shader is not there or the driver refuses it.
     pub fn pipeline(&self, name: &str, constants: &[(&str, f64)]) -> Result<wgpu::ComputePipeline, GpuError> {
         let key = format!("{name} {constants:?}");
-        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pipeline) = pipelines.get(&key) {
+        let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = pipelines().get(&key) {
             return Ok(pipeline.clone());
         }
+        // Not locked meanwhile: a window must not wait for the variants that another thread makes.
         let mut source = Self::source(name, self.context.storage_format)?;
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
@@ -91,7 +92,7 @@ impl ShaderLibrary {
         if let Some(err) = pollster::block_on(scope.pop()) {
             return Err(GpuError::Refused(format!("{name}: {err}")));
         }
-        pipelines.insert(key, pipeline.clone());
+        pipelines().insert(key, pipeline.clone());
         Ok(pipeline)
     }
 }

@@ -86,6 +86,16 @@ pub struct Grid {
     pub pad2: i32,
 }
 
+/// `prefilter.wgsl` and `downsample.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Slices {
+    pub first: u32,
+    pub end: u32,
+    pub pad0: u32,
+    pub pad1: u32,
+}
+
 /// `light_march.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

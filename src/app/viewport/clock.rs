@@ -1,72 +1,94 @@
 //! Tells when the GPU began and ended a batch, without making the window wait.
+//!
+//! A thread polls the device without blocking: a blocking wait would hold the lock that every
+//! submission needs, the window's own frames included, until the batch is done.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use eframe::egui;
 
 /// Milliseconds that a batch took, as soon as it is done; infinite when the device is gone.
 pub(super) type Elapsed = Arc<OnceLock<f64>>;
 
+/// How often the thread looks: a thirtieth of a batch.
+const LOOK_EVERY: Duration = Duration::from_millis(1);
+
+/// The moment at which the GPU has done what was submitted so far.
+type Moment = Arc<OnceLock<Instant>>;
+
 #[derive(Debug)]
-enum Ticket {
-    /// What is queued before the batch ends here: it is not the batch's time.
-    Begin(wgpu::SubmissionIndex),
-    /// The batch ends here.
-    End(wgpu::SubmissionIndex, Elapsed),
+struct Ticket {
+    began: Moment,
+    ended: Moment,
+    elapsed: Elapsed,
 }
 
-/// A thread that waits for submissions. It ends with the clock.
+/// Times batches of work on a queue. Its thread ends with it.
 #[derive(Debug)]
 pub(super) struct GpuClock {
+    queue: wgpu::Queue,
     sender: mpsc::Sender<Ticket>,
+    began: Moment,
 }
 
 impl GpuClock {
     /// Starts the thread.
-    pub(super) fn new(device: wgpu::Device, ctx: egui::Context) -> std::io::Result<Self> {
+    pub(super) fn new(device: wgpu::Device, queue: wgpu::Queue, ctx: egui::Context) -> std::io::Result<Self> {
         let (sender, receiver) = mpsc::channel::<Ticket>();
         std::thread::Builder::new().name("gpu-clock".to_owned()).spawn(move || {
-            let mut start = Instant::now();
-            for ticket in receiver {
-                match ticket {
-                    Ticket::Begin(before) => {
-                        wait(&device, before);
-                        start = Instant::now();
-                    }
-                    Ticket::End(after, elapsed) => {
-                        let done = wait(&device, after);
-                        let took = start.elapsed().as_secs_f64() * 1000.0;
-                        elapsed.get_or_init(|| if done { took } else { f64::INFINITY });
-                        ctx.request_repaint();
-                    }
-                }
+            for Ticket { began, ended, elapsed } in receiver {
+                let took = wait(&device, &ended).map_or(f64::INFINITY, |end| {
+                    let start = began.get().copied().unwrap_or(end);
+                    end.saturating_duration_since(start).as_secs_f64() * 1000.0
+                });
+                elapsed.get_or_init(|| took);
+                ctx.request_repaint();
             }
         })?;
-        Ok(Self { sender })
+        Ok(Self { queue, sender, began: Moment::default() })
     }
 
-    /// A batch begins after this submission. To be called before the batch is submitted: software
-    /// adapters may do the work within the submission.
-    pub(super) fn begin(&self, before: wgpu::SubmissionIndex) {
-        // Without its thread the clock answers at the end.
-        drop(self.sender.send(Ticket::Begin(before)));
+    /// A batch begins when what is submitted now is done. To be called before it is submitted.
+    pub(super) fn begin(&mut self) {
+        self.began = self.moment();
     }
 
-    /// The batch ends with this submission; asks how long it took.
-    pub(super) fn end(&self, after: wgpu::SubmissionIndex) -> Elapsed {
+    /// The batch ends with what is submitted now; asks how long it took.
+    pub(super) fn end(&self) -> Elapsed {
         let elapsed = Elapsed::default();
-        if self.sender.send(Ticket::End(after, Arc::clone(&elapsed))).is_err() {
+        let ticket =
+            Ticket { began: Arc::clone(&self.began), ended: self.moment(), elapsed: Arc::clone(&elapsed) };
+        if self.sender.send(ticket).is_err() {
             elapsed.get_or_init(|| f64::INFINITY);
         }
         elapsed
     }
+
+    /// Becomes the moment at which the GPU has done everything submitted so far.
+    fn moment(&self) -> Moment {
+        let moment = Moment::default();
+        let done = Arc::clone(&moment);
+        self.queue.submit([]);
+        self.queue.on_submitted_work_done(move || {
+            done.get_or_init(Instant::now);
+        });
+        moment
+    }
 }
 
-/// Waits for a submission; `false` when the device is gone, on which polling may panic.
-fn wait(device: &wgpu::Device, index: wgpu::SubmissionIndex) -> bool {
-    let poll = wgpu::PollType::Wait { submission_index: Some(index), timeout: None };
-    catch_unwind(AssertUnwindSafe(|| device.poll(poll).is_ok())).unwrap_or(false)
+/// Waits for a moment; `None` when the device is gone, on which polling may panic.
+fn wait(device: &wgpu::Device, moment: &Moment) -> Option<Instant> {
+    loop {
+        let alive = catch_unwind(AssertUnwindSafe(|| device.poll(wgpu::PollType::Poll).is_ok()));
+        if let Some(&at) = moment.get() {
+            return Some(at);
+        }
+        if !alive.unwrap_or(false) {
+            return None;
+        }
+        std::thread::sleep(LOOK_EVERY);
+    }
 }

@@ -101,7 +101,7 @@ impl std::fmt::Debug for Viewport {
 impl Viewport {
     /// An empty viewport on the window's device.
     pub(super) fn new(context: Context, paint: RenderState, ctx: &egui::Context) -> std::io::Result<Self> {
-        let clock = GpuClock::new(context.device.clone(), ctx.clone())?;
+        let clock = GpuClock::new(context.device.clone(), context.queue.clone(), ctx.clone())?;
         let refine = Refine::new(context.is_software());
         Ok(Self {
             context,
@@ -303,7 +303,7 @@ impl Viewport {
         let (Some(scene), Some(running)) = (&mut self.scene, &mut self.running) else { return Ok(()) };
         let look = running.look;
         running.job.set_band(self.refine.rows(look, running.job.request().size[0]));
-        self.clock.begin(self.context.queue.submit([]));
+        self.clock.begin();
         let mut parts: Vec<(Cost, f64)> = Vec::new();
         let mut predicted = 0.0;
         let mut more = true;
@@ -328,7 +328,7 @@ impl Viewport {
                 None => parts.push((cost, ms)),
             }
         }
-        let elapsed = self.clock.end(self.context.queue.submit([]));
+        let elapsed = self.clock.end();
         let done = running.job.is_done();
         let mut tally = running.tally;
         let completes = done.then(|| {
