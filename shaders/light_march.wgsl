@@ -12,7 +12,12 @@ struct March {
     begin: u32,
     end: u32,
     layers: u32,
+    // Rows of this dispatch: first, and one beyond the last.
+    first_row: u32,
+    end_row: u32,
     pad0: u32,
+    pad1: u32,
+    pad2: u32,
 }
 
 @group(0) @binding(0) var<uniform> march: March;
@@ -35,8 +40,9 @@ fn slab_mean(tau: f32) -> f32 {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if (any(id.xy >= march.frame.size)) {
+fn main(@builtin(global_invocation_id) invocation: vec3u) {
+    let id = invocation + vec3u(0u, march.first_row, 0u);
+    if (id.x >= march.frame.size.x || id.y >= march.end_row) {
         return;
     }
     let ray = ray_of(march.frame, vec2f(id.xy));

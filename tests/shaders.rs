@@ -218,7 +218,10 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light_backproject.wgsl", frame),
         ("eye.wgsl", grid.clone()),
         ("light_march.wgsl", grid),
-        ("light_march.wgsl", layout!(March { frame, begin, end, layers, pad0 })),
+        (
+            "light_march.wgsl",
+            layout!(March { frame, begin, end, layers, first_row, end_row, pad0, pad1, pad2 }),
+        ),
         (
             "light_backproject.wgsl",
             layout!(Backprojection {
@@ -383,9 +386,9 @@ fn differing_structs_are_reported() {
     assert_eq!(wrong("struct March", "struct March"), Vec::<String>::new());
     let swapped = wrong("begin: u32,\n    end: u32,", "end: u32,\n    begin: u32,");
     assert_eq!(swapped.len(), 2, "{swapped:?}");
-    let retyped = wrong("pad0: u32,\n}\n\n@group", "pad0: f32,\n}\n\n@group");
+    let retyped = wrong("pad2: u32,\n}\n\n@group", "pad2: f32,\n}\n\n@group");
     assert_eq!(retyped.len(), 1, "{retyped:?}");
-    let longer = wrong("pad0: u32,\n}\n\n@group", "pad0: u32,\n    more: vec4f,\n}\n\n@group");
+    let longer = wrong("pad2: u32,\n}\n\n@group", "pad2: u32,\n    more: vec4f,\n}\n\n@group");
     assert_eq!(longer.len(), 2, "the size and the field: {longer:?}");
     let absent = Layout { name: "Marsch".to_owned(), ..march.clone() };
     let module = check(&source).expect("the shader is valid");

@@ -11,7 +11,7 @@ const BUDGET_MS: f64 = 33.0;
 /// works within the submission, so this is also how long the window's thread is kept.
 const SOFTWARE_BUDGET_MS: f64 = 40.0;
 /// Milliseconds that one batch of a refinement may take on the GPU.
-const BATCH_MS: f64 = 30.0;
+const BATCH_MS: f64 = 24.0;
 /// A change of settings this long ago (seconds) is over: time to refine.
 pub(super) const REST_S: f64 = 0.15;
 
@@ -134,7 +134,8 @@ fn scale_index(scale: u32) -> usize {
 impl Refine {
     /// Cautious guesses for an adapter.
     pub(super) fn new(software: bool) -> Self {
-        let slow = if software { 20.0 } else { 1.0 };
+        // Too slow a guess costs one coarse preview, too quick a guess a window that stands still.
+        let slow = if software { 60.0 } else { 1.0 };
         let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
         Self {
             software,
@@ -157,6 +158,17 @@ impl Refine {
     /// costs a frame of the window.
     pub(super) fn batch_ms(&self, look: Look) -> f64 {
         if look == Look::FULL { BATCH_MS } else { 1.5 * self.budget_ms() }
+    }
+
+    /// Steps of the light pass that a batch may hold, whatever they are expected to take.
+    pub(super) fn light_steps(&self, look: Look) -> usize {
+        if look == Look::FULL && self.software { 2 } else { usize::MAX }
+    }
+
+    /// Pieces into which a chunk of the light pass is cut.
+    pub(super) fn light_parts(&self, look: Look) -> u32 {
+        // On a software adapter half a chunk of a 256³ volume takes some 20 ms.
+        if look == Look::FULL && self.software { 2 } else { 1 }
     }
 
     /// Milliseconds that one step (or pixel) is expected to take.
@@ -328,13 +340,13 @@ mod tests {
         }
         assert!((refine.unit_ms(cost) - 2.5).abs() < 0.1);
         let cost = Cost::Eye(Look::FULL);
-        let rows = refine.rows(Look::FULL, 1000);
+        let rows = refine.rows(Look::FULL, 100);
         refine.learn(&[(cost, 30.0)], 0.1);
-        let after_empty_rows = refine.rows(Look::FULL, 1000);
+        let after_empty_rows = refine.rows(Look::FULL, 100);
         assert!(after_empty_rows > rows && after_empty_rows < 2 * rows);
         refine.learn(&[(cost, 30.0)], 300.0);
         assert!(
-            refine.rows(Look::FULL, 1000) <= after_empty_rows / 9,
+            refine.rows(Look::FULL, 100) <= after_empty_rows / 9,
             "a batch that was too long is the last"
         );
         refine.learn(&[(cost, 1.0)], f64::INFINITY);

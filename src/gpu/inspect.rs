@@ -79,7 +79,7 @@ impl Renderer {
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let table = &tables.lighting.buffer;
-        march(gpu, table, &settings.shadows, geometry, &sheets, (0, count), &mut encoder)?;
+        march(gpu, table, &settings.shadows, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
         self.context.queue.submit([encoder.finish()]);
         let mut values = read_floats(&self.context, &sheets.ring)?;
         values.truncate((count * geometry.frame.size[0] * geometry.frame.size[1]) as usize);

@@ -42,15 +42,27 @@ impl Stage {
     }
 }
 
+/// A piece of one half of a light pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct LightStep {
+    /// Index of the light build …
+    pub build: usize,
+    /// … and of its view.
+    pub view: usize,
+    /// First slab of the chunk.
+    pub begin: u32,
+    /// Which part of the pixels or bricks, of how many.
+    pub part: (u32, u32),
+}
+
 /// A piece of work for one submission.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
     Upload(Range<usize>),
     /// Level, slices.
     Pyramid(u32, Range<u32>),
-    /// Light build, view, first slab.
-    March(usize, usize, u32),
-    Backproject(usize, usize, u32),
+    March(LightStep),
+    Backproject(LightStep),
     Eye(Range<u32>),
     Display,
 }

@@ -87,18 +87,21 @@ pub(super) fn constants(shadows: &Shadows, wide: bool) -> [(&'static str, f64); 
     ]
 }
 
-/// Writes the voxels that the slabs `begin .. end` complete.
+/// Writes the voxels that the slabs `begin .. end` complete: those in part `part.0` of `part.1` of
+/// the bricks.
 pub(super) fn backproject(
     gpu: Gpu<'_>,
     shadows: &Shadows,
     view: &LightView,
     (sheets, schedule): &(Sheets, Schedule),
     light: &LightVolume,
-    slabs: (u32, u32),
+    (slabs, part): ((u32, u32), (u32, u32)),
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, nothing: _ } = gpu;
     let bricks = &schedule.chunks[(slabs.0 / sheets.chunk) as usize];
+    let cut = |at: u32| bricks.len() * at as usize / part.1 as usize;
+    let bricks = &bricks[cut(part.0)..cut(part.0 + 1)];
     if bricks.is_empty() {
         return Ok(());
     }

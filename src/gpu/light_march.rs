@@ -1,5 +1,7 @@
 //! Forward half of the light pass: fills sheets with the transmittance that they deposit.
 
+use std::ops::Range;
+
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::tables::{dilation, upload_bricks, view_entry};
 use super::uniforms;
@@ -92,17 +94,27 @@ pub(super) fn constants(shadows: &Shadows, stretch: bool) -> [(&'static str, f64
     ]
 }
 
-/// Marches the slabs `begin .. end` of a view.
+/// Rows of a view's sheets that part `part.0` of `part.1` marches: whole workgroups.
+fn rows_of(height: u32, part: (u32, u32)) -> Range<u32> {
+    let cut = |at: u32| (height.div_ceil(8) * at / part.1 * 8).min(height);
+    cut(part.0)..cut(part.0 + 1)
+}
+
+/// Marches a part of the pixels through the slabs `begin .. end` of a view.
 pub(super) fn march(
     gpu: Gpu<'_>,
     table: &wgpu::Buffer,
     shadows: &Shadows,
     view: &LightView,
     sheets: &Sheets,
-    slabs: (u32, u32),
+    (slabs, part): ((u32, u32), (u32, u32)),
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, nothing: _ } = gpu;
+    let rows = rows_of(view.frame.size[1], part);
+    if rows.is_empty() {
+        return Ok(());
+    }
     let stretch = view.frame.max_stretch_level();
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(shadows, stretch > 0.0))?;
     let uniform = uniforms::March {
@@ -110,7 +122,11 @@ pub(super) fn march(
         begin: slabs.0,
         end: slabs.1,
         layers: sheets.layers,
+        first_row: rows.start,
+        end_row: rows.end,
         pad0: 0,
+        pad1: 0,
+        pad2: 0,
     };
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -132,6 +148,6 @@ pub(super) fn march(
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &own, &[]);
     pass.set_bind_group(1, &of_volume, &[]);
-    pass.dispatch_workgroups(view.frame.size[0].div_ceil(8), view.frame.size[1].div_ceil(8), 1);
+    pass.dispatch_workgroups(view.frame.size[0].div_ceil(8), (rows.end - rows.start).div_ceil(8), 1);
     Ok(())
 }

@@ -13,6 +13,8 @@ pub struct RenderOptions {
     pub dark: f32,
     /// Slabs per chunk of the light march, instead of what memory and time suggest.
     pub chunk: Option<u32>,
+    /// Pieces into which each chunk of the light pass is cut, for short submissions.
+    pub light_parts: u32,
     /// Wait after every step, so that a report's stages are true.
     pub timed: bool,
 }
@@ -26,6 +28,7 @@ impl Default for RenderOptions {
             // 1/16 of an 8-bit step.
             dark: 1.0 / 4096.0,
             chunk: None,
+            light_parts: 1,
             timed: false,
         }
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::display::{Target, display};
 use super::eye::EyePass;
-use super::job::{Job, LightBuild, Stage, Step};
+use super::job::{Job, LightBuild, LightStep, Stage, Step};
 use super::light_backproject::{Schedule, backproject};
 use super::light_march::{Sheets, march};
 use super::light_volume::{LightVolume, needed_bricks};
@@ -189,8 +189,10 @@ impl Renderer {
         for (at, build) in builds.iter().enumerate() {
             for (view, chunk) in build.chunks.iter().enumerate() {
                 for begin in (0..build.views[view].frame.slab_count).step_by(*chunk as usize) {
-                    steps.push(Step::March(at, view, begin));
-                    steps.push(Step::Backproject(at, view, begin));
+                    let parts = options.light_parts.max(1);
+                    let step = |part| LightStep { build: at, view, begin, part: (part, parts) };
+                    steps.extend((0..parts).map(|part| Step::March(step(part))));
+                    steps.extend((0..parts).map(|part| Step::Backproject(step(part))));
                 }
             }
         }
@@ -327,13 +329,13 @@ impl Renderer {
                 // The last of them: what follows is no pyramid.
                 self.uploaded = !matches!(job.steps.front(), Some(Step::Pyramid(..)));
             }
-            Step::March(at, view, begin) => {
-                let build = &mut job.builds[*at];
+            Step::March(LightStep { build, view, begin, part }) => {
+                let build = &mut job.builds[*build];
                 let Some(light) = self.lights.iter().find(|light| light.key == build.key) else {
                     return Err(GpuError::Refused("the job is out of date".to_owned()));
                 };
                 let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
-                if *begin == 0 {
+                if *begin == 0 && part.0 == 0 {
                     let sheets =
                         Sheets::new(&self.context, geometry, chunk, &build.read, &tables.lighting.occupied)?;
                     let peak = self.gpu_bytes() + sheets.bytes();
@@ -347,10 +349,10 @@ impl Renderer {
                 let Some((sheets, _)) = &build.current else { return Ok(()) };
                 let slabs = (*begin, (*begin + chunk).min(geometry.frame.slab_count));
                 let table = &tables.lighting.buffer;
-                march(gpu, table, &settings.shadows, geometry, sheets, slabs, encoder)?;
+                march(gpu, table, &settings.shadows, geometry, sheets, (slabs, *part), encoder)?;
             }
-            Step::Backproject(at, view, begin) => {
-                let build = &mut job.builds[*at];
+            Step::Backproject(LightStep { build, view, begin, part }) => {
+                let build = &mut job.builds[*build];
                 let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
                 let Some(light) = self.lights.iter_mut().find(|light| light.key == build.key) else {
                     return Err(GpuError::Refused("the job is out of date".to_owned()));
@@ -358,8 +360,9 @@ impl Renderer {
                 let Some(current) = &build.current else { return Ok(()) };
                 let end = (*begin + chunk).min(geometry.frame.slab_count);
                 let slabs = (*begin, end);
-                backproject(gpu, &settings.shadows, geometry, current, light, slabs, encoder)?;
-                if end == geometry.frame.slab_count && view + 1 == build.views.len() {
+                backproject(gpu, &settings.shadows, geometry, current, light, (slabs, *part), encoder)?;
+                let is_last = end == geometry.frame.slab_count && part.0 + 1 == part.1;
+                if is_last && view + 1 == build.views.len() {
                     light.complete = true;
                     build.current = None;
                 }

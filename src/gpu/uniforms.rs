@@ -104,7 +104,11 @@ pub struct March {
     pub begin: u32,
     pub end: u32,
     pub layers: u32,
+    pub first_row: u32,
+    pub end_row: u32,
     pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
 }
 
 /// `light_backproject.wgsl`.

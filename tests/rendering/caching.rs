@@ -148,6 +148,8 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
         let plodding =
             picture(&RenderOptions { leaping: false, fill_everything: true, ..RenderOptions::default() });
         assert_eq!(usual.light, plodding.light, "look {at}: leaping changes the picture");
+        let parts = picture(&RenderOptions { light_parts: 3, ..RenderOptions::default() });
+        assert_eq!(usual.light, parts.light, "look {at}: cutting chunks into parts changes the picture");
         for chunk in [1, 5, 1000] {
             let chunked = picture(&RenderOptions { chunk: Some(chunk), ..RenderOptions::default() });
             let differences = usual.light.iter().flatten().zip(chunked.light.iter().flatten());

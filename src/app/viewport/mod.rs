@@ -273,7 +273,9 @@ impl Viewport {
         let request = self.request(look, &wanted).unwrap_or(full);
         let Some(scene) = &mut self.scene else { return Ok(()) };
         let before: u64 = scene.renderer.light_rebuilds().iter().sum();
-        let job = scene.renderer.begin(&scene.volume, &scene.bricks, request, &RenderOptions::default())?;
+        let light_parts = self.refine.light_parts(look);
+        let options = RenderOptions { light_parts, ..RenderOptions::default() };
+        let job = scene.renderer.begin(&scene.volume, &scene.bricks, request, &options)?;
         // Counted upwards from here when the job is complete.
         let tally = Tally { builds: before, size: job.request().size, ..Tally::default() };
         self.running = Some(Running { job, wanted, look, interactive, tally });
@@ -307,6 +309,7 @@ impl Viewport {
         let mut parts: Vec<(Cost, f64)> = Vec::new();
         let mut predicted = 0.0;
         let mut more = true;
+        let mut light_steps = 0;
         while more {
             let Some(stage) = running.job.stage() else { break };
             let [width, height] = running.job.request().size;
@@ -320,6 +323,13 @@ impl Viewport {
             let ms = if stage == Stage::Display { 0.0 } else { self.refine.unit_ms(cost) * units };
             if predicted > 0.0 && predicted + ms > 1.2 * self.refine.batch_ms(look) {
                 break;
+            }
+            if let Cost::Light(_) = cost {
+                // Chunks in empty space cost next to nothing and promise too much for the others.
+                if light_steps == self.refine.light_steps(look) {
+                    break;
+                }
+                light_steps += 1;
             }
             more = scene.renderer.step(&mut running.job)?;
             predicted += ms;
