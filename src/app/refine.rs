@@ -139,7 +139,8 @@ impl Refine {
         let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
         Self {
             software,
-            other_step: Estimate::guess(10.0),
+            // A slice of the upload or of the pyramid; on a software adapter one fills a batch.
+            other_step: Estimate::guess(if software { BATCH_MS } else { 10.0 }),
             light_step: [build(2.0), build(0.5), build(0.2)],
             light_build: [build(400.0), build(60.0), build(10.0)],
             eye_pixel: [[1.0, 1.5, 2.3], [0.4, 0.6, 0.9]]
