@@ -7,11 +7,11 @@ use crate::model::{Kernel, Resolution, Settings};
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
-/// The same on a software adapter: a frame of 66 ms, of which the window itself takes about 25. It
+/// The same on a software adapter: of a frame of 66 ms the window itself takes about 25. It
 /// works within the submission, so this is also how long the window's thread is kept.
-const SOFTWARE_BUDGET_MS: f64 = 40.0;
+const SOFTWARE_BUDGET_MS: f64 = 34.0;
 /// Milliseconds that one batch of a refinement may take on the GPU.
-const BATCH_MS: f64 = 24.0;
+const BATCH_MS: f64 = 20.0;
 /// A change of settings this long ago (seconds) is over: time to refine.
 pub(super) const REST_S: f64 = 0.15;
 

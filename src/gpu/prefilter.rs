@@ -11,8 +11,8 @@ pub(super) fn levels(volume: &GpuVolume) -> u32 {
     volume.pyramid.mip_level_count()
 }
 
-/// Texels per step: 8 fetches each, some 20 ms on a software adapter.
-const STEP_TEXELS: u32 = 1 << 19;
+/// Texels per step: 8 fetches each, some 40 ms on a software adapter.
+const STEP_TEXELS: u32 = 1 << 18;
 
 /// The slices of a level, cut into short steps.
 pub(super) fn steps(volume: &GpuVolume, level: u32) -> Vec<Range<u32>> {

@@ -17,7 +17,7 @@ const PYRAMID_PADDING: usize = 4;
 const MAX_VOXELS: usize = 1024 * BRICK_EDGE;
 
 /// Upload block: small enough that one takes a few milliseconds.
-const UPLOAD_BYTES: usize = 4 << 20;
+const UPLOAD_BYTES: usize = 2 << 20;
 
 /// What every pass works with.
 #[derive(Clone, Copy)]
