@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use chiaroscuro::app::{self, Options};
 use chiaroscuro::cli::{self, CliError};
+use chiaroscuro::gpu::Context;
 
 fn main() -> ExitCode {
     let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error");
@@ -11,6 +12,10 @@ fn main() -> ExitCode {
     ExitCode::from(cli::main(|request| {
         let options =
             Options { source: request.source, load: request.load, session: request.session, adjust: None };
-        app::run(options).map_err(|err| CliError::Window(err.to_string()))
+        app::run(options).map_err(|err| match Context::headless() {
+            // Without an adapter no window opens, and the window system's own words do not say so.
+            Err(no_adapter) => CliError::Gpu(no_adapter),
+            Ok(_) => CliError::Window(err.to_string()),
+        })
     }))
 }

@@ -42,7 +42,7 @@ pub enum CliError {
     #[error(transparent)]
     Export(#[from] ExportError),
     /// The window could not be opened.
-    #[error("the window could not be opened: {0}; `chiaroscuro render FILE -o OUT.png` needs none")]
+    #[error("{0}; `chiaroscuro render FILE -o OUT.png` needs no window")]
     Window(String),
 }
 
