@@ -58,11 +58,10 @@ impl LightVolume {
     }
 }
 
-/// The bricks of a light volume in which an eye sample can look up attenuation: those that either
-/// transfer function shows, and one further on every side for interpolation, bias and stretch.
-pub(super) fn needed_bricks(volume: &GpuVolume, shown: &BrickSet, divisor: usize) -> BrickSet {
+/// The bricks of a light volume that hold the given bricks of the data.
+pub(super) fn bricks_holding(volume: &GpuVolume, lit: &BrickSet, divisor: usize) -> BrickSet {
     let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
-    shown.dilated(1).coarsened(divisor, brick_dims(dims))
+    lit.coarsened(divisor, brick_dims(dims))
 }
 
 /// The data bricks whose sheets the back-projection of `filled` reads: within the reverse kernel of

@@ -8,7 +8,7 @@ use super::eye::EyePass;
 use super::job::{Job, LightBuild, LightStep, Stage, Step};
 use super::light_backproject::{Schedule, backproject};
 use super::light_march::{Sheets, march};
-use super::light_volume::{LightVolume, needed_bricks};
+use super::light_volume::{LightVolume, bricks_holding};
 use super::picture::{Picture, RenderOptions, Report};
 use super::readback::read_texture;
 use super::tables::Tables;
@@ -273,16 +273,13 @@ impl Renderer {
         };
         let count = request.settings.lights.len();
         self.rebuilds.resize(self.rebuilds.len().max(count), 0);
-        let shown = if self.options.fill_everything {
-            BrickSet::full(volume.bricks.dims)
-        } else {
-            tables.eye.occupied.union(&tables.lighting.occupied)
-        };
+        let everything = self.options.fill_everything.then(|| BrickSet::full(volume.bricks.dims));
+        let lit = everything.as_ref().unwrap_or(&tables.lit);
         let mut keys = vec![None; count];
         let mut builds: Vec<LightBuild> = Vec::new();
         for (light, slot) in keys.iter_mut().enumerate() {
             let Some(full) = LightKey::of(request, light) else { continue };
-            let needed = |key: &LightKey| needed_bricks(volume, &shown, key.resolution().divisor());
+            let needed = |key: &LightKey| bricks_holding(volume, lit, key.resolution().divisor());
             let usable = |known: &LightVolume, key: &LightKey| {
                 known.key == *key && needed(key).is_within(&known.filled)
             };

@@ -6,10 +6,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 12] = [
+pub const SHADERS: [(&str, &str); 13] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
     ("common/lights.wgsl", include_str!("../../shaders/common/lights.wgsl")),
+    ("common/resample.wgsl", include_str!("../../shaders/common/resample.wgsl")),
     ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
     ("common/table.wgsl", include_str!("../../shaders/common/table.wgsl")),
     ("common/volume.wgsl", include_str!("../../shaders/common/volume.wgsl")),

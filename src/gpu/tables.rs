@@ -31,6 +31,9 @@ pub(super) struct Tables {
     pub eye: Table,
     /// What the light meets.
     pub lighting: Table,
+    /// Bricks in which an eye sample can look up attenuation: those that either shows, and one
+    /// further on every side for interpolation, bias and stretch.
+    pub lit: BrickSet,
     /// Distances in bricks to the nearest that the eye sees.
     pub eye_distances: wgpu::TextureView,
 }
@@ -43,7 +46,9 @@ impl Tables {
         let lighting = Table::new(context, volume, settings.baked_lighting(range, &volume.scene));
         let distances: Vec<u8> = eye.occupied.distances();
         let texture = upload_bricks(context, "Tables::eye_distances", eye.occupied.dims, &distances, 1)?;
-        Ok(Self { eye, lighting, eye_distances: texture })
+        // Once per transfer function: at 512³ voxels this takes longer than the rest of a picture's plan.
+        let lit = eye.occupied.union(&lighting.occupied).dilated(1);
+        Ok(Self { eye, lighting, lit, eye_distances: texture })
     }
 
     /// Brings the tables up to date with changed settings.

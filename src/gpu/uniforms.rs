@@ -86,7 +86,7 @@ pub struct Grid {
     pub pad2: i32,
 }
 
-/// `prefilter.wgsl` and `downsample.wgsl`.
+/// `common/resample.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Slices {

@@ -1,0 +1,35 @@
+// What the levels of the pyramid are made with: eight linear fetches around a texel, a part of the
+// slices at a time.
+struct Slices {
+    // First, and one beyond the last: a whole level could keep a slow adapter busy for seconds.
+    first: u32,
+    end: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+@group(0) @binding(0) var source: texture_3d<f32>;
+@group(0) @binding(1) var clamped: sampler;
+@group(0) @binding(2) var level: texture_storage_3d<STORAGE_FORMAT, write>;
+@group(0) @binding(3) var<uniform> slices: Slices;
+
+// The texel of the level that an invocation fills; beyond the level, or the slices, is none.
+fn texel_of(invocation: vec3u) -> vec3u {
+    return invocation + vec3u(0u, 0u, slices.first);
+}
+
+fn is_filled(texel: vec3u) -> bool {
+    return all(texel < textureDimensions(level)) && texel.z < slices.end;
+}
+
+// The mean of the fetches at the corners of a cube of half width `offset`, in texels of the source:
+// a product of the kernels that the shaders derive.
+fn mean_around(centre: vec3f, offset: f32) -> f32 {
+    let scale = 1.0 / vec3f(textureDimensions(source));
+    var sum = 0.0;
+    for (var corner = 0u; corner < 8u; corner += 1u) {
+        let side = vec3f(f32(corner & 1u), f32(corner >> 1u & 1u), f32(corner >> 2u)) * 2.0 - 1.0;
+        sum += textureSampleLevel(source, clamped, (centre + side * offset) * scale, 0.0).r;
+    }
+    return sum / 8.0;
+}
