@@ -54,7 +54,7 @@ struct Running {
 #[derive(Debug)]
 pub(super) struct Loader {
     context: Context,
-    /// The pipelines of the window's device, for every volume's renderer.
+    /// The pipelines of that device, for every volume's renderer.
     shaders: ShaderLibrary,
     options: LoadOptions,
     running: Option<Running>,
@@ -143,12 +143,10 @@ fn open(
         return Outcome::Cancelled;
     }
     phase.store(2, Ordering::Relaxed);
-    // Beside the window's device, not on it: the first look is long work.
-    let look = context.sibling().and_then(|beside| {
-        let mut renderer = Renderer::new(&beside)?;
+    let look = Renderer::with_shaders(context, shaders).and_then(|mut renderer| {
         phase.store(3, Ordering::Relaxed);
         let settings = first_look(&mut renderer, &volume, &bricks, &histogram)?;
-        Ok((Renderer::with_shaders(context, shaders)?, settings))
+        Ok((renderer, settings))
     });
     if control.is_cancelled() {
         return Outcome::Cancelled;

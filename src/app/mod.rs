@@ -186,14 +186,15 @@ impl App {
     pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
         let no_wgpu = || GpuError::Refused("the window has no wgpu device".to_owned());
         let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
-        let context = Context::new(&paint.adapter, paint.device.clone(), paint.queue.clone())?;
+        // The window's own device draws the window alone: pictures are made beside it.
+        let context = Context::new(&paint.adapter, paint.device, paint.queue)?.sibling()?;
         theme::apply(&cc.egui_ctx);
         let Options { source, load, session, adjust } = options;
         let mut app = Self {
             settings: Settings::default(),
             defaults: Settings::default(),
             volume: None,
-            viewport: Viewport::new(context.clone(), paint, &cc.egui_ctx)?,
+            viewport: Viewport::new(context.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load)?,
             balance: None,

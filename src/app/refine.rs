@@ -7,13 +7,13 @@ use crate::model::{Kernel, Resolution, Settings};
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
-/// The same on a software adapter: of a frame of 66 ms the window itself takes about 25. It
-/// works within the submission, so this is also how long the window's thread is kept.
-const SOFTWARE_BUDGET_MS: f64 = 34.0;
-/// Milliseconds that one batch of a refinement may take on the GPU.
-const BATCH_MS: f64 = 20.0;
-/// A change of settings this long ago (seconds) is over: time to refine.
-pub(super) const REST_S: f64 = 0.15;
+/// The same on a software adapter: of a frame of 66 ms the window itself takes about 25.
+const SOFTWARE_BUDGET_MS: f64 = 40.0;
+/// Bands into which a picture is cut on a software adapter, where one may take seconds: between
+/// them the painter looks whether something else is wanted.
+const SOFTWARE_BANDS: u32 = 16;
+/// Pixels of a band on a graphics card: far below what driver watchdogs allow.
+const BAND_PIXELS: u32 = 1 << 18;
 
 /// How a request is rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,17 +52,6 @@ impl Look {
     }
 }
 
-/// The kinds of steps that cost differently.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Cost {
-    /// Uploads and such, by step.
-    Other,
-    /// Light pass, by step.
-    Light(Look),
-    /// Eye pass, by pixel.
-    Eye(Look),
-}
-
 /// Light volumes that a request needs and that are not there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Missing {
@@ -94,29 +83,19 @@ impl Estimate {
     fn observe(&mut self, ms: f64) {
         self.scale(ms / self.ms);
     }
-
-    /// Up at once, down slowly: the empty rows above an object say nothing about the object.
-    fn bound(&mut self, factor: f64) {
-        self.ms = (self.ms * factor.clamp(0.7, 50.0)).clamp(1e-9, 1e5);
-        self.measured = true;
-    }
 }
 
 /// Learns what things cost here.
 #[derive(Debug, Clone)]
 pub(super) struct Refine {
     software: bool,
-    other_step: Estimate,
     /// By resolution and by quick kernel.
-    light_step: [[Estimate; 2]; 3],
     light_build: [[Estimate; 2]; 3],
     /// Milliseconds per pixel of whole pictures: exact and quick, by scale. Neighbouring rays share
     /// less of what they read in small pictures, whose pixels cost more.
     eye_pixel: [[Estimate; 3]; 2],
     /// Exact and quick: a first picture was seen, whose time was that of compiling, too.
     warm: [bool; 2],
-    /// The same for the rows that cost most at full quality, which decides how many fit in a batch.
-    eye_busy_pixel: Estimate,
 }
 
 fn resolution_index(coarse: Option<Resolution>) -> usize {
@@ -134,19 +113,14 @@ fn scale_index(scale: u32) -> usize {
 impl Refine {
     /// Cautious guesses for an adapter.
     pub(super) fn new(software: bool) -> Self {
-        // Too slow a guess costs one coarse preview, too quick a guess a window that stands still.
-        let slow = if software { 60.0 } else { 1.0 };
+        let slow = if software { 20.0 } else { 1.0 };
         let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
         Self {
             software,
-            // A slice of the upload or of the pyramid; on a software adapter one fills a batch.
-            other_step: Estimate::guess(if software { BATCH_MS } else { 10.0 }),
-            light_step: [build(2.0), build(0.5), build(0.2)],
             light_build: [build(400.0), build(60.0), build(10.0)],
             eye_pixel: [[1.0, 1.5, 2.3], [0.4, 0.6, 0.9]]
                 .map(|row| row.map(|ms| Estimate::guess(ms * slow * 2e-5))),
             warm: [false; 2],
-            eye_busy_pixel: Estimate::guess(slow * 5e-5),
         }
     }
 
@@ -155,65 +129,18 @@ impl Refine {
         if self.software { SOFTWARE_BUDGET_MS } else { BUDGET_MS }
     }
 
-    /// Milliseconds that a batch may take. A preview that fits in a frame is not cut up: every batch
-    /// costs a frame of the window.
-    pub(super) fn batch_ms(&self, look: Look) -> f64 {
-        if look == Look::FULL { BATCH_MS } else { 1.5 * self.budget_ms() }
-    }
-
-    /// Steps of the light pass that a batch may hold, whatever they are expected to take.
-    pub(super) fn light_steps(&self, look: Look) -> usize {
-        if look == Look::FULL && self.software { 2 } else { usize::MAX }
-    }
-
     /// Pieces into which a chunk of the light pass is cut.
     pub(super) fn light_parts(&self, look: Look) -> u32 {
-        // On a software adapter half a chunk of a 256³ volume takes some 20 ms.
+        // Half a chunk of a 256³ volume takes a software adapter some 20 ms.
         if look == Look::FULL && self.software { 2 } else { 1 }
     }
 
-    /// Milliseconds that one step (or pixel) is expected to take.
-    pub(super) fn unit_ms(&self, cost: Cost) -> f64 {
-        match cost {
-            Cost::Other => self.other_step.ms,
-            Cost::Light(look) => {
-                self.light_step[resolution_index(look.coarse)][usize::from(look.quick_light)].ms
-            }
-            Cost::Eye(Look::FULL) => self.eye_busy_pixel.ms,
-            Cost::Eye(look) => self.eye_pixel[usize::from(look.quick_eye)][scale_index(look.scale)].ms,
-        }
-    }
-
-    /// Rows of a picture that one batch can hold.
-    pub(super) fn rows(&self, look: Look, width: u32) -> u32 {
-        let row_ms = self.unit_ms(Cost::Eye(look)) * f64::from(width);
-        // Never so few that the submissions cost more than the work.
-        ((self.batch_ms(look) / row_ms) as u32).max(4)
-    }
-
-    /// Learns from a batch: what it was made of, as predicted milliseconds, and what it took.
-    pub(super) fn learn(&mut self, parts: &[(Cost, f64)], took_ms: f64) {
-        let predicted: f64 = parts.iter().map(|part| part.1).sum();
-        if !(predicted > 0.0 && took_ms.is_finite()) {
-            return;
-        }
-        for &(cost, part) in parts {
-            // What is a small part of the batch says little about its own cost.
-            if part < 0.2 * predicted {
-                continue;
-            }
-            let factor = took_ms.max(0.05) / predicted;
-            match cost {
-                Cost::Other => self.other_step.scale(factor),
-                Cost::Light(look) => {
-                    self.light_step[resolution_index(look.coarse)][usize::from(look.quick_light)]
-                        .scale(factor);
-                }
-                Cost::Eye(Look::FULL) => self.eye_busy_pixel.bound(factor),
-                // Learnt by the whole picture.
-                Cost::Eye(_) => {}
-            }
-        }
+    /// Rows of a band of a picture of some size.
+    pub(super) fn rows(&self, look: Look, [width, height]: [u32; 2]) -> u32 {
+        // A preview is finished whatever happens.
+        let whole =
+            if self.software && look == Look::FULL { height.div_ceil(SOFTWARE_BANDS) } else { height };
+        whole.min(BAND_PIXELS / width.max(1)).max(1)
     }
 
     /// Learns what the eye pass of a whole picture took.
@@ -333,24 +260,30 @@ mod tests {
 
     #[test]
     fn estimates_follow_what_is_measured() {
-        let mut refine = Refine::new(true);
-        let cost = Cost::Light(Look::FULL);
+        let mut refine = Refine::new(false);
         for _ in 0..20 {
-            let predicted = refine.unit_ms(cost) * 10.0;
-            refine.learn(&[(cost, predicted)], 25.0);
+            refine.learn_picture(Look::FULL, 1e6, 200.0);
+            refine.learn_build(Look::FULL, 500.0);
         }
-        assert!((refine.unit_ms(cost) - 2.5).abs() < 0.1);
-        let cost = Cost::Eye(Look::FULL);
-        let rows = refine.rows(Look::FULL, 100);
-        refine.learn(&[(cost, 30.0)], 0.1);
-        let after_empty_rows = refine.rows(Look::FULL, 100);
-        assert!(after_empty_rows > rows && after_empty_rows < 2 * rows);
-        refine.learn(&[(cost, 30.0)], 300.0);
-        assert!(
-            refine.rows(Look::FULL, 100) <= after_empty_rows / 9,
-            "a batch that was too long is the last"
-        );
-        refine.learn(&[(cost, 1.0)], f64::INFINITY);
-        assert!(refine.unit_ms(cost).is_finite(), "a lost device teaches nothing");
+        let slow = refine.preview([1000, 1000], ONE);
+        assert!(slow.scale > 1 && slow.coarse.is_some(), "{slow:?}");
+        for _ in 0..20 {
+            refine.learn_picture(Look::FULL, 1e6, 2.0);
+            refine.learn_build(Look::FULL, 1.0);
+        }
+        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL);
+        refine.learn_picture(Look::FULL, 1e6, f64::INFINITY);
+        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL, "a lost device teaches nothing");
+    }
+
+    #[test]
+    fn bands_cover_pictures_and_respect_watchdogs() {
+        for software in [false, true] {
+            let refine = Refine::new(software);
+            for size in [[1, 1], [800, 600], [7680, 4320], [32768, 10]] {
+                let rows = refine.rows(Look::FULL, size);
+                assert!(rows >= 1 && (rows == 1 || rows * size[0] <= BAND_PIXELS), "{size:?}: {rows}");
+            }
+        }
     }
 }

@@ -139,11 +139,24 @@ impl Context {
     /// # Errors
     /// When the adapter gives no second device.
     pub fn sibling(&self) -> Result<Self, GpuError> {
-        let (device, queue) =
-            pollster::block_on(self.adapter.request_device(&device_descriptor(&self.adapter)))
-                .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
-        let sibling = Self::new(&self.adapter, device, queue)?;
+        // Mesa's software driver takes a fence of one device for passed only when what others of the
+        // same instance have drawn is done, too: every wait would last a frame of the window longer.
+        let adapter = if self.is_software() { self.same_adapter_elsewhere() } else { None };
+        let adapter = adapter.as_ref().unwrap_or(&self.adapter);
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
+            .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
+        let sibling = Self::new(adapter, device, queue)?;
         Ok(Self { storage_format: self.storage_format, ..sibling })
+    }
+
+    /// This adapter as an instance of its own sees it.
+    fn same_adapter_elsewhere(&self) -> Option<wgpu::Adapter> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: self.info.backend.into(),
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        let adapters = pollster::block_on(instance.enumerate_adapters(self.info.backend.into()));
+        adapters.into_iter().find(|adapter| adapter.get_info() == self.info)
     }
 
     /// Whether the adapter is the CPU.

@@ -103,9 +103,13 @@ impl Renderer {
         &self.report
     }
 
-    /// What is shown now: sRGB bytes, and its size.
-    pub fn shown(&self) -> Option<(&wgpu::TextureView, [u32; 2])> {
-        self.front.as_ref().map(|target| (&target.shown_view, target.size))
+    /// Reads back what is shown now: sRGB bytes, RGBA, row by row from the top left.
+    ///
+    /// # Errors
+    /// When there is no picture or the GPU cannot do it.
+    pub fn read_shown(&self) -> Result<Vec<u8>, GpuError> {
+        let none = || GpuError::Refused("no picture was drawn".to_owned());
+        read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.shown)
     }
 
     /// Makes a picture and waits for it.
@@ -128,7 +132,7 @@ impl Renderer {
         let float = |word: &[u8]| f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
         let light =
             bytes.chunks_exact(16).map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect();
-        let shown = read_texture(&self.context, &target.shown)?;
+        let shown = self.read_shown()?;
         self.report.readback_ms += milliseconds(start);
         Ok(Picture { size, light, shown })
     }
@@ -208,7 +212,7 @@ impl Renderer {
     }
 
     /// Submits the next step. Returns whether there are more; after the last one the new picture is
-    /// what [`Self::shown`] gives, as soon as the GPU has done it.
+    /// what [`Self::read_shown`] gives.
     ///
     /// # Errors
     /// What the device complains about.

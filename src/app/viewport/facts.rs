@@ -1,9 +1,8 @@
 //! What the rest of the window may know of the renderer.
 
 use super::Viewport;
+use crate::gpu::Stage;
 use crate::model::Settings;
-
-use super::super::refine::Look;
 
 /// What is going on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,9 +30,9 @@ pub(in crate::app) struct Facts {
     pub driver: String,
     /// Whether the adapter is the CPU.
     pub software: bool,
-    /// GPU milliseconds of the last full-quality picture.
+    /// Milliseconds of the last full-quality picture.
     pub full_ms: Option<f64>,
-    /// GPU milliseconds of the last preview.
+    /// Milliseconds of the last preview.
     pub preview_ms: Option<f64>,
     /// How often light volumes were filled.
     pub light_rebuilds: u64,
@@ -49,37 +48,31 @@ impl Viewport {
     /// Figures about the renderer.
     pub(in crate::app) fn facts(&self, settings: &Settings) -> Facts {
         let info = &self.context.info;
-        let renderer = self.scene.as_ref().map(|scene| &scene.renderer);
+        let figures = self.painter.figures();
         Facts {
             adapter: info.name.clone(),
             driver: format!("{:?} · {} {}", info.backend, info.driver, info.driver_info).trim().to_owned(),
             software: self.context.is_software(),
-            full_ms: self.full_ms,
-            preview_ms: self.preview_ms,
-            light_rebuilds: renderer.map_or(0, |renderer| renderer.light_rebuilds().iter().sum()),
-            cached_light_volumes: renderer.map_or(0, crate::gpu::Renderer::cached_light_volumes),
-            gpu_mebibytes: renderer.map_or(0.0, |renderer| renderer.gpu_bytes() as f64 / f64::from(1 << 20)),
-            doing: self.doing(settings),
+            full_ms: figures.full_ms,
+            preview_ms: figures.preview_ms,
+            light_rebuilds: figures.light_rebuilds,
+            cached_light_volumes: figures.cached_light_volumes,
+            gpu_mebibytes: figures.gpu_bytes as f64 / f64::from(1 << 20),
+            doing: self.doing(settings, figures.refining),
         }
     }
 
-    fn doing(&self, settings: &Settings) -> Doing {
+    fn doing(&self, settings: &Settings, refining: Option<(Stage, f32)>) -> Doing {
         if self.lost {
             Doing::Lost
-        } else if self.scene.is_none() {
+        } else if self.volume.is_none() {
             Doing::Nothing
         } else if self.is_idle(settings) {
             Doing::FullQuality
         } else if self.failed.is_some() && self.failed == self.wanted {
             Doing::Failed
         } else {
-            match &self.running {
-                Some(running) if running.look == Look::FULL => {
-                    let label = running.job.stage().map_or("drawing the picture", crate::gpu::Stage::label);
-                    Doing::Refining(label, running.job.progress().clamp(0.0, 1.0))
-                }
-                _ => Doing::Preview,
-            }
+            refining.map_or(Doing::Preview, |(stage, share)| Doing::Refining(stage.label(), share))
         }
     }
 }
