@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use chiaroscuro::app::{App, Options, wgpu_setup};
 use chiaroscuro::data::Bricks;
 use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
-use chiaroscuro::gpu::{Context, RenderOptions, Renderer, export_png};
+use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer, export_png};
 use chiaroscuro::model::{LightKind, Projection};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
@@ -89,14 +89,18 @@ fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
 }
 
 /// What the renderer makes of the window's settings, on a device of its own.
-fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> chiaroscuro::gpu::Picture {
+fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> Picture {
+    render_with(harness, size, &RenderOptions::default())
+}
+
+fn render_with(harness: &Harness<'_, App>, size: [u32; 2], options: &RenderOptions) -> Picture {
     let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
     let volume = Arc::new(volume);
     let bricks = Arc::new(Bricks::of(&volume));
     let context = Context::headless().expect("an adapter");
     let mut renderer = Renderer::new(&context).expect("a renderer");
     let settings = harness.state().settings();
-    renderer.render(&volume, &bricks, settings, size, &RenderOptions::default()).expect("a picture")
+    renderer.render(&volume, &bricks, settings, size, options).expect("a picture")
 }
 
 fn click(harness: &mut Harness<'_, App>, label: &str) {
@@ -214,7 +218,41 @@ fn exports_are_what_the_renderer_makes() {
     harness.state_mut().export(&exported, [200, 150], &ctx);
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     export_png(&render(&harness, [200, 150]), false, &expected).unwrap();
-    assert!(std::fs::read(exported).unwrap() == std::fs::read(expected).unwrap());
+    assert!(std::fs::read(&exported).unwrap() == std::fs::read(&expected).unwrap());
+
+    // The open export window, with its box ticked.
+    click(&mut harness, "Transparent background");
+    click(&mut harness, "Export");
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let options = RenderOptions { transparent: true, ..RenderOptions::default() };
+    export_png(&render_with(&harness, [200, 150], &options), true, &expected).unwrap();
+    assert!(std::fs::read(&exported).unwrap() == std::fs::read(&expected).unwrap());
+    assert!(harness.state().errors().is_empty());
+}
+
+/// A file that the mouse has brought.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|err| err.to_string())
+    }
+}
+
+#[test]
+fn a_dropped_file_opens() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ramp_8x9x10_uint8.raw");
+    std::fs::write(&path, (0..720).map(|i| (i / 3) as u8).collect::<Vec<_>>()).unwrap();
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("ramp"));
+    wait_until_idle(&mut harness);
     assert!(harness.state().errors().is_empty());
 }
 
