@@ -6,6 +6,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
@@ -73,6 +74,7 @@ impl Shared {
 /// The window's end of the thread, which ends with it.
 pub(super) struct Painter {
     shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
 }
 
 impl std::fmt::Debug for Painter {
@@ -85,6 +87,10 @@ impl Drop for Painter {
     fn drop(&mut self) {
         self.shared.desk().closed = true;
         self.shared.changed.notify_one();
+        // A driver must not be unloaded while a thread is in it. Panics were caught.
+        if let Some(thread) = self.thread.take() {
+            drop(thread.join());
+        }
     }
 }
 
@@ -93,14 +99,14 @@ impl Painter {
     pub(super) fn start(context: Context, ctx: egui::Context) -> std::io::Result<Self> {
         let shared = Arc::<Shared>::default();
         let theirs = Arc::clone(&shared);
-        std::thread::Builder::new().name("painter".to_owned()).spawn(move || {
+        let thread = std::thread::Builder::new().name("painter".to_owned()).spawn(move || {
             let mut easel = Easel::new(&context, ctx, theirs);
             // wgpu panics when a device is lost in the middle of a call.
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| easel.work())) {
                 easel.tell(GpuError::Lost(panic_message(&*panic)));
             }
         })?;
-        Ok(Self { shared })
+        Ok(Self { shared, thread: Some(thread) })
     }
 
     /// Renders this from now on.
