@@ -3,7 +3,7 @@
 //
 // The result is linear, premultiplied and not yet tone-mapped.
 #import "common/table.wgsl"
-#import "common/bricks.wgsl"
+#import "common/shadow_ray.wgsl"
 #import "common/lights.wgsl"
 
 struct Eye {
@@ -34,6 +34,10 @@ struct Eye {
 // Distance in bricks to the nearest that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
+// For rays to lights: the lighting transfer function, and the distance in bricks to the nearest that
+// it makes attenuate light.
+@group(0) @binding(4) var<storage, read> lighting_table: array<vec4f, 1024>;
+@group(0) @binding(5) var lighting_distances: texture_3d<u32>;
 
 @group(2) @binding(0) var attenuation_0: texture_3d<f32>;
 @group(2) @binding(1) var attenuation_1: texture_3d<f32>;
@@ -46,24 +50,40 @@ struct Eye {
 
 // Lights that are on; those with an attenuation volume come first.
 override LIGHTS: u32 = 1u;
-// How many of them have one.
+// How many of them have one, or would have.
 override SHADOWED: u32 = 1u;
+// Cast rays to the lights instead of looking into volumes (P §3.3).
+override DIRECT: bool = false;
 
 fn to_index(v: vec3f) -> vec3f {
     return vec3f(dot(eye.index_from_scene_x.xyz, v), dot(eye.index_from_scene_y.xyz, v), dot(eye.index_from_scene_z.xyz, v));
 }
 
-fn to_light(light: Light, surface: Surface) -> vec3f {
-    let away = light.place - surface.position * light.perspective;
-    return away / max(length(away), 1e-9);
+fn light_extinction(density: f32) -> f32 {
+    let at = clamp(density, 0.0, 1.0) * f32(TABLE_SIZE - 1u);
+    let low = min(u32(at), TABLE_SIZE - 2u);
+    return mix(lighting_table[low].a, lighting_table[low + 1u].a, at - f32(low));
+}
+
+fn light_distance(brick: vec3i) -> i32 {
+    return select(0, i32(textureLoad(lighting_distances, brick, 0).r), eye.leaping != 0u);
 }
 
 fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
-    let towards = to_light(light, surface);
-    let p = surface.point + to_index(towards * eye.shading.bias);
-    let attenuation = textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0).r;
-    return reflect_light(eye.shading, light, surface, towards, attenuation);
+    let towards = to_light(light, surface.position);
+    let direction = to_index(towards.direction);
+    let p = surface.point + direction * eye.shading.bias;
+    var attenuation: f32;
+    if (DIRECT) {
+        let reach = towards.distance - eye.shading.bias;
+        let s = eye.shading;
+        attenuation = shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth)
+            * hood_share(light, towards.direction);
+    } else {
+        attenuation = textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0).r;
+    }
+    return reflect_light(eye.shading, light, surface, towards.direction, attenuation);
 }
 
 fn add(a: Lit, b: Lit) -> Lit {
@@ -115,7 +135,7 @@ fn shade(p: vec3f, level: f32, material: vec3f) -> vec3f {
     if (SHADOWED > 7u) { lit = add(lit, lit_by(7u, attenuation_7, surface)); }
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
         let light = eye.lights[i];
-        lit = add(lit, reflect_light(s, light, surface, to_light(light, surface), 1.0));
+        lit = add(lit, reflect_light(s, light, surface, to_light(light, surface.position).direction, 1.0));
     }
     return material * (s.emission + s.ambient + s.diffuse * lit.diffuse) + s.specular * lit.specular;
 }

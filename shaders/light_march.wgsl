@@ -15,9 +15,14 @@ struct March {
     // Rows of this dispatch: first, and one beyond the last.
     first_row: u32,
     end_row: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    // Multiplies extinctions.
+    extinction_scale: f32,
+    // The light's hood, as in common/lights.wgsl, its axis along the sheets' axes.
+    hood_inner: f32,
+    hood_outer: f32,
+    hood_axis: vec3f,
+    // Light is followed until less than this is left of it.
+    dark: f32,
 }
 
 @group(0) @binding(0) var<uniform> march: March;
@@ -30,13 +35,17 @@ struct March {
 // P eq. 10 read literally takes the transmittance in front of the slab.
 override DEPOSIT_FRONT: bool = false;
 
-// Below this no display shows a difference: 1/16 of an 8-bit step.
-const DARK = 1.0 / 4096.0;
-
 // The mean transmittance over a slab of optical depth tau, over that in front of it: (1 − e^−τ)/τ.
 fn slab_mean(tau: f32) -> f32 {
     // The series avoids 0/0; at 0.01 its error is τ³/24 = 4e-8.
     return select((1.0 - exp(-tau)) / tau, 1.0 - tau * (0.5 - tau / 6.0), tau < 0.01);
+}
+
+// What the hood lets through to a pixel: the sheet in front of the first slab.
+fn unattenuated(pixel: vec2f) -> f32 {
+    let slope = march.frame.slope + march.frame.slope_di * pixel.x + march.frame.slope_dj * pixel.y;
+    let along = normalize(vec3f(slope, 1.0));
+    return smoothstep(march.hood_outer, march.hood_inner, dot(march.hood_axis, along));
 }
 
 @compute @workgroup_size(8, 8)
@@ -50,7 +59,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
     let pixel = id.y * march.frame.size.x + id.x;
     let end = i32(march.end);
     var k = i32(march.begin);
-    var t = select(transmittance[pixel], 1.0, march.begin == 0u);
+    var t = select(transmittance[pixel], unattenuated(vec2f(id.xy)), march.begin == 0u);
     loop {
         // Cheap steps in a loop of their own: leap over what nobody reads, and pass the light on
         // where nothing attenuates it. Software drivers save work only by leaving a loop.
@@ -63,7 +72,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
             if (distance.r > 0) {
                 k = leap(march.frame, ray, k, brick, distance.r);
             } else {
-                if (distance.g <= grid.dilation && t > DARK && k >= inside.x && k <= inside.y) {
+                if (distance.g <= grid.dilation && t > march.dark && k >= inside.x && k <= inside.y) {
                     break;
                 }
                 textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(t));
@@ -74,7 +83,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
             break;
         }
         let extinction = classify(slab_density(march.frame, ray, f32(k))).a;
-        let tau = extinction * march.frame.slab * ray.obliquity;
+        let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
         let deposit = select(t * slab_mean(tau), t, DEPOSIT_FRONT);
         textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(deposit));
         t *= exp(-tau);

@@ -25,7 +25,7 @@ fn window() -> Harness<'static, App> {
     // As the tests of the renderer: the first adapter that there is, software included.
     setup.power_preference = wgpu::PowerPreference::None;
     let mut harness = Harness::builder()
-        .with_size(Vec2::new(760.0, 860.0))
+        .with_size(Vec2::new(760.0, 1100.0))
         .with_step_dt(0.1)
         .wgpu_setup(setup.into())
         .build_eframe(|cc| App::new(cc, options).expect("a window"));

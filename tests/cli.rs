@@ -547,7 +547,7 @@ fn a_picture_and_its_report_are_written() {
     );
     assert_eq!(
         keys(&report["stages_ms"]),
-        ["bricks", "eye", "light_backproject", "light_march", "readback", "upload"]
+        ["bricks", "eye", "light_backproject", "light_march", "light_raycast", "readback", "upload"]
     );
     for (stage, took) in report["stages_ms"].as_object().expect("an object") {
         assert!(took.as_f64().is_some_and(|ms| (0.0..60_000.0).contains(&ms)), "{stage}: {took}");
@@ -747,7 +747,7 @@ fn orbiting_is_timed_and_rebuilds_no_light_volume() {
     assert_eq!(orbit["size"], serde_json::json!([32, 32]));
     assert_eq!(orbit["dims"], serde_json::json!([16, 16, 16]));
     assert_eq!(keys(&orbit["wall_ms"]), ["max", "median", "min"]);
-    assert_has_keys(&orbit["stages"], &["eye", "light_march", "light_backproject"]);
+    assert_has_keys(&orbit["stages"], &["eye", "light_march", "light_raycast", "light_backproject"]);
     assert!(orbit["wall_ms"]["median"].as_f64().is_some_and(|ms| ms > 0.0), "{orbit}");
     assert!(cases.iter().all(|case| case["name"] != "light-drag"), "only what was asked for");
 

@@ -211,7 +211,20 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         size,
     });
     let grid = layout!(Grid { dims, dilation, density_scale, pad0, pyramid_scale, pad1, bricks, pad2 });
-    let light = layout!(Light { place, perspective, color, shadowed, lookup, pad0 });
+    let light = layout!(Light {
+        place,
+        perspective,
+        color,
+        shadowed,
+        lookup,
+        hood_inner,
+        hood_axis,
+        hood_outer,
+        extinction_scale,
+        pad0,
+        pad1,
+        pad2,
+    });
     vec![
         ("eye.wgsl", frame.clone()),
         ("light_march.wgsl", frame.clone()),
@@ -220,7 +233,19 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light_march.wgsl", grid),
         (
             "light_march.wgsl",
-            layout!(March { frame, begin, end, layers, first_row, end_row, pad0, pad1, pad2 }),
+            layout!(March {
+                frame,
+                begin,
+                end,
+                layers,
+                first_row,
+                end_row,
+                extinction_scale,
+                hood_inner,
+                hood_outer,
+                hood_axis,
+                dark,
+            }),
         ),
         (
             "light_backproject.wgsl",
@@ -240,6 +265,25 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 bricks,
             }),
         ),
+        ("light_raycast.wgsl", light.clone()),
+        (
+            "light_raycast.wgsl",
+            layout!(Raycast {
+                light,
+                scene_from_index_x,
+                scene_from_index_y,
+                scene_from_index_z,
+                index_from_scene_x,
+                index_from_scene_y,
+                index_from_scene_z,
+                dims,
+                bricks,
+                voxel_step,
+                ray_step,
+                dark,
+                leaping,
+            }),
+        ),
         ("eye.wgsl", light),
         (
             "eye.wgsl",
@@ -254,8 +298,8 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 ambient_offset,
                 gain,
                 bias,
-                pad0,
-                pad1,
+                ray_step,
+                dark_depth,
             }),
         ),
         (
@@ -374,21 +418,24 @@ fn every_shared_struct_is_compared() {
 #[test]
 fn differing_structs_are_reported() {
     let source = joined("light_march.wgsl");
-    let (_, march) = mirrored()
-        .into_iter()
-        .find(|(shader, layout)| *shader == "light_march.wgsl" && layout.name == "March")
-        .expect("it is compared");
-    let wrong = |from: &str, to: &str| {
+    let layout_of = |name: &str| {
+        let found = mirrored()
+            .into_iter()
+            .find(|(shader, layout)| *shader == "light_march.wgsl" && layout.name == name);
+        found.expect("it is compared").1
+    };
+    let (march, grid) = (layout_of("March"), layout_of("Grid"));
+    let wrong = |layout: &Layout, from: &str, to: &str| {
         assert!(source.contains(from), "{from}");
         let module = check(&source.replacen(from, to, 1)).expect("a valid shader all the same");
-        differences(&march, &module)
+        differences(layout, &module)
     };
-    assert_eq!(wrong("struct March", "struct March"), Vec::<String>::new());
-    let swapped = wrong("begin: u32,\n    end: u32,", "end: u32,\n    begin: u32,");
+    assert_eq!(wrong(&march, "struct March", "struct March"), Vec::<String>::new());
+    let swapped = wrong(&march, "begin: u32,\n    end: u32,", "end: u32,\n    begin: u32,");
     assert_eq!(swapped.len(), 2, "{swapped:?}");
-    let retyped = wrong("pad2: u32,\n}\n\n@group", "pad2: f32,\n}\n\n@group");
+    let retyped = wrong(&grid, "pad2: i32,\n}", "pad2: u32,\n}");
     assert_eq!(retyped.len(), 1, "{retyped:?}");
-    let longer = wrong("pad2: u32,\n}\n\n@group", "pad2: u32,\n    more: vec4f,\n}\n\n@group");
+    let longer = wrong(&grid, "pad2: i32,\n}", "pad2: i32,\n    more: vec4f,\n}");
     assert_eq!(longer.len(), 2, "the size and the field: {longer:?}");
     let absent = Layout { name: "Marsch".to_owned(), ..march.clone() };
     let module = check(&source).expect("the shader is valid");
@@ -481,6 +528,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("eye.wgsl", [8, 8, 1]),
         ("light_backproject.wgsl", [8, 8, 4]),
         ("light_march.wgsl", [8, 8, 1]),
+        ("light_raycast.wgsl", [8, 8, 4]),
         ("prefilter.wgsl", [8, 4, 4]),
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();

@@ -8,11 +8,38 @@ struct Light {
     perspective: f32,
     // Linear colour × intensity.
     color: vec3f,
-    // 1 when it has an attenuation volume.
+    // 1 when material attenuates it.
     shadowed: f32,
     // Index space to texture coordinates of that volume: (p + ½) × lookup.
     lookup: vec3f,
+    // Of the hood: cosines of the angles up to which it shines fully, and from which it does not.
+    hood_inner: f32,
+    // From the light to what it shines at; a unit vector.
+    hood_axis: vec3f,
+    hood_outer: f32,
+    // Multiplies the extinction that this light meets.
+    extinction_scale: f32,
     pad0: f32,
+    pad1: f32,
+    pad2: f32,
+}
+
+struct Towards {
+    // Unit vector to the light.
+    direction: vec3f,
+    // To the light; of a parallel one, beyond all material.
+    distance: f32,
+}
+
+fn to_light(light: Light, position: vec3f) -> Towards {
+    let away = light.place - position * light.perspective;
+    let distance = length(away);
+    return Towards(away / max(distance, 1e-9), select(1e6, distance, light.perspective > 0.5));
+}
+
+// What a hood leaves of the light in a direction: 3t² − 2t³ across the rim.
+fn hood_share(light: Light, to_light: vec3f) -> f32 {
+    return smoothstep(light.hood_outer, light.hood_inner, -dot(light.hood_axis, to_light));
 }
 
 struct Shading {
@@ -28,8 +55,10 @@ struct Shading {
     gain: f32,
     // Length of the step towards the light before looking up its attenuation, in scene units.
     bias: f32,
-    pad0: f32,
-    pad1: f32,
+    // Distance between the samples of a ray to a light, in scene units.
+    ray_step: f32,
+    // Optical depth at which it ends.
+    dark_depth: f32,
 }
 
 // What is lit: a sample of the volume.
@@ -58,7 +87,8 @@ fn received(shading: Shading, attenuation: f32) -> f32 {
 
 // What one light of a given attenuation adds.
 fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, attenuation: f32) -> Lit {
-    let arriving = light.color * select(1.0, received(shading, attenuation), light.shadowed > 0.5);
+    let bare = hood_share(light, to_light);
+    let arriving = light.color * select(bare, received(shading, attenuation), light.shadowed > 0.5);
     let facing = dot(surface.normal, to_light);
     // Two-sided diffuse; even from all sides where there is no surface.
     let diffuse = mix(1.0, abs(facing), surface.surfaceness);

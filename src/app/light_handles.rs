@@ -66,18 +66,19 @@ impl LightHandles {
             if !settings.lights[light].on {
                 continue;
             }
-            let Some(handle) = view.handle(&settings.lights[light]) else { continue };
+            let seen = |settings: &Settings| view.handle(&settings.lights[light].in_world(&settings.camera));
+            let Some(handle) = seen(settings) else { continue };
             let area = Rect::from_center_size(handle.position, Vec2::splat(2.0 * theme::HANDLE_RADIUS + 6.0));
             let response = ui.interact(area, Id::unique("light handle").with(light), Sense::click_and_drag());
             let name = format!("Light handle {}", settings.lights[light].name);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             self.drag(ui, &response, &view, &handle, light, settings, selected);
             let active = response.hovered() || self.drag.is_some_and(|drag| drag.light == light);
-            let handle = view.handle(&settings.lights[light]).unwrap_or(handle);
+            let handle = seen(settings).unwrap_or(handle);
             self.positions.push(handle.position);
             if active {
                 if settings.lights[light].kind == LightKind::Parallel {
-                    guides(&painter, &view, settings.lights[light].direction());
+                    guides(&painter, &view, settings.lights[light].in_world(&settings.camera).direction());
                 }
                 if let Some(middle) = view.point(DVec3::ZERO) {
                     let stroke = Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.7));
@@ -123,7 +124,9 @@ impl LightHandles {
             && response.dragged()
             && ui.input(|input| input.pointer.delta()) != Vec2::ZERO
         {
-            view.move_light(&mut settings.lights[light], pointer + drag.grip, drag.behind);
+            let mut moved = settings.lights[light].in_world(&settings.camera);
+            view.move_light(&mut moved, pointer + drag.grip, drag.behind);
+            settings.lights[light].set_world_position(moved.position.into(), &settings.camera);
         }
         if self.drag.is_some_and(|drag| drag.light == light) && !response.dragged() {
             self.drag = None;
@@ -133,7 +136,9 @@ impl LightHandles {
             self.takes_wheel = true;
             let notches = wheel_notches(ui);
             if notches != 0.0 {
-                view.move_along_sight(&mut settings.lights[light], notches);
+                let mut moved = settings.lights[light].in_world(&settings.camera);
+                view.move_along_sight(&mut moved, notches);
+                settings.lights[light].set_world_position(moved.position.into(), &settings.camera);
             }
         }
     }

@@ -14,6 +14,7 @@ pub(super) struct Samples {
     eye_ms: Vec<f64>,
     light_march_ms: Vec<f64>,
     light_backproject_ms: Vec<f64>,
+    light_raycast_ms: Vec<f64>,
 }
 
 impl Samples {
@@ -29,6 +30,7 @@ impl Samples {
         self.eye_ms.push(report.eye_ms);
         self.light_march_ms.push(report.light_march_ms);
         self.light_backproject_ms.push(report.light_backproject_ms);
+        self.light_raycast_ms.push(report.light_raycast_ms);
         Ok(())
     }
 
@@ -42,11 +44,11 @@ impl Samples {
         if self.cpu_ms.is_empty() { self.wall_median() } else { median(&self.cpu_ms) }
     }
 
-    /// Median of both halves of the light pass together.
+    /// Median of both halves of the light pass together, or of the rays in their place.
     pub(super) fn light_build(&self) -> f64 {
-        let both: Vec<f64> =
-            self.light_march_ms.iter().zip(&self.light_backproject_ms).map(|(a, b)| a + b).collect();
-        median(&both)
+        let halves = self.light_march_ms.iter().zip(&self.light_backproject_ms);
+        let all: Vec<f64> = halves.zip(&self.light_raycast_ms).map(|((a, b), c)| a + b + c).collect();
+        median(&all)
     }
 
     /// Median of the eye pass.
@@ -72,6 +74,7 @@ impl Samples {
                 "eye": round(median(&self.eye_ms)),
                 "light_march": round(median(&self.light_march_ms)),
                 "light_backproject": round(median(&self.light_backproject_ms)),
+                "light_raycast": round(median(&self.light_raycast_ms)),
             },
         })
     }

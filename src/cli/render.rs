@@ -68,6 +68,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
                 "bricks": took.bricks_ms,
                 "light_march": took.light_march_ms,
                 "light_backproject": took.light_backproject_ms,
+                "light_raycast": took.light_raycast_ms,
                 "eye": took.eye_ms,
                 "readback": took.readback_ms,
             },

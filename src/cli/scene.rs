@@ -99,8 +99,14 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
 /// Where shadows come from.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum ShadowArg {
+    /// Light reaches everything
     Off,
+    /// A light volume filled by sheet-buffer splatting
     Splat,
+    /// A light volume filled by a ray from every voxel
+    Raycast,
+    /// A ray to the light from every sample
+    Direct,
 }
 
 /// The look.
@@ -232,6 +238,8 @@ impl Look {
         match self.shadows {
             Some(ShadowArg::Off) => settings.shadows.algorithm = ShadowAlgorithm::Off,
             Some(ShadowArg::Splat) => settings.shadows.algorithm = ShadowAlgorithm::Splat,
+            Some(ShadowArg::Raycast) => settings.shadows.algorithm = ShadowAlgorithm::Raycast,
+            Some(ShadowArg::Direct) => settings.shadows.algorithm = ShadowAlgorithm::Direct,
             None => {}
         }
         Ok(settings)

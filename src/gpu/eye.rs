@@ -1,21 +1,22 @@
 //! The eye pass: from density and attenuation to linear light.
 
-use super::GpuError;
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_volume::LightVolume;
 use super::tables::{Tables, dilation, view_entry};
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
+use super::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
-use crate::model::{Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm};
+use crate::model::{
+    Deposit, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm, Shadows,
+};
 use crate::plan::{SheetFrame, eye_frame};
 
 /// Everything that the eye pass of one picture needs besides the volume.
 pub(super) struct EyePass {
     frame: SheetFrame,
     uniform: uniforms::Eye,
-    constants: [(&'static str, f64); 6],
-    shadowed: usize,
+    constants: Vec<(&'static str, f64)>,
 }
 
 impl EyePass {
@@ -25,25 +26,28 @@ impl EyePass {
         settings: &Settings,
         size: [u32; 2],
         lights: &[Option<&LightVolume>],
-        leaping: bool,
-        dark: f32,
+        options: &RenderOptions,
     ) -> Self {
         let frame = eye_frame(&settings.camera, scene, size, settings.sampling.slab);
-        let mut on: Vec<(&Light, Option<&LightVolume>)> = settings
+        let direct = settings.shadows.algorithm == ShadowAlgorithm::Direct;
+        let mut on: Vec<(Light, Option<&LightVolume>)> = settings
             .lights
             .iter()
+            .map(|light| light.in_world(&settings.camera))
             .zip(lights.iter().copied().chain(std::iter::repeat(None)))
             .filter(|(light, _)| light.on)
             .take(MAX_LIGHTS)
             .collect();
-        on.sort_by_key(|(_, volume)| volume.is_none());
-        let shadowed = on.iter().filter(|(_, volume)| volume.is_some()).count();
+        let is_shadowed =
+            |light: &Light, volume: Option<&LightVolume>| volume.is_some() || direct && light.needs_volume();
+        on.sort_by_key(|(light, volume)| !is_shadowed(light, *volume));
+        let shadowed = on.iter().filter(|(light, volume)| is_shadowed(light, *volume)).count();
         let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
         for (slot, (light, volume)) in packed.iter_mut().zip(&on) {
-            *slot = pack_light(light, *volume, settings);
+            *slot = pack_light(light, *volume, is_shadowed(light, *volume), settings);
         }
         let stretch = frame.max_stretch_level() > 0.0;
-        let constants = constants(&settings.sampling, stretch, on.len(), shadowed);
+        let constants = constants(&settings.sampling, &settings.shadows, stretch, (on.len(), shadowed));
         let [sx, sy, sz] = rows(&scene.scene_from_index);
         let [ix, iy, iz] = rows(&scene.index_from_scene);
         let (eye, w) = match settings.camera.projection {
@@ -52,7 +56,7 @@ impl EyePass {
         };
         let uniform = uniforms::Eye {
             frame: uniforms::SheetFrame::new(&frame),
-            shading: pack_shading(settings, scene),
+            shading: pack_shading(settings, scene, options),
             scene_from_index_x: sx,
             scene_from_index_y: sy,
             scene_from_index_z: sz,
@@ -62,11 +66,11 @@ impl EyePass {
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
             end_row: size[1],
-            leaping: u32::from(leaping),
-            dark,
+            leaping: u32::from(options.leaping),
+            dark: options.dark,
             lights: packed,
         };
-        Self { frame, uniform, constants, shadowed }
+        Self { frame, uniform, constants }
     }
 
     /// Slabs of the stack.
@@ -85,7 +89,6 @@ impl EyePass {
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        debug_assert_eq!(attenuation.len(), self.shadowed);
         let Gpu { context, shaders, volume, nothing } = gpu;
         let pipeline = shaders.pipeline("eye.wgsl", &self.constants)?;
         let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, ..self.uniform };
@@ -98,6 +101,8 @@ impl EyePass {
                 entry(1, tables.eye.buffer.as_entire_binding()),
                 view_entry(2, &tables.eye_distances),
                 view_entry(3, picture),
+                entry(4, tables.lighting.buffer.as_entire_binding()),
+                view_entry(5, &tables.lighting_distances),
             ],
         });
         let of_volume = volume.bind_group(context, &pipeline, dilation(self.frame.max_stretch_level()));
@@ -123,25 +128,35 @@ impl EyePass {
 }
 
 /// The variant of the shader for a kernel, for pixels wider than voxels or not, and for so many
-/// lights, of which some have attenuation volumes.
+/// lights, of which some are attenuated.
 pub(super) fn constants(
     sampling: &Sampling,
+    shadows: &Shadows,
     stretch: bool,
-    lights: usize,
-    shadowed: usize,
-) -> [(&'static str, f64); 6] {
-    let [kernel, sigma] = kernel_constants(sampling.kernel);
-    let stretch = ("STRETCH", f64::from(u8::from(stretch)));
-    let counts = [("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)];
-    [kernel, sigma, quadrature_constant(sampling.quadrature), stretch, counts[0], counts[1]]
+    (lights, shadowed): (usize, usize),
+) -> Vec<(&'static str, f64)> {
+    let flag = |on: bool| f64::from(u8::from(on));
+    let mut constants = kernel_constants(sampling.kernel).to_vec();
+    constants.push(quadrature_constant(sampling.quadrature));
+    constants.push(("STRETCH", flag(stretch)));
+    constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
+    if shadows.algorithm == ShadowAlgorithm::Direct {
+        constants.push(("DIRECT", 1.0));
+        constants.push(("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)));
+    }
+    constants
 }
 
-fn pack_light(light: &Light, volume: Option<&LightVolume>, settings: &Settings) -> uniforms::Light {
+/// A light whose position refers to the scene, for the shaders.
+pub(super) fn pack_light(
+    light: &Light,
+    volume: Option<&LightVolume>,
+    shadowed: bool,
+    settings: &Settings,
+) -> uniforms::Light {
     // Balance makes up for the light that shadows take away; without shadows there is none.
-    let balance = match settings.shadows.algorithm {
-        ShadowAlgorithm::Off => 1.0,
-        ShadowAlgorithm::Splat => settings.shadows.balance,
-    };
+    let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
+    let cone = light.cone();
     let linear = |c: f32| crate::model::linear_from_srgb(f64::from(c));
     let (place, perspective) = match light.kind {
         LightKind::Parallel => (light.direction(), 0.0),
@@ -151,13 +166,19 @@ fn pack_light(light: &Light, volume: Option<&LightVolume>, settings: &Settings) 
         place: place.as_vec3().into(),
         perspective,
         color: light.color.map(|c| (linear(c) * light.intensity * balance) as f32),
-        shadowed: if volume.is_some() { 1.0 } else { 0.0 },
+        shadowed: f32::from(u8::from(shadowed)),
         lookup: volume.map_or([0.0; 3], |volume| volume.dims.map(|n| 1.0 / (n * volume.divisor) as f32)),
+        hood_inner: cone.cos_inner as f32,
+        hood_axis: cone.axis.as_vec3().into(),
+        hood_outer: cone.cos_outer as f32,
+        extinction_scale: light.density_scale as f32,
         pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
     }
 }
 
-fn pack_shading(settings: &Settings, scene: &SceneSpace) -> uniforms::Shading {
+fn pack_shading(settings: &Settings, scene: &SceneSpace, options: &RenderOptions) -> uniforms::Shading {
     let (shading, shadows) = (&settings.shading, &settings.shadows);
     let unit = settings.opacity_unit.in_scene(scene).max(1e-9);
     uniforms::Shading {
@@ -171,7 +192,7 @@ fn pack_shading(settings: &Settings, scene: &SceneSpace) -> uniforms::Shading {
         ambient_offset: shadows.ambient_offset as f32,
         gain: shadows.gain as f32,
         bias: (shadows.bias_voxels * scene.smallest_edge()) as f32,
-        pad0: 0.0,
-        pad1: 0.0,
+        ray_step: shadows.ray_step(scene) as f32,
+        dark_depth: options.dark_depth(),
     }
 }

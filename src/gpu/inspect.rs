@@ -66,7 +66,8 @@ impl Renderer {
         let (Some(gpu_volume), Some(tables)) = (&self.volume, &self.tables) else {
             return Err(GpuError::Refused("no volume".to_owned()));
         };
-        let geometry = &light_views(&settings.lights[light], &settings.shadows, &gpu_volume.scene)[view];
+        let lamp = settings.lights[light].in_world(&settings.camera);
+        let geometry = &light_views(&lamp, &settings.shadows, &gpu_volume.scene)[view];
         let everything = BrickSet::full(gpu_volume.bricks.dims);
         let count = geometry.frame.slab_count;
         let sheets = Sheets::new(&self.context, geometry, count, &everything, &tables.lighting.occupied)?;
@@ -79,7 +80,7 @@ impl Renderer {
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let table = &tables.lighting.buffer;
-        march(gpu, table, &settings.shadows, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
+        march(gpu, table, (&lamp, &settings.shadows), geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
         self.context.queue.submit([encoder.finish()]);
         let mut values = read_floats(&self.context, &sheets.ring)?;
         values.truncate((count * geometry.frame.size[0] * geometry.frame.size[1]) as usize);

@@ -3,15 +3,20 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use super::light_backproject::Schedule;
+use super::light_backproject::{Schedule, packed};
 use super::light_march::Sheets;
+use super::light_raycast::BRICKS_PER_STEP;
 use super::light_volume::{LightVolume, read_bricks};
 use super::volume::GpuVolume;
-use crate::model::ShadowAlgorithm;
+use crate::model::{Light, ShadowAlgorithm};
 use crate::plan::{BrickSet, LightKey, LightView, Request, light_views};
 
 /// Slabs per chunk of the light march: enough to be worth a dispatch, few enough for one to be short.
 const CHUNK_SLABS: std::ops::RangeInclusive<u64> = 8..=64;
+
+/// How many times longer a picture takes whose samples cast rays themselves, roughly: rows of a band
+/// are fewer by so much.
+const DIRECT_COST: u32 = 16;
 
 /// What a step belongs to, for reports and for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +29,8 @@ pub enum Stage {
     LightMarch,
     /// Sheets into the light volume.
     LightBackproject,
+    /// Rays from the voxels of the light volume.
+    LightRaycast,
     /// The picture.
     Eye,
     /// Its display colours.
@@ -36,7 +43,7 @@ impl Stage {
         match self {
             Self::Upload => "uploading the volume",
             Self::Pyramid => "preparing the volume",
-            Self::LightMarch | Self::LightBackproject => "filling the light volume",
+            Self::LightMarch | Self::LightBackproject | Self::LightRaycast => "filling the light volume",
             Self::Eye | Self::Display => "drawing the picture",
         }
     }
@@ -63,6 +70,8 @@ pub(super) enum Step {
     Pyramid(u32, Range<u32>),
     March(LightStep),
     Backproject(LightStep),
+    /// Index of the light build, and which of its bricks.
+    Raycast(usize, Range<usize>),
     Eye(Range<u32>),
     Display,
 }
@@ -74,6 +83,7 @@ impl Step {
             Self::Pyramid(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) => Stage::LightBackproject,
+            Self::Raycast(..) => Stage::LightRaycast,
             Self::Eye(_) => Stage::Eye,
             Self::Display => Stage::Display,
         }
@@ -85,12 +95,17 @@ impl Step {
 pub(super) struct LightBuild {
     /// Index of the light in the settings, for counting.
     pub light: usize,
+    /// The light itself, in the scene.
+    pub lamp: Light,
     pub key: LightKey,
+    /// Stacks of sheets, unless rays fill the volume …
     pub views: Vec<LightView>,
-    /// Slabs per chunk, for each view.
+    /// … and slabs per chunk of each.
     pub chunks: Vec<u32>,
     /// Data bricks whose sheets will be read.
     pub read: BrickSet,
+    /// Bricks of the light volume for rays to fill.
+    pub bricks: Vec<u32>,
     /// Sheets and schedule of the view that is being marched.
     pub current: Option<(Sheets, Schedule)>,
 }
@@ -105,13 +120,34 @@ impl LightBuild {
         chunk: Option<u32>,
     ) -> Self {
         let settings = &request.settings;
-        debug_assert!(settings.shadows.algorithm == ShadowAlgorithm::Splat);
         let shadows =
             crate::model::Shadows { resolution: fresh.key.resolution(), ..settings.shadows.clone() };
-        let views = light_views(&settings.lights[light], &shadows, &volume.scene);
+        let lamp = settings.lights[light].in_world(&settings.camera);
+        let splats = shadows.algorithm == ShadowAlgorithm::Splat;
+        let views = if splats { light_views(&lamp, &shadows, &volume.scene) } else { Vec::new() };
         let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| chunk_slabs(volume, view))).collect();
         let read = read_bricks(volume, &fresh.filled, fresh.divisor, &views);
-        Self { light, key: fresh.key.clone(), views, chunks, read, current: None }
+        let bricks = if splats { Vec::new() } else { fresh.filled.positions().map(packed).collect() };
+        Self { light, lamp, key: fresh.key.clone(), views, chunks, read, bricks, current: None }
+    }
+
+    /// The steps of build number `at`, each chunk of a view cut into `parts`.
+    pub(super) fn steps(&self, at: usize, parts: u32) -> Vec<Step> {
+        let mut steps = Vec::new();
+        for (view, chunk) in self.chunks.iter().enumerate() {
+            for begin in (0..self.views[view].frame.slab_count).step_by(*chunk as usize) {
+                let step = |part| LightStep { build: at, view, begin, part: (part, parts) };
+                steps.extend((0..parts).map(|part| Step::March(step(part))));
+                steps.extend((0..parts).map(|part| Step::Backproject(step(part))));
+            }
+        }
+        if self.views.is_empty() {
+            let count = self.bricks.len();
+            // One step at least, which completes a light volume without bricks.
+            let firsts = (0..count.max(1)).step_by(BRICKS_PER_STEP);
+            steps.extend(firsts.map(|first| Step::Raycast(at, first..count.min(first + BRICKS_PER_STEP))));
+        }
+        steps
     }
 }
 
@@ -157,7 +193,9 @@ impl Job {
 
     /// Cuts the rows that are still to be drawn into bands of `rows`.
     pub fn set_band(&mut self, rows: u32) {
-        let rows = rows.max(1);
+        let direct = self.request.settings.shadows.algorithm == ShadowAlgorithm::Direct;
+        // A ray to each light from every sample: so much longer.
+        let rows = if direct { (rows / DIRECT_COST).max(8) } else { rows.max(1) };
         let before = self.steps.len();
         let mut cut = VecDeque::with_capacity(before);
         for step in self.steps.drain(..) {

@@ -15,7 +15,7 @@ use crate::model::{Kernel, Quadrature, Shadows};
 use crate::plan::LightView;
 
 /// Bricks per row of a dispatch: two workgroups each, within the 65535 that all adapters allow.
-const BRICKS_PER_ROW: u32 = 32768;
+pub(super) const BRICKS_PER_ROW: u32 = 32768;
 
 /// The bricks of a light volume, by the chunk of slabs that completes them.
 #[derive(Debug)]
@@ -30,13 +30,17 @@ impl Schedule {
         let mut chunks = vec![Vec::new(); count as usize];
         for brick in light.filled.positions() {
             let (first, last) = final_slabs(scene, view, light, brick);
-            let packed = brick[0] as u32 | (brick[1] as u32) << 10 | (brick[2] as u32) << 20;
             for list in &mut chunks[(first / chunk) as usize..=(last / chunk) as usize] {
-                list.push(packed);
+                list.push(packed(brick));
             }
         }
         Self { chunks }
     }
+}
+
+/// A brick's coordinates as the shaders read them.
+pub(super) fn packed([x, y, z]: [usize; 3]) -> u32 {
+    x as u32 | (y as u32) << 10 | (z as u32) << 20
 }
 
 /// The first and the last slab that completes any voxel of a brick.

@@ -6,8 +6,8 @@ use super::kernel::{kernel_constants, quadrature_constant};
 use super::tables::{dilation, upload_bricks, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry, texture_3d};
-use super::{Context, GpuError};
-use crate::model::{Deposit, Shadows};
+use super::{Context, GpuError, RenderOptions};
+use crate::model::{Deposit, Light, Shadows};
 use crate::plan::{BrickSet, LightView};
 
 /// The sheets of one view of a light: a ring of layers through which the slabs stream.
@@ -17,6 +17,8 @@ pub(super) struct Sheets {
     pub layers: u32,
     /// Slabs marched at a time.
     pub chunk: u32,
+    /// Light is followed until less than this is left.
+    pub dark: f32,
     /// Deposited transmittance, sheet by sheet.
     pub ring: wgpu::Texture,
     /// The same.
@@ -65,6 +67,7 @@ impl Sheets {
         Ok(Self {
             layers,
             chunk,
+            dark: RenderOptions::default().dark,
             ring_view: ring.create_view(&wgpu::TextureViewDescriptor::default()),
             ring,
             transmittance,
@@ -104,7 +107,7 @@ fn rows_of(height: u32, part: (u32, u32)) -> Range<u32> {
 pub(super) fn march(
     gpu: Gpu<'_>,
     table: &wgpu::Buffer,
-    shadows: &Shadows,
+    (light, shadows): (&Light, &Shadows),
     view: &LightView,
     sheets: &Sheets,
     (slabs, part): ((u32, u32), (u32, u32)),
@@ -117,6 +120,7 @@ pub(super) fn march(
     }
     let stretch = view.frame.max_stretch_level();
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(shadows, stretch > 0.0))?;
+    let cone = light.cone();
     let uniform = uniforms::March {
         frame: uniforms::SheetFrame::new(&view.frame),
         begin: slabs.0,
@@ -124,9 +128,11 @@ pub(super) fn march(
         layers: sheets.layers,
         first_row: rows.start,
         end_row: rows.end,
-        pad0: 0,
-        pad1: 0,
-        pad2: 0,
+        extinction_scale: light.density_scale as f32,
+        hood_inner: cone.cos_inner as f32,
+        hood_outer: cone.cos_outer as f32,
+        hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
+        dark: sheets.dark,
     };
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -5,11 +5,12 @@
 pub struct RenderOptions {
     /// Leave out the background, write straight alpha.
     pub transparent: bool,
-    /// Leap over empty bricks. Only a test that it changes nothing switches it off.
+    /// Leap over empty bricks. Only a test that it changes nothing, and a measurement of what it
+    /// saves, switch it off.
     pub leaping: bool,
     /// Fill light volumes everywhere, not only where the picture looks them up.
     pub fill_everything: bool,
-    /// A ray ends when less than this is left of its light.
+    /// A ray ends when less than this is left of its light, to the eye or from a light.
     pub dark: f32,
     /// Slabs per chunk of the light march, instead of what memory and time suggest.
     pub chunk: Option<u32>,
@@ -31,6 +32,14 @@ impl Default for RenderOptions {
             light_parts: 1,
             timed: false,
         }
+    }
+}
+
+impl RenderOptions {
+    /// The same as an optical depth.
+    pub(super) fn dark_depth(&self) -> f32 {
+        // No 32-bit optical depth is beyond that of nothing at all.
+        if self.dark > 0.0 { -self.dark.ln() } else { f32::MAX }
     }
 }
 
@@ -56,6 +65,8 @@ pub struct Report {
     pub light_march_ms: f64,
     /// Milliseconds of its reverse half.
     pub light_backproject_ms: f64,
+    /// Milliseconds of rays from the voxels of light volumes.
+    pub light_raycast_ms: f64,
     /// Milliseconds of the eye pass.
     pub eye_ms: f64,
     /// Milliseconds of the display pass and of reading back.

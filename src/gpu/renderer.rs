@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use super::display::{Target, display};
 use super::eye::EyePass;
-use super::job::{Job, LightBuild, LightStep, Stage, Step};
+use super::job::{Job, LightStep, Stage, Step};
 use super::light_backproject::{Schedule, backproject};
 use super::light_march::{Sheets, march};
-use super::light_volume::{LightVolume, bricks_holding};
+use super::light_raycast::raycast;
+use super::light_volume::LightVolume;
 use super::picture::{Picture, RenderOptions, Report};
 use super::readback::read_texture;
 use super::tables::Tables;
@@ -16,10 +17,7 @@ use super::volume::{Gpu, GpuVolume, texture_3d};
 use super::{Context, GpuError, ShaderLibrary, prefilter};
 use crate::data::{Bricks, Volume};
 use crate::model::Settings;
-use crate::plan::{BrickSet, LightKey, Request};
-
-/// Light volumes that are kept beyond those of the current picture: undoing a drag finds them.
-const SPARE_LIGHT_VOLUMES: usize = 2;
+use crate::plan::{BrickSet, Request};
 
 /// Renders volumes on one device.
 #[derive(Debug)]
@@ -35,9 +33,10 @@ pub struct Renderer {
     back: Option<Target>,
     /// Bound where a light has no volume.
     pub(super) nothing: wgpu::TextureView,
-    options: RenderOptions,
-    rebuilds: Vec<u64>,
-    clock: u64,
+    pub(super) options: RenderOptions,
+    pub(super) rebuilds: Vec<u64>,
+    /// Counts pictures.
+    pub(super) clock: u64,
     report: Report,
 }
 
@@ -191,14 +190,7 @@ impl Renderer {
         self.report.bricks_ms = milliseconds(start);
         let (keys, builds) = self.place_lights(&request)?;
         for (at, build) in builds.iter().enumerate() {
-            for (view, chunk) in build.chunks.iter().enumerate() {
-                for begin in (0..build.views[view].frame.slab_count).step_by(*chunk as usize) {
-                    let parts = options.light_parts.max(1);
-                    let step = |part| LightStep { build: at, view, begin, part: (part, parts) };
-                    steps.extend((0..parts).map(|part| Step::March(step(part))));
-                    steps.extend((0..parts).map(|part| Step::Backproject(step(part))));
-                }
-            }
+            steps.extend(build.steps(at, options.light_parts.max(1)));
         }
         if self.back.as_ref().is_none_or(|target| target.size != request.size) {
             self.back = None;
@@ -231,6 +223,7 @@ impl Renderer {
             Stage::Upload | Stage::Pyramid => self.report.upload_ms += took,
             Stage::LightMarch => self.report.light_march_ms += took,
             Stage::LightBackproject => self.report.light_backproject_ms += took,
+            Stage::LightRaycast => self.report.light_raycast_ms += took,
             Stage::Eye => self.report.eye_ms += took,
             Stage::Display => self.report.readback_ms += took,
         }
@@ -267,51 +260,6 @@ impl Renderer {
         Ok(())
     }
 
-    /// Finds or makes the light volumes of a request and forgets the oldest of the others.
-    fn place_lights(
-        &mut self,
-        request: &Request,
-    ) -> Result<(Vec<Option<LightKey>>, Vec<LightBuild>), GpuError> {
-        let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else {
-            return Err(GpuError::Refused("no volume".to_owned()));
-        };
-        let count = request.settings.lights.len();
-        self.rebuilds.resize(self.rebuilds.len().max(count), 0);
-        let everything = self.options.fill_everything.then(|| BrickSet::full(volume.bricks.dims));
-        let lit = everything.as_ref().unwrap_or(&tables.lit);
-        let mut keys = vec![None; count];
-        let mut builds: Vec<LightBuild> = Vec::new();
-        for (light, slot) in keys.iter_mut().enumerate() {
-            let Some(full) = LightKey::of(request, light) else { continue };
-            let needed = |key: &LightKey| bricks_holding(volume, lit, key.resolution().divisor());
-            let usable = |known: &LightVolume, key: &LightKey| {
-                known.key == *key && needed(key).is_within(&known.filled)
-            };
-            let coarse = request.coarse.map(|resolution| full.at_resolution(resolution));
-            let found = [Some(full.clone()), coarse.clone()]
-                .into_iter()
-                .flatten()
-                .find(|key| self.lights.iter().any(|known| usable(known, key)));
-            let key = found.clone().or(coarse).unwrap_or(full);
-            if found.is_none() {
-                self.lights.retain(|known| known.key != key);
-                let fresh = LightVolume::new(&self.context, volume, key.clone(), needed(&key))?;
-                let build = LightBuild::new(volume, request, light, &fresh, self.options.chunk);
-                self.lights.push(fresh);
-                builds.push(build);
-            }
-            for known in self.lights.iter_mut().filter(|known| known.key == key) {
-                known.last_used = self.clock;
-            }
-            *slot = Some(key);
-        }
-        let clock = self.clock;
-        self.lights.sort_by_key(|light| std::cmp::Reverse(light.last_used));
-        let current = self.lights.iter().filter(|light| light.last_used == clock).count();
-        self.lights.truncate(current + SPARE_LIGHT_VOLUMES);
-        Ok((keys, builds))
-    }
-
     fn encode(
         &mut self,
         job: &mut Job,
@@ -337,8 +285,14 @@ impl Renderer {
                 };
                 let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
                 if *begin == 0 && part.0 == 0 {
-                    let sheets =
-                        Sheets::new(&self.context, geometry, chunk, &build.read, &tables.lighting.occupied)?;
+                    let everything = BrickSet::full(build.read.dims);
+                    let (read, occupied) = if self.options.leaping {
+                        (&build.read, &tables.lighting.occupied)
+                    } else {
+                        (&everything, &everything)
+                    };
+                    let mut sheets = Sheets::new(&self.context, geometry, chunk, read, occupied)?;
+                    sheets.dark = self.options.dark;
                     let peak = self.gpu_bytes() + sheets.bytes();
                     self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
                     let schedule = Schedule::new(&volume.scene, geometry, light, sheets.chunk);
@@ -350,7 +304,8 @@ impl Renderer {
                 let Some((sheets, _)) = &build.current else { return Ok(()) };
                 let slabs = (*begin, (*begin + chunk).min(geometry.frame.slab_count));
                 let table = &tables.lighting.buffer;
-                march(gpu, table, &settings.shadows, geometry, sheets, (slabs, *part), encoder)?;
+                let lamp = (&build.lamp, &settings.shadows);
+                march(gpu, table, lamp, geometry, sheets, (slabs, *part), encoder)?;
             }
             Step::Backproject(LightStep { build, view, begin, part }) => {
                 let build = &mut job.builds[*build];
@@ -368,6 +323,18 @@ impl Renderer {
                     build.current = None;
                 }
             }
+            Step::Raycast(build, bricks) => {
+                let build = &job.builds[*build];
+                let Some(light) = self.lights.iter_mut().find(|light| light.key == build.key) else {
+                    return Err(GpuError::Refused("the job is out of date".to_owned()));
+                };
+                if bricks.start == 0 {
+                    self.rebuilds[build.light] += 1;
+                }
+                let list = &build.bricks[bricks.clone()];
+                raycast(gpu, tables, (&build.lamp, settings), &self.options, light, list, encoder)?;
+                light.complete = bricks.end == build.bricks.len();
+            }
             Step::Eye(rows) => {
                 let found: Vec<Option<&LightVolume>> = job
                     .keys
@@ -377,8 +344,7 @@ impl Renderer {
                     })
                     .collect();
                 let attenuation: Vec<&LightVolume> = found.iter().copied().flatten().collect();
-                let (leaping, dark) = (self.options.leaping, self.options.dark);
-                let eye = EyePass::new(&volume.scene, settings, target.size, &found, leaping, dark);
+                let eye = EyePass::new(&volume.scene, settings, target.size, &found, &self.options);
                 self.report.slabs = eye.slab_count();
                 let picture = &target.picture_view;
                 eye.draw(gpu, tables, &attenuation, picture, rows.clone(), encoder)?;

@@ -6,11 +6,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 13] = [
+pub const SHADERS: [(&str, &str); 15] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
     ("common/lights.wgsl", include_str!("../../shaders/common/lights.wgsl")),
     ("common/resample.wgsl", include_str!("../../shaders/common/resample.wgsl")),
+    ("common/shadow_ray.wgsl", include_str!("../../shaders/common/shadow_ray.wgsl")),
     ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
     ("common/table.wgsl", include_str!("../../shaders/common/table.wgsl")),
     ("common/volume.wgsl", include_str!("../../shaders/common/volume.wgsl")),
@@ -19,6 +20,7 @@ pub const SHADERS: [(&str, &str); 13] = [
     ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
     ("light_backproject.wgsl", include_str!("../../shaders/light_backproject.wgsl")),
     ("light_march.wgsl", include_str!("../../shaders/light_march.wgsl")),
+    ("light_raycast.wgsl", include_str!("../../shaders/light_raycast.wgsl")),
     ("prefilter.wgsl", include_str!("../../shaders/prefilter.wgsl")),
 ];
 

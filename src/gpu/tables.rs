@@ -34,8 +34,10 @@ pub(super) struct Tables {
     /// Bricks in which an eye sample can look up attenuation: those that either shows, and one
     /// further on every side for interpolation, bias and stretch.
     pub lit: BrickSet,
-    /// Distances in bricks to the nearest that the eye sees.
+    /// Distances in bricks to the nearest that the eye sees …
     pub eye_distances: wgpu::TextureView,
+    /// … and to the nearest that attenuates light.
+    pub lighting_distances: wgpu::TextureView,
 }
 
 impl Tables {
@@ -44,11 +46,14 @@ impl Tables {
         let range = volume.volume.value_range();
         let eye = Table::new(context, volume, settings.baked_eye(range, &volume.scene));
         let lighting = Table::new(context, volume, settings.baked_lighting(range, &volume.scene));
-        let distances: Vec<u8> = eye.occupied.distances();
-        let texture = upload_bricks(context, "Tables::eye_distances", eye.occupied.dims, &distances, 1)?;
+        let upload = |label: &'static str, set: &BrickSet| {
+            upload_bricks(context, label, set.dims, &set.distances(), 1)
+        };
+        let eye_distances = upload("Tables::eye_distances", &eye.occupied)?;
+        let lighting_distances = upload("Tables::lighting_distances", &lighting.occupied)?;
         // Once per transfer function: at 512³ voxels this takes longer than the rest of a picture's plan.
         let lit = eye.occupied.union(&lighting.occupied).dilated(1);
-        Ok(Self { eye, lighting, lit, eye_distances: texture })
+        Ok(Self { eye, lighting, lit, eye_distances, lighting_distances })
     }
 
     /// Brings the tables up to date with changed settings.

@@ -106,9 +106,11 @@ pub struct March {
     pub layers: u32,
     pub first_row: u32,
     pub end_row: u32,
-    pub pad0: u32,
-    pub pad1: u32,
-    pub pad2: u32,
+    pub extinction_scale: f32,
+    pub hood_inner: f32,
+    pub hood_outer: f32,
+    pub hood_axis: [f32; 3],
+    pub dark: f32,
 }
 
 /// `light_backproject.wgsl`.
@@ -130,6 +132,25 @@ pub struct Backprojection {
     pub bricks: u32,
 }
 
+/// `light_raycast.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Raycast {
+    pub light: Light,
+    pub scene_from_index_x: [f32; 4],
+    pub scene_from_index_y: [f32; 4],
+    pub scene_from_index_z: [f32; 4],
+    pub index_from_scene_x: [f32; 4],
+    pub index_from_scene_y: [f32; 4],
+    pub index_from_scene_z: [f32; 4],
+    pub dims: [u32; 3],
+    pub bricks: u32,
+    pub voxel_step: f32,
+    pub ray_step: f32,
+    pub dark: f32,
+    pub leaping: u32,
+}
+
 /// `common/lights.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -139,7 +160,13 @@ pub struct Light {
     pub color: [f32; 3],
     pub shadowed: f32,
     pub lookup: [f32; 3],
+    pub hood_inner: f32,
+    pub hood_axis: [f32; 3],
+    pub hood_outer: f32,
+    pub extinction_scale: f32,
     pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
 }
 
 /// `common/lights.wgsl`.
@@ -156,8 +183,8 @@ pub struct Shading {
     pub ambient_offset: f32,
     pub gain: f32,
     pub bias: f32,
-    pub pad0: f32,
-    pub pad1: f32,
+    pub ray_step: f32,
+    pub dark_depth: f32,
 }
 
 /// `eye.wgsl`.

@@ -20,7 +20,10 @@ impl ShaderLibrary {
         for flag in [false, true] {
             for kernel in [Kernel::Prefiltered, Kernel::BSpline] {
                 let sampling = Sampling { kernel, ..Sampling::default() };
-                self.pipeline("eye.wgsl", &eye::constants(&sampling, flag, lights, shadowed))?;
+                self.pipeline(
+                    "eye.wgsl",
+                    &eye::constants(&sampling, &Shadows::default(), flag, (lights, shadowed)),
+                )?;
                 let shadows = Shadows { kernel, ..Shadows::default() };
                 self.pipeline("light_march.wgsl", &light_march::constants(&shadows, flag))?;
                 self.pipeline("light_backproject.wgsl", &light_backproject::constants(&shadows, flag))?;

@@ -6,9 +6,7 @@
 
 use glam::DVec3;
 
-use super::{
-    Camera, ControlPoint, Interpolation, Length, Light, LightKind, Sampling, Settings, TransferFunction,
-};
+use super::{Camera, ControlPoint, Interpolation, Length, Light, Sampling, Settings, TransferFunction};
 use crate::data::{Histogram, Volume};
 
 /// Histogram bins used here: fine enough for 12-bit data whose object spans a tenth of the range.
@@ -217,21 +215,17 @@ fn lights(camera: &Camera) -> Vec<Light> {
     vec![
         Light {
             name: "Key".to_owned(),
-            kind: LightKind::Parallel,
             position: place(-side, side, 40f64.to_radians().cos()),
             color: [1.0, 0.95, 0.87],
-            intensity: 1.0,
-            on: true,
-            casts_shadows: true,
+            ..Light::default()
         },
         Light {
             name: "Fill".to_owned(),
-            kind: LightKind::Parallel,
             position: place(0.8, 0.1, 0.6),
             color: [0.74, 0.85, 1.0],
             intensity: 0.18,
-            on: true,
             casts_shadows: false,
+            ..Light::default()
         },
     ]
 }

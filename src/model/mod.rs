@@ -14,7 +14,7 @@ mod transfer;
 
 pub use camera::{Camera, Projection};
 pub use length::Length;
-pub use light::{Light, LightKind, MAX_LIGHTS};
+pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use settings::{
     Background, Deposit, Kernel, LightingTransfer, Output, Quadrature, Resolution, SCHEMA, Sampling,

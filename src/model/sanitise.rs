@@ -2,8 +2,8 @@
 //! negative extinction or as an endless loop.
 
 use super::{
-    Background, Camera, ControlPoint, Interpolation, Kernel, Light, Output, Sampling, Settings, Shading,
-    Shadows,
+    Background, Camera, ControlPoint, Hood, Interpolation, Kernel, Light, Output, Sampling, Settings,
+    Shading, Shadows,
 };
 
 impl Settings {
@@ -39,10 +39,24 @@ impl Settings {
         number(fov_y_deg, 1.0, 120.0, default.camera.fov_y_deg);
         self.lights.truncate(super::MAX_LIGHTS);
         for light in &mut self.lights {
-            let Light { name: _, kind: _, position, color, intensity, on: _, casts_shadows: _ } = light;
+            let Light {
+                name: _,
+                kind: _,
+                position,
+                color,
+                intensity,
+                on: _,
+                casts_shadows: _,
+                lock: _,
+                hood: Hood { on: _, half_angle_deg, rim_deg },
+                density_scale,
+            } = light;
             point(position, 1e6);
             rgb(color);
             number(intensity, 0.0, 1e3, 1.0);
+            number(half_angle_deg, 1.0, 89.0, Hood::default().half_angle_deg);
+            number(rim_deg, 0.0, 89.0, Hood::default().rim_deg);
+            number(density_scale, 0.0, 1e3, 1.0);
         }
         for function in [&mut self.transfer, &mut self.lighting.curve] {
             function.points.retain(|point| point.value.is_finite());

@@ -111,13 +111,30 @@ pub enum ShadowAlgorithm {
     Off,
     /// A light volume filled by sheet-buffer splatting (P §3.5, the paper's variant 3).
     Splat,
+    /// A light volume filled by a ray from every voxel to the light (P §3.4, eq. 8, variant 2).
+    Raycast,
+    /// No light volume: a ray to the light from every sample (P §3.3, eq. 7, variant 1).
+    Direct,
 }
 
-/// Which transmittance a sheet deposits in the light volume.
+impl ShadowAlgorithm {
+    /// Whether light is attenuated on its way.
+    pub fn is_on(self) -> bool {
+        self != Self::Off
+    }
+
+    /// Whether attenuation is kept in a light volume.
+    pub fn has_volume(self) -> bool {
+        matches!(self, Self::Splat | Self::Raycast)
+    }
+}
+
+/// Which transmittance of a slab counts: in a sheet what it deposits in the light volume, on a ray
+/// to the light where the first slab lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Deposit {
-    /// In front of the slab: P eq. 10 read literally; first order in the slab's thickness.
+    /// In front of the slab: P eq. 7, 8 and 10 read literally; first order in the slab's thickness.
     Front,
     /// The mean over the slab, T·(1 − e^−τ)/τ; second order.
     SlabMean,
@@ -231,6 +248,13 @@ impl Default for Shadows {
             quadrature: Quadrature::One,
             resolution: Resolution::Full,
         }
+    }
+}
+
+impl Shadows {
+    /// Distance between the samples of a ray to a light, in scene units: the slab's thickness.
+    pub fn ray_step(&self, scene: &SceneSpace) -> f64 {
+        self.slab * scene.smallest_edge()
     }
 }
 

@@ -9,6 +9,7 @@ use super::footprint::SlabSlice;
 use super::kernel::Profile;
 use super::light::ViewSheets;
 use super::{Fault, Reference, Weights};
+use crate::model::ShadowAlgorithm;
 use crate::plan::SheetPosition;
 
 /// How much of a light arrives where: the paper's attenuation volume.
@@ -28,8 +29,14 @@ impl Attenuation {
         trilinear(self.dims, &self.values, (point + 0.5) / self.divisor as f64 - 0.5)
     }
 
+    /// Unattenuated everywhere.
+    pub(super) fn unlit(grid: [usize; 3], divisor: usize) -> Self {
+        let dims = grid.map(|n| n.div_ceil(divisor));
+        Self { dims, divisor, values: vec![1.0; dims.iter().product()] }
+    }
+
     /// The index-space point in the middle of a light voxel.
-    fn point_of(&self, voxel: usize) -> DVec3 {
+    pub(super) fn point_of(&self, voxel: usize) -> DVec3 {
         let [nx, ny, _] = self.dims;
         let texel = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
         DVec3::from(texel.map(|t| (t as f64 + 0.5) * self.divisor as f64 - 0.5))
@@ -39,7 +46,10 @@ impl Attenuation {
 impl Reference<'_> {
     /// The attenuation volume of light `index`.
     pub fn attenuation(&self, index: usize) -> Attenuation {
-        self.back_project(&self.light_sheets(index))
+        match self.settings.shadows.algorithm {
+            ShadowAlgorithm::Raycast => self.raycast(index),
+            _ => self.back_project(&self.light_sheets(index)),
+        }
     }
 
     /// The attenuation volumes of all lights that have one.
@@ -51,9 +61,7 @@ impl Reference<'_> {
     /// Splats a light's sheets back into its attenuation volume. What several views claim, the
     /// last of them gets; what none does is unattenuated.
     pub fn back_project(&self, sheets: &[ViewSheets]) -> Attenuation {
-        let divisor = self.settings.shadows.resolution.divisor();
-        let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
-        let mut volume = Attenuation { dims, divisor, values: vec![1.0; dims.iter().product()] };
+        let mut volume = Attenuation::unlit(self.scene.dims, self.settings.shadows.resolution.divisor());
         for sheets in sheets.iter().filter(|sheets| !sheets.deposits.is_empty()) {
             let filled: Vec<_> = match self.options.weights {
                 Weights::Footprint if !self.settings.shadows.first_touch => self.scatter(sheets, &volume),

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::sheet::Stack;
 use super::{Fault, Reference};
-use crate::model::Deposit;
+use crate::model::{Deposit, Light};
 use crate::plan::{LightView, light_views};
 
 /// What the sheets of one view of a light hold.
@@ -30,20 +30,25 @@ impl Reference<'_> {
     /// The sheets of every view of light `index`: P figure 3 up to the reverse splat.
     pub fn light_sheets(&self, index: usize) -> Vec<ViewSheets> {
         let shadows = &self.settings.shadows;
-        light_views(&self.settings.lights[index], shadows, &self.scene)
-            .into_iter()
-            .map(|view| self.march(view))
-            .collect()
+        let light = self.light(index);
+        light_views(&light, shadows, &self.scene).into_iter().map(|view| self.march(&light, view)).collect()
     }
 
-    fn march(&self, view: LightView) -> ViewSheets {
+    fn march(&self, light: &Light, view: LightView) -> ViewSheets {
         let shadows = &self.settings.shadows;
         let table = self.settings.baked_lighting(self.range, &self.scene);
         let stack = Stack::new(self, &view.frame, (shadows.kernel, shadows.quadrature), table);
         // Densities do not depend on light, so all slabs at once; then light, slab by slab.
         let densities: Vec<_> =
             (0..view.frame.slab_count).into_par_iter().map(|k| stack.densities(k)).collect();
-        let mut transmittance = vec![1.0; stack.pixel_count()];
+        // In front of the first slab is what the hood lets through.
+        let cone = light.cone();
+        let in_front = |pixel: u32| {
+            let (i, j) = (f64::from(pixel % view.frame.size[0]), f64::from(pixel / view.frame.size[0]));
+            let along = (view.axes * view.frame.slope.at(i, j).extend(1.0)).normalize();
+            cone.share(cone.axis.dot(along))
+        };
+        let mut transmittance: Vec<f64> = (0..stack.pixel_count() as u32).map(in_front).collect();
         let deposits = (0..)
             .zip(&densities)
             .map(|(k, sheet)| {
@@ -53,7 +58,8 @@ impl Reference<'_> {
                     .enumerate()
                     .map(|(pixel, (transmittance, &density))| {
                         let sample = stack.classify(pixel as u32, k, density);
-                        let optical_depth = sample.map_or(0.0, |sample| sample.optical_depth);
+                        let optical_depth =
+                            sample.map_or(0.0, |sample| sample.optical_depth) * light.density_scale;
                         let deposit = *transmittance * self.deposited_share(optical_depth);
                         *transmittance *= (-optical_depth).exp();
                         deposit

@@ -12,6 +12,7 @@
 //! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
+//! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
@@ -23,6 +24,7 @@ mod kernel;
 mod light;
 mod pyramid;
 mod shade;
+mod shadow_ray;
 mod sheet;
 #[cfg(test)]
 mod tests;
@@ -37,7 +39,7 @@ use glam::DVec3;
 
 use crate::data::Volume;
 use crate::math::SceneSpace;
-use crate::model::{Kernel, Settings, ShadowAlgorithm};
+use crate::model::{Kernel, Light, Settings};
 use kernel::Profile;
 
 /// Whose weights the sums are taken with.
@@ -109,9 +111,14 @@ impl<'a> Reference<'a> {
         gather::density(self, &self.profile(kernel), point + self.kernel_shift(), level)
     }
 
+    /// Light `index`, its position in the scene.
+    fn light(&self, index: usize) -> Light {
+        self.settings.lights[index].in_world(&self.settings.camera)
+    }
+
     /// Whether light `index` has an attenuation volume.
     fn casts(&self, index: usize) -> bool {
-        self.settings.shadows.algorithm != ShadowAlgorithm::Off && self.settings.lights[index].needs_volume()
+        self.settings.shadows.algorithm.has_volume() && self.settings.lights[index].needs_volume()
     }
 
     fn profile(&self, kernel: Kernel) -> Profile {

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::back_project::Attenuation;
 use super::pyramid::MAX_LEVEL;
+use super::shadow_ray::ShadowRays;
 use super::{Fault, Reference};
 use crate::model::{Light, LightKind, Projection, ShadowAlgorithm};
 
@@ -17,10 +18,18 @@ pub(super) struct Shader<'r> {
 
 /// A light that is on.
 struct Lamp<'r> {
-    light: &'r Light,
+    /// Its position in the scene.
+    light: Light,
     /// Linear colour times intensity and balance: `C_L` of P eq. 5.
     rgb: [f64; 3],
-    attenuation: Option<&'r Attenuation>,
+    attenuated: Attenuated<'r>,
+}
+
+/// By what a light is attenuated.
+enum Attenuated<'r> {
+    Not,
+    Volume(&'r Attenuation),
+    Rays(Box<ShadowRays<'r>>),
 }
 
 /// One sRGB component to linear light (IEC 61966-2-1); the reference has its own.
@@ -40,15 +49,21 @@ struct Surface {
 impl<'r> Shader<'r> {
     pub(super) fn new(reference: &'r Reference<'r>, attenuations: &'r [Option<Attenuation>]) -> Self {
         let settings = reference.settings;
-        let shadows_on = settings.shadows.algorithm != ShadowAlgorithm::Off;
+        let algorithm = settings.shadows.algorithm;
+        let shadows_on = algorithm.is_on();
         let balance = if shadows_on { settings.shadows.balance } else { 1.0 };
         let lamp = |(index, light): (usize, &'r Light)| Lamp {
-            light,
+            light: reference.light(index),
             rgb: light.color.map(|c| linear_from_srgb(c) * light.intensity * balance),
-            attenuation: attenuations
-                .get(index)
-                .and_then(Option::as_ref)
-                .filter(|_| shadows_on && light.casts_shadows),
+            attenuated: match attenuations.get(index) {
+                // The picture's own reconstruction: once for all rays (P §3.3).
+                _ if algorithm == ShadowAlgorithm::Direct && light.needs_volume() => {
+                    let sampling = (settings.sampling.kernel, settings.sampling.quadrature);
+                    Attenuated::Rays(Box::new(ShadowRays::new(reference, index, sampling)))
+                }
+                Some(Some(volume)) if shadows_on && light.casts_shadows => Attenuated::Volume(volume),
+                _ => Attenuated::Not,
+            },
         };
         Self {
             reference,
@@ -92,13 +107,18 @@ impl<'r> Shader<'r> {
 
     /// The share of a light that arrives: its attenuation with the cures for darkness (P §4).
     fn arriving(&self, lamp: &Lamp<'_>, point: DVec3, to_light: DVec3) -> f64 {
-        let Some(attenuation) = lamp.attenuation else {
-            return 1.0;
-        };
         let shadows = &self.reference.settings.shadows;
         let scene = &self.reference.scene;
         let bias = to_light * (scene.smallest_edge() * shadows.bias_voxels);
-        let looked_up = attenuation.at(point + scene.index_from_scene.transform_vector3(bias));
+        let place = point + scene.index_from_scene.transform_vector3(bias);
+        let looked_up = match &lamp.attenuated {
+            Attenuated::Not => {
+                let cone = lamp.light.cone();
+                return cone.share(-cone.axis.dot(to_light));
+            }
+            Attenuated::Volume(volume) => volume.at(place),
+            Attenuated::Rays(rays) => rays.attenuation(place),
+        };
         let light = (shadows.gain * looked_up + shadows.ambient_offset).min(1.0);
         1.0 - shadows.strength * (1.0 - light)
     }

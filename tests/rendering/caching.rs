@@ -1,7 +1,7 @@
 //! What is kept and what is refilled; and what must not change a single bit.
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
-use chiaroscuro::model::{Kernel, LightKind, Quadrature, Settings};
+use chiaroscuro::model::{Kernel, LightKind, Quadrature, Settings, ShadowAlgorithm};
 use chiaroscuro::plan::Request;
 use glam::DVec3;
 
@@ -139,6 +139,11 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
     inside.lights[0] = scenes::light(LightKind::Perspective, [0.1, -0.4, 0.5]);
     inside.camera.distance = 0.6;
     looks.push(inside);
+    for algorithm in [ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
+        let mut rays = scenes::look();
+        rays.shadows.algorithm = algorithm;
+        looks.push(rays);
+    }
     for (at, settings) in looks.iter().enumerate() {
         let picture = |options: &RenderOptions| {
             let mut renderer = Renderer::new(&context()).expect("a renderer");

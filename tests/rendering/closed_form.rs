@@ -5,10 +5,10 @@ use crate::compare::{Limit, compare, difference, wide};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{
     BALL_SHADOW, BEER_LAMBERT, CHORD_OPACITY, FAR_LIGHT, HEADLIGHT_COARSE, HEADLIGHT_FINE, OBLIQUE_CHORD,
-    ORDER_FRONT, ORDER_MEAN, ROTATION_RANGE, ROTATION_STEP, SLAB_MEAN_CHANGE, UNITY,
+    ORDER_FRONT, ORDER_MEAN, RAY_BEER_LAMBERT, ROTATION_RANGE, ROTATION_STEP, SLAB_MEAN_CHANGE, UNITY,
 };
 use chiaroscuro::gpu::{Picture, Renderer, mean_luminance};
-use chiaroscuro::model::{Camera, Deposit, Length, LightKind, Quadrature, Settings};
+use chiaroscuro::model::{Camera, Deposit, Length, LightKind, Quadrature, Settings, ShadowAlgorithm};
 use glam::DVec3;
 
 /// Variance of the cubic B-spline, in voxels².
@@ -110,6 +110,32 @@ fn beer_lambert_in_a_homogeneous_block() {
                         "μ {per_voxel}, Δs {slab}, {quadrature:?}: {found} not {expected} at depth {depth}"
                     );
                 }
+            }
+        }
+    }
+}
+
+/// No. 2, for rays from the voxels: nothing is blurred on the way back, so light falls as e^(−μ·depth)
+/// and no faster. Sampled twice per voxel, where the midpoint rule meets the faces exactly.
+#[test]
+fn beer_lambert_by_rays() {
+    let n = 48;
+    let face = 8;
+    let loaded =
+        Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
+    for per_voxel in [0.1, 0.3, 0.7] {
+        let mut settings = base(per_voxel);
+        settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+        settings.shadows.slab = 0.5;
+        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        for z in face + 3..n - face - 3 {
+            let depth = (n - face) as f64 - 0.5 - z as f64;
+            let expected = (-per_voxel * depth).exp();
+            let found = f64::from(volume[n / 2 + n * (n / 2 + n * z)]);
+            // Rays end at 1/4096 of the light.
+            if expected > 1e-3 {
+                let error = (found / expected - 1.0).abs();
+                assert!(error <= RAY_BEER_LAMBERT, "μ {per_voxel}: {found} not {expected} at depth {depth}");
             }
         }
     }

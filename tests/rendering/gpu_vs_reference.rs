@@ -6,7 +6,10 @@ use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
 use crate::thresholds::{LITERAL, SAME_WEIGHTS};
 use chiaroscuro::gpu::{Renderer, stored_density};
-use chiaroscuro::model::{Camera, Deposit, Kernel, LightKind, Projection, Quadrature, Resolution, Settings};
+use chiaroscuro::model::{
+    Camera, Deposit, Kernel, LightKind, LightLock, Projection, Quadrature, Resolution, Settings,
+    ShadowAlgorithm,
+};
 use chiaroscuro::reference::{Options, Reference, Weights};
 use glam::DVec3;
 
@@ -30,7 +33,11 @@ fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
     let mut renderer = Renderer::new(&context).expect("a renderer");
     let mut failures = Vec::new();
     for light in (0..settings.lights.len()).filter(|&light| settings.lights[light].needs_volume()) {
-        let sheets = reference.light_sheets(light);
+        if !settings.shadows.algorithm.has_volume() {
+            continue;
+        }
+        let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat;
+        let sheets = if splats { reference.light_sheets(light) } else { Vec::new() };
         for (view, expected) in sheets.iter().enumerate() {
             let found = renderer
                 .light_sheets(&loaded.volume, &loaded.bricks, settings, light, view)
@@ -39,7 +46,7 @@ fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
             failures.extend(compare(&what, &wide(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
         }
         let found = attenuation(&mut renderer, &loaded, settings, light);
-        let expected = reference.back_project(&sheets);
+        let expected = reference.attenuation(light);
         let what = format!("{name}: light volume {light}");
         failures.extend(compare(&what, &wide(&found), &expected.values, SAME_WEIGHTS).err());
     }
@@ -153,6 +160,54 @@ fn an_eye_inside_the_volume() {
     let mut settings = scenes::look();
     settings.camera = Camera { distance: 0.35, fov_y_deg: 70.0, target: [0.4, 0.3, 0.2], ..settings.camera };
     check("eye inside", DVec3::ONE, &settings);
+}
+
+/// Lights of both kinds, one of them near, and voxels that are no cubes.
+fn rays(algorithm: ShadowAlgorithm) -> Settings {
+    let mut settings = scenes::look();
+    settings.shadows.algorithm = algorithm;
+    settings.lights = vec![
+        scenes::light(LightKind::Parallel, [1.3, -0.8, 1.7]),
+        scenes::light(LightKind::Perspective, [-1.1, 0.9, 1.2]),
+    ];
+    settings.lights[1].density_scale = 0.5;
+    settings
+}
+
+#[test]
+fn a_light_volume_by_rays() {
+    let mut settings = rays(ShadowAlgorithm::Raycast);
+    check("raycast", DVec3::ONE, &settings);
+    settings.shadows.deposit = Deposit::Front;
+    settings.shadows.resolution = Resolution::Half;
+    settings.shadows.quadrature = Quadrature::Two;
+    check("raycast, literal", DVec3::new(1.0, 0.8, 1.6), &settings);
+}
+
+#[test]
+fn rays_from_every_sample() {
+    let mut settings = rays(ShadowAlgorithm::Direct);
+    check("direct", DVec3::new(1.0, 0.8, 1.6), &settings);
+    settings.shadows.deposit = Deposit::Front;
+    settings.shadows.bias_voxels = 0.7;
+    check("direct, literal", DVec3::ONE, &settings);
+}
+
+#[test]
+fn hoods_cameras_lights_and_densities() {
+    for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
+        let mut settings = rays(algorithm);
+        settings.lights[0].kind = LightKind::Perspective;
+        settings.lights[0].position = [-0.6, 0.4, 3.0];
+        settings.lights[0].lock = LightLock::Camera;
+        for light in &mut settings.lights {
+            light.hood.on = true;
+            light.hood.half_angle_deg = 18.0;
+            light.hood.rim_deg = 6.0;
+        }
+        settings.shadows.ambient_offset = 0.1;
+        check(&format!("hoods, {algorithm:?}"), DVec3::ONE, &settings);
+    }
 }
 
 /// The picture by the paper's literal footprints in f64, against the GPU's.

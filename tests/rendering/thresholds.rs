@@ -18,6 +18,9 @@ pub(crate) const UNITY: f64 = 2e-3;
 pub(crate) const BEER_LAMBERT: [(f64, f64, f64); 5] =
     [(0.1, 1.0, 0.005), (0.3, 1.0, 0.005), (0.7, 1.0, 0.02), (0.3, 0.25, 0.003), (0.7, 0.25, 0.003)];
 
+/// Beer–Lambert along rays, relative: the error of the midpoint rule.
+pub(crate) const RAY_BEER_LAMBERT: f64 = 1e-3;
+
 /// Opacity of a homogeneous chord, absolute.
 pub(crate) const CHORD_OPACITY: f64 = 2e-3;
 

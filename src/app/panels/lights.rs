@@ -7,11 +7,20 @@ use super::super::commands::Command;
 use super::super::theme;
 use super::Panels;
 use super::controls::{Number, choice, color, row, switch};
-use crate::model::{Camera, Light, LightKind, MAX_LIGHTS, Settings};
+use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, Settings};
 
 const KINDS: [(LightKind, &str, &str); 2] = [
     (LightKind::Parallel, "Parallel", "Like the sun: shadows have the size of what casts them"),
     (LightKind::Perspective, "Perspective", "Like a lamp at a point: shadows grow with the distance"),
+];
+
+const LOCKS: [(LightLock, &str, &str); 2] = [
+    (LightLock::World, "The volume", "The light stays where it is: turning the camera rebuilds no shadows"),
+    (
+        LightLock::Camera,
+        "The camera",
+        "The light turns with the camera, like a lamp on the photographer's shoulder",
+    ),
 ];
 
 /// The list of lights; the selected one is open.
@@ -23,7 +32,8 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             if head(ui, &mut panels.settings.lights[index], index, selected) {
                 *panels.selected_light = index;
             }
-            if selected && body(ui, &mut panels.settings.lights[index]) {
+            let Settings { camera, lights, .. } = &mut *panels.settings;
+            if selected && body(ui, &mut lights[index], camera) {
                 removed = Some(index);
             }
         });
@@ -55,7 +65,7 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
 }
 
 /// Everything else. Whether the light is to be removed.
-fn body(ui: &mut Ui, light: &mut Light) -> bool {
+fn body(ui: &mut Ui, light: &mut Light, camera: &Camera) -> bool {
     let fresh = Light::default();
     row(ui, "Name", "What this light is called in the list", |ui| {
         let field = egui::TextEdit::singleline(&mut light.name).hint_text("Name of the light");
@@ -76,10 +86,47 @@ fn body(ui: &mut Ui, light: &mut Light) -> bool {
             position = position.normalize_or(DVec3::Z) * distance;
             light.position = position.into();
         }
+        hood(ui, &mut light.hood);
     }
+    let mut lock = light.lock;
+    choice(ui, "Stays with", "What the light keeps its place to while the camera turns", &mut lock, &LOCKS);
+    if lock != light.lock {
+        light.set_lock(lock, camera);
+    }
+    row(ui, "", "", |ui| {
+        let tip =
+            "Puts this light where the eye is, and keeps it there: everything seen is lit, shadows hide";
+        if ui.button("Headlight").on_hover_text(tip).clicked() {
+            light.lock = LightLock::Camera;
+            light.position = [0.0, 0.0, DVec3::from(light.position).length().max(2.0)];
+        }
+    });
+    let tip = "Multiplies how strongly material attenuates this light alone; refills its light volume";
+    Number::new("Density", 0.01..=4.0, tip).unit(" ×").log().show(
+        ui,
+        &mut light.density_scale,
+        fresh.density_scale,
+    );
     let tip = "Whether material attenuates this light; a fill light does without";
     switch(ui, "Casts shadows", tip, &mut light.casts_shadows);
     ui.button("Remove light").on_hover_text("Takes this light away; undo brings it back").clicked()
+}
+
+/// A lampshade.
+fn hood(ui: &mut Ui, hood: &mut Hood) {
+    let fresh = Hood::default();
+    let tip = "A lampshade: the light shines only within a cone around the line to the middle of the volume";
+    switch(ui, "Hood", tip, &mut hood.on);
+    if hood.on {
+        let tip = "From the middle of the cone to where no light is left";
+        Number::new("Cone", 1.0..=89.0, tip).unit("°").decimals(1).show(
+            ui,
+            &mut hood.half_angle_deg,
+            fresh.half_angle_deg,
+        );
+        let tip = "How far inside that the light begins to fade; 0 is a hard edge";
+        Number::new("Rim", 0.0..=45.0, tip).unit("°").decimals(1).show(ui, &mut hood.rim_deg, fresh.rim_deg);
+    }
 }
 
 /// Adds a light to the upper left of the viewer and gives its index.

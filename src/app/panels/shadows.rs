@@ -10,17 +10,27 @@ use crate::model::{Deposit, Resolution, ShadowAlgorithm};
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let algorithms = [
-        (ShadowAlgorithm::Splat, "On", "Every light is attenuated on its way by sheet-buffer splatting"),
         (ShadowAlgorithm::Off, "Off", "Light reaches everything: only the shading is left"),
+        (ShadowAlgorithm::Splat, "Splat", "A light volume filled by sheet-buffer splatting: the quick way"),
+        (
+            ShadowAlgorithm::Raycast,
+            "Ray",
+            "A light volume filled by a ray from every voxel: a little sharper, many times slower when a light moves",
+        ),
+        (
+            ShadowAlgorithm::Direct,
+            "Direct",
+            "A ray to the light from every sample: the sharpest shadows; every picture takes as long as a light volume",
+        ),
     ];
     choice(
         ui,
         "Shadows",
-        "Whether material casts shadows",
+        "How light is attenuated on its way",
         &mut panels.settings.shadows.algorithm,
         &algorithms,
     );
-    let on = panels.settings.shadows.algorithm == ShadowAlgorithm::Splat;
+    let on = panels.settings.shadows.algorithm.is_on();
     ui.add_enabled_ui(on, |ui| {
         live(ui, panels);
         balance(ui, panels);

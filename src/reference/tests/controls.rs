@@ -1,6 +1,7 @@
 //! What the settings of shadows do.
 
 use super::*;
+use crate::model::ShadowAlgorithm;
 
 #[test]
 fn first_touch_is_brighter_and_live_controls_are_monotone() {

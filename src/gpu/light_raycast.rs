@@ -1,0 +1,81 @@
+//! Fills a light volume by a ray from every voxel to the light.
+
+use super::eye::pack_light;
+use super::kernel::{kernel_constants, quadrature_constant};
+use super::light_backproject::BRICKS_PER_ROW;
+use super::light_volume::LightVolume;
+use super::tables::{Tables, view_entry};
+use super::uniforms::{self, rows};
+use super::volume::{Gpu, entry};
+use super::{GpuError, RenderOptions};
+use crate::model::{Deposit, Light, Settings, Shadows};
+
+/// Bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a
+/// software adapter some 0.2 s.
+pub(super) const BRICKS_PER_STEP: usize = 16;
+
+/// The variant of the shader for a kernel.
+pub(super) fn constants(shadows: &Shadows) -> [(&'static str, f64); 4] {
+    let [kernel, sigma] = kernel_constants(shadows.kernel);
+    let front = f64::from(u8::from(shadows.deposit == Deposit::Front));
+    [kernel, sigma, quadrature_constant(shadows.quadrature), ("DEPOSIT_FRONT", front)]
+}
+
+/// Fills the listed bricks of a light volume. The light's position refers to the scene.
+pub(super) fn raycast(
+    gpu: Gpu<'_>,
+    tables: &Tables,
+    (light, settings): (&Light, &Settings),
+    options: &RenderOptions,
+    target: &LightVolume,
+    bricks: &[u32],
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), GpuError> {
+    if bricks.is_empty() {
+        return Ok(());
+    }
+    let Gpu { context, shaders, volume, nothing: _ } = gpu;
+    let pipeline = shaders.pipeline("light_raycast.wgsl", &constants(&settings.shadows))?;
+    let [sx, sy, sz] = rows(&volume.scene.scene_from_index);
+    let [ix, iy, iz] = rows(&volume.scene.index_from_scene);
+    let uniform = uniforms::Raycast {
+        light: pack_light(light, Some(target), true, settings),
+        scene_from_index_x: sx,
+        scene_from_index_y: sy,
+        scene_from_index_z: sz,
+        index_from_scene_x: ix,
+        index_from_scene_y: iy,
+        index_from_scene_z: iz,
+        dims: target.dims.map(|n| n as u32),
+        bricks: bricks.len() as u32,
+        voxel_step: target.divisor as f32,
+        ray_step: settings.shadows.ray_step(&volume.scene) as f32,
+        dark: options.dark_depth(),
+        leaping: u32::from(options.leaping),
+    };
+    let uniform = context.buffer("Raycast::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
+    let list = context.buffer("Raycast::bricks", bricks, wgpu::BufferUsages::STORAGE);
+    let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("Raycast::bind_group"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            entry(0, uniform.as_entire_binding()),
+            entry(1, tables.lighting.buffer.as_entire_binding()),
+            view_entry(2, &tables.lighting_distances),
+            entry(3, list.as_entire_binding()),
+            view_entry(4, &target.view),
+        ],
+    });
+    // Rays to lights are not stretched.
+    let of_volume = volume.bind_group(context, &pipeline, 0);
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("Raycast::pass"),
+        timestamp_writes: None,
+    });
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &own, &[]);
+    pass.set_bind_group(1, &of_volume, &[]);
+    let listed = bricks.len() as u32;
+    pass.dispatch_workgroups(2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1);
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! Rays to the light: what attenuates it on the way to a point (P eq. 7 and 8), for every voxel of a
+//! light volume or for every sample of the picture.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::back_project::Attenuation;
+use super::kernel::Profile;
+use super::{Reference, gather};
+use crate::model::{BakedTransfer, Deposit, Kernel, Light, LightKind, Quadrature};
+
+/// What rays to one light are sampled with.
+pub(super) struct ShadowRays<'r> {
+    reference: &'r Reference<'r>,
+    light: Light,
+    profile: Profile,
+    quadrature: Quadrature,
+    table: BakedTransfer,
+}
+
+impl<'r> ShadowRays<'r> {
+    /// Rays to light `index`, reconstructed with a kernel.
+    pub(super) fn new(
+        reference: &'r Reference<'r>,
+        index: usize,
+        (kernel, quadrature): (Kernel, Quadrature),
+    ) -> Self {
+        Self {
+            reference,
+            light: reference.light(index),
+            profile: reference.profile(kernel),
+            quadrature,
+            table: reference.settings.baked_lighting(reference.range, &reference.scene),
+        }
+    }
+
+    /// ∏ (1 − α(s + r·k·Δs)) over the samples between an index-space point and the light, times what
+    /// the hood lets through. Point samples: nothing is stretched.
+    pub(super) fn attenuation(&self, point: DVec3) -> f64 {
+        let reference = self.reference;
+        let place = reference.scene.scene_from_index.transform_point3(point);
+        let (towards, reach) = match self.light.kind {
+            LightKind::Parallel => (self.light.direction(), f64::INFINITY),
+            LightKind::Perspective => {
+                let away = DVec3::from(self.light.position) - place;
+                (away.normalize_or(DVec3::Z), away.length())
+            }
+        };
+        let cone = self.light.cone();
+        let step = reference.settings.shadows.ray_step(&reference.scene);
+        let forward = reference.scene.index_from_scene.transform_vector3(towards);
+        let first = match reference.settings.shadows.deposit {
+            Deposit::Front => 1.0,
+            Deposit::SlabMean => 0.5,
+        };
+        // Beyond the grid is nothing.
+        let across = 2.0 * reference.scene.support_radius()
+            + (place.length() - reference.scene.support_radius()).max(0.0);
+        let count = (reach.min(across) / step - first + 1.0).floor().max(0.0) as u32;
+        let support = reference.scene.support_in_index();
+        let optical_depth: f64 = (0..count)
+            .map(|k| {
+                let middle = (f64::from(k) + first) * step;
+                let at = point + forward * middle;
+                if !(at.cmpge(support.min).all() && at.cmple(support.max).all()) {
+                    return 0.0;
+                }
+                let offsets = self.quadrature.offsets();
+                let density = |offset: &f64| {
+                    let at = point + forward * (middle + offset * step) + reference.kernel_shift();
+                    gather::density(reference, &self.profile, at, 0.0)
+                };
+                let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
+                self.table.sample(density)[3] * step * self.light.density_scale
+            })
+            .sum();
+        (-optical_depth).exp() * cone.share(-cone.axis.dot(towards))
+    }
+}
+
+impl Reference<'_> {
+    /// The attenuation volume of light `index`, filled by a ray from every voxel (P §3.4).
+    pub(super) fn raycast(&self, index: usize) -> Attenuation {
+        let shadows = &self.settings.shadows;
+        let mut volume = Attenuation::unlit(self.scene.dims, shadows.resolution.divisor());
+        let rays = ShadowRays::new(self, index, (shadows.kernel, shadows.quadrature));
+        volume.values = (0..volume.values.len())
+            .into_par_iter()
+            .map(|voxel| rays.attenuation(volume.point_of(voxel)))
+            .collect();
+        volume
+    }
+}
