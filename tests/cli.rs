@@ -758,3 +758,18 @@ fn orbiting_is_timed_and_rebuilds_no_light_volume() {
     let drag = cases.iter().find(|case| case["name"] == "light-drag").expect("the case that was asked for");
     assert_eq!(drag["light_rebuilds"], 2, "one for every frame");
 }
+
+#[test]
+fn the_table_of_the_paper_has_its_three_variants() {
+    let folder = Folder::new();
+    let text = folder.succeed("bench --json --volume builtin:sphere:16 --size 32x32 --frames 1 --only paper");
+    let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
+    let cases = result["cases"].as_array().expect("a list");
+    let names: Vec<_> = cases.iter().filter_map(|case| case["name"].as_str()).collect();
+    assert_eq!(names, ["paper-1-direct", "paper-2-raycast", "paper-3-splat"]);
+    let light = |at: usize| cases[at]["light_volume_ms"].as_f64().expect("a number");
+    assert_eq!((light(0), &cases[0]["light_rebuilds"]), (0.0, &serde_json::json!(0)), "no light volume");
+    assert!(light(1) > 0.0 && light(2) > 0.0, "{cases:?}");
+    let ratio = &result["ratios"]["light_volume_raycast_over_splat"];
+    assert_eq!(keys(ratio), ["measured", "paper"]);
+}

@@ -2,7 +2,8 @@
 //!
 //! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
 //! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
-//! halves of the light pass of those frames); *growth* (light volumes of clouds of growing size).
+//! halves of the light pass of those frames); *growth* (light volumes of clouds of growing size);
+//! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms).
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -39,7 +40,7 @@ pub(super) struct BenchArgs {
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
     /// Only the case of this name
-    #[arg(long, value_name = "CASE", value_parser = ["orbit", "light-drag", "light-build", "growth"])]
+    #[arg(long, value_name = "CASE", value_parser = ["orbit", "light-drag", "light-build", "growth", "paper"])]
     only: Option<String>,
     #[command(flatten)]
     look: LookArgs,
@@ -65,6 +66,11 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
             let ratio = drag.light_build() / without.eye();
             ratios.insert("light_build_over_unshadowed_frame".to_owned(), json!(round(ratio)));
         }
+    }
+    if wants("paper") {
+        let mut renderer = Renderer::new(&context)?;
+        let settings = look.settings(&mut renderer, &loaded)?;
+        Bench { args, loaded: &loaded, renderer, settings }.paper(&mut cases, &mut ratios)?;
     }
     if wants("growth") {
         growth(args, &context, &mut cases, &mut ratios)?;
@@ -150,6 +156,43 @@ impl Bench<'_> {
         build["cpu_ms"] = Value::Null;
         cases.push(build);
         Ok(samples)
+    }
+
+    /// P §5: what a light volume and a picture take by each algorithm, and the paper's ratios of its
+    /// seconds for the lobster.
+    fn paper(
+        &mut self,
+        cases: &mut Vec<Value>,
+        ratios: &mut serde_json::Map<String, Value>,
+    ) -> Result<(), CliError> {
+        let algorithms = [
+            ("paper-1-direct", ShadowAlgorithm::Direct),
+            ("paper-2-raycast", ShadowAlgorithm::Raycast),
+            ("paper-3-splat", ShadowAlgorithm::Splat),
+        ];
+        let mut took = Vec::new();
+        for (name, algorithm) in algorithms {
+            self.settings.shadows.algorithm = algorithm;
+            let mut made = Vec::new();
+            let samples = self.light_drag(&mut made)?;
+            let mut case = made.swap_remove(0);
+            case["name"] = json!(name);
+            case["light_volume_ms"] = json!(round(samples.light_build()));
+            cases.push(case);
+            took.push((samples.light_build(), samples.eye()));
+        }
+        let [(_, direct), (raycast, _), (splat, frame)] = took[..] else { return Ok(()) };
+        let rows = [
+            ("light_volume_raycast_over_splat", raycast / splat, 132.0 / 35.0),
+            ("picture_direct_over_splat", direct / frame, 44.0 / 29.0),
+            // With a cached light volume each picture saves so much.
+            ("pictures_that_pay_a_splatted_light_volume", splat / (direct - frame), 35.0 / (44.0 - 29.0)),
+            ("light_volume_over_picture", splat / frame, 1.25),
+        ];
+        for (name, found, paper) in rows {
+            ratios.insert(name.to_owned(), json!({ "measured": round(found), "paper": round(paper) }));
+        }
+        Ok(())
     }
 
     fn case(&self, name: &str, samples: &Samples, rebuilds: u64) -> Value {
