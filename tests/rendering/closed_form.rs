@@ -8,7 +8,7 @@ use crate::thresholds::{
     ORDER_FRONT, ORDER_MEAN, RAY_BEER_LAMBERT, ROTATION_RANGE, ROTATION_STEP, SLAB_MEAN_CHANGE, UNITY,
 };
 use chiaroscuro::gpu::{Picture, Renderer, mean_luminance};
-use chiaroscuro::model::{Camera, Deposit, Length, LightKind, Quadrature, Settings, ShadowAlgorithm};
+use chiaroscuro::model::{Camera, Deposit, Hood, Length, LightKind, Quadrature, Settings, ShadowAlgorithm};
 use glam::DVec3;
 
 /// Variance of the cubic B-spline, in voxels².
@@ -311,6 +311,42 @@ fn a_far_point_light_is_parallel() {
     let (near, far) = (volume(LightKind::Parallel), volume(LightKind::Perspective));
     let limit = Limit { max: f64::INFINITY, rmse: FAR_LIGHT };
     compare("far light", &far, &near, limit).unwrap_or_else(|err| panic!("{err}"));
+}
+
+/// No. 15: A hood lets nothing out beyond its rim, everything within, and fades smoothly between.
+#[test]
+fn a_hood_is_a_cone_with_a_soft_rim() {
+    let n = 40;
+    // One voxel, that the volume is not empty; the light passes the rest unhindered.
+    let loaded = Loaded::new(scenes::block(n, |voxel| voxel == [0; 3]));
+    for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast] {
+        let mut settings = base(1.0);
+        settings.shadows.algorithm = algorithm;
+        settings.lights = vec![scenes::light(LightKind::Perspective, [0.0, 0.0, 4.0])];
+        settings.lights[0].hood = Hood { on: true, half_angle_deg: 11.0, rim_deg: 4.0 };
+        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        // The middle plane, from the axis outwards: 4 scene units from the light, a voxel is 2/n wide.
+        let middle = n / 2;
+        let row: Vec<(f64, f32)> = (middle..n)
+            .map(|x| {
+                let away = (x as f64 - (n as f64 - 1.0) / 2.0) * 2.0 / n as f64;
+                let z = 4.0 - (middle as f64 - (n as f64 - 1.0) / 2.0) * 2.0 / n as f64;
+                ((away / z).atan().to_degrees(), volume[x + n * (middle + n * middle)])
+            })
+            .collect();
+        // Two and a half voxels, the reverse kernel's reach and half a pixel, are 1.8° from here.
+        for (angle_deg, arriving) in &row {
+            match angle_deg {
+                angle if *angle > 11.0 + 1.8 => assert_eq!(*arriving, 0.0, "{algorithm:?}, {angle}°"),
+                angle if *angle < 7.0 - 1.8 => assert_eq!(*arriving, 1.0, "{algorithm:?}, {angle}°"),
+                _ => {}
+            }
+        }
+        assert!(row.windows(2).all(|pair| pair[1].1 <= pair[0].1), "{algorithm:?}: {row:?}");
+        let grey = row.iter().filter(|(_, arriving)| (0.02..0.98).contains(arriving)).count();
+        assert!(grey >= 4, "{algorithm:?}: a rim of 4° is {grey} voxels wide: {row:?}");
+        assert!(row.last().is_some_and(|(angle, _)| *angle > 13.0), "the row reaches beyond the rim");
+    }
 }
 
 /// No. 18: Path lengths are those of the oblique rays: a point light at 1.5 N, and a perspective eye.
