@@ -5,18 +5,12 @@
 #import "common/table.wgsl"
 #import "common/shadow_ray.wgsl"
 #import "common/lights.wgsl"
+#import "common/space.wgsl"
 
 struct Eye {
     frame: SheetFrame,
     shading: Shading,
-    // Index space to scene space: three rows of an affine map.
-    scene_from_index_x: vec4f,
-    scene_from_index_y: vec4f,
-    scene_from_index_z: vec4f,
-    // Scene vectors to index vectors: three rows.
-    index_from_scene_x: vec4f,
-    index_from_scene_y: vec4f,
-    index_from_scene_z: vec4f,
+    space: Space,
     // The eye in scene space; w is 0 for an orthographic camera, whose eye is the direction to it.
     eye: vec4f,
     // Rows of this dispatch start here.
@@ -55,14 +49,9 @@ override SHADOWED: u32 = 1u;
 // Cast rays to the lights instead of looking into volumes (P §3.3).
 override DIRECT: bool = false;
 
-fn to_index(v: vec3f) -> vec3f {
-    return vec3f(dot(eye.index_from_scene_x.xyz, v), dot(eye.index_from_scene_y.xyz, v), dot(eye.index_from_scene_z.xyz, v));
-}
-
 fn light_extinction(density: f32) -> f32 {
-    let at = clamp(density, 0.0, 1.0) * f32(TABLE_SIZE - 1u);
-    let low = min(u32(at), TABLE_SIZE - 2u);
-    return mix(lighting_table[low].a, lighting_table[low + 1u].a, at - f32(low));
+    let at = table_entry(density);
+    return mix(lighting_table[at.low].a, lighting_table[at.low + 1u].a, at.fraction);
 }
 
 fn light_distance(brick: vec3i) -> i32 {
@@ -72,7 +61,7 @@ fn light_distance(brick: vec3i) -> i32 {
 fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
     let towards = to_light(light, surface.position);
-    let direction = to_index(towards.direction);
+    let direction = to_index(eye.space, towards.direction);
     let p = surface.point + direction * eye.shading.bias;
     var attenuation: f32;
     if (DIRECT) {
@@ -100,9 +89,7 @@ fn gradient(p: vec3f, level: f32) -> vec3f {
         pyramid(p + vec3f(0.0, h, 0.0), l) - pyramid(p - vec3f(0.0, h, 0.0), l),
         pyramid(p + vec3f(0.0, 0.0, h), l) - pyramid(p - vec3f(0.0, 0.0, h), l),
     ) / (2.0 * h);
-    // A gradient transforms with the transpose of the inverse: scene ← index takes (index ← scene)ᵀ.
-    return eye.index_from_scene_x.xyz * difference.x + eye.index_from_scene_y.xyz * difference.y
-        + eye.index_from_scene_z.xyz * difference.z;
+    return gradient_to_scene(eye.space, difference);
 }
 
 fn shade(p: vec3f, level: f32, material: vec3f) -> vec3f {
@@ -110,12 +97,7 @@ fn shade(p: vec3f, level: f32, material: vec3f) -> vec3f {
     let steepness = length(slope);
     let s = eye.shading;
     let steep2 = steepness * steepness;
-    let homogeneous = vec4f(p, 1.0);
-    let position = vec3f(
-        dot(eye.scene_from_index_x, homogeneous),
-        dot(eye.scene_from_index_y, homogeneous),
-        dot(eye.scene_from_index_z, homogeneous),
-    );
+    let position = place_of(eye.space, p);
     let away = eye.eye.xyz - position * eye.eye.w;
     let surface = Surface(
         position,

@@ -6,6 +6,7 @@
 // normalisation); voxels of other chunks leave at once.
 #import "common/kernel.wgsl"
 #import "common/sheet_frame.wgsl"
+#import "common/listed_bricks.wgsl"
 
 struct Backprojection {
     frame: SheetFrame,
@@ -137,14 +138,11 @@ fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    // Two workgroups to a brick; rows of 32768 bricks because a dispatch has at most 65535 groups.
-    let listed = group.y * 32768u + group.x / 2u;
+    let listed = listed_brick(group);
     if (listed >= view.bricks) {
         return;
     }
-    let packed = bricks[listed];
-    let brick = vec3u(packed & 1023u, packed >> 10u & 1023u, packed >> 20u);
-    let voxel = brick * 8u + local + vec3u(0u, 0u, group.x % 2u * 4u);
+    let voxel = voxel_in(bricks[listed], group, local);
     if (any(voxel >= view.dims)) {
         return;
     }

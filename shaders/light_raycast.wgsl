@@ -2,17 +2,12 @@
 #import "common/table.wgsl"
 #import "common/shadow_ray.wgsl"
 #import "common/lights.wgsl"
+#import "common/space.wgsl"
+#import "common/listed_bricks.wgsl"
 
 struct Raycast {
     light: Light,
-    // Index space to scene space: three rows of an affine map.
-    scene_from_index_x: vec4f,
-    scene_from_index_y: vec4f,
-    scene_from_index_z: vec4f,
-    // Scene vectors to index vectors: three rows.
-    index_from_scene_x: vec4f,
-    index_from_scene_y: vec4f,
-    index_from_scene_z: vec4f,
+    space: Space,
     dims: vec3u,
     // Bricks listed for this dispatch.
     bricks: u32,
@@ -42,30 +37,17 @@ fn light_distance(brick: vec3i) -> i32 {
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    // As in light_backproject.wgsl.
-    let listed = group.y * 32768u + group.x / 2u;
+    let listed = listed_brick(group);
     if (listed >= raycast.bricks) {
         return;
     }
-    let packed = bricks[listed];
-    let brick = vec3u(packed & 1023u, packed >> 10u & 1023u, packed >> 20u);
-    let voxel = brick * 8u + local + vec3u(0u, 0u, group.x % 2u * 4u);
+    let voxel = voxel_in(bricks[listed], group, local);
     if (any(voxel >= raycast.dims)) {
         return;
     }
     let p = (vec3f(voxel) + 0.5) * raycast.voxel_step - 0.5;
-    let homogeneous = vec4f(p, 1.0);
-    let position = vec3f(
-        dot(raycast.scene_from_index_x, homogeneous),
-        dot(raycast.scene_from_index_y, homogeneous),
-        dot(raycast.scene_from_index_z, homogeneous),
-    );
-    let towards = to_light(raycast.light, position);
-    let direction = vec3f(
-        dot(raycast.index_from_scene_x.xyz, towards.direction),
-        dot(raycast.index_from_scene_y.xyz, towards.direction),
-        dot(raycast.index_from_scene_z.xyz, towards.direction),
-    );
+    let towards = to_light(raycast.light, place_of(raycast.space, p));
+    let direction = to_index(raycast.space, towards.direction);
     let scale = raycast.light.extinction_scale;
     let arriving = shadow_ray(p, direction, towards.distance, raycast.ray_step, scale, raycast.dark);
     textureStore(attenuation, voxel, vec4f(arriving * hood_share(raycast.light, towards.direction)));

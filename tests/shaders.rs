@@ -268,23 +268,20 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light_raycast.wgsl", light.clone()),
         (
             "light_raycast.wgsl",
-            layout!(Raycast {
-                light,
+            layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, leaping }),
+        ),
+        ("eye.wgsl", light),
+        (
+            "eye.wgsl",
+            layout!(Space {
                 scene_from_index_x,
                 scene_from_index_y,
                 scene_from_index_z,
                 index_from_scene_x,
                 index_from_scene_y,
                 index_from_scene_z,
-                dims,
-                bricks,
-                voxel_step,
-                ray_step,
-                dark,
-                leaping,
             }),
         ),
-        ("eye.wgsl", light),
         (
             "eye.wgsl",
             layout!(Shading {
@@ -302,25 +299,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 dark_depth,
             }),
         ),
-        (
-            "eye.wgsl",
-            layout!(Eye {
-                frame,
-                shading,
-                scene_from_index_x,
-                scene_from_index_y,
-                scene_from_index_z,
-                index_from_scene_x,
-                index_from_scene_y,
-                index_from_scene_z,
-                eye,
-                first_row,
-                end_row,
-                leaping,
-                dark,
-                lights,
-            }),
-        ),
+        ("eye.wgsl", layout!(Eye { frame, shading, space, eye, first_row, end_row, leaping, dark, lights })),
         ("display.wgsl", layout!(Display { top, bottom, transparent, clip, pad0, pad1 })),
         ("prefilter.wgsl", layout!(Slices { first, end, pad0, pad1 })),
         ("downsample.wgsl", layout!(Slices { first, end, pad0, pad1 })),
@@ -509,14 +488,14 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     assert_eq!(bricks.matches('8').count(), 3, "a new number in common/bricks.wgsl: check it here");
 
     // A workgroup is half a brick.
-    let back_projection = file("light_backproject.wgsl");
     let half = BRICK_EDGE / 2;
-    for text in [
-        format!("brick * {BRICK_EDGE}u + local"),
-        format!("group.x % 2u * {half}u"),
-        format!("@workgroup_size({BRICK_EDGE}, {BRICK_EDGE}, {half})"),
-    ] {
-        assert!(back_projection.contains(&text), "light_backproject.wgsl must have {text}");
+    let listed = file("common/listed_bricks.wgsl");
+    for text in [format!("brick * {BRICK_EDGE}u + local"), format!("group.x % 2u * {half}u")] {
+        assert!(listed.contains(&text), "common/listed_bricks.wgsl must have {text}");
+    }
+    for name in ["light_backproject.wgsl", "light_raycast.wgsl"] {
+        let text = format!("@workgroup_size({BRICK_EDGE}, {BRICK_EDGE}, {half})");
+        assert!(file(name).contains(&text), "{name} must have {text}");
     }
 }
 

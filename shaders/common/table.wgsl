@@ -3,8 +3,19 @@ const TABLE_SIZE = 1024u;
 
 @group(0) @binding(1) var<storage, read> table: array<vec4f, 1024>;
 
-fn classify(density: f32) -> vec4f {
+struct TableEntry {
+    low: u32,
+    // Of the way to the next entry.
+    fraction: f32,
+}
+
+fn table_entry(density: f32) -> TableEntry {
     let at = clamp(density, 0.0, 1.0) * f32(TABLE_SIZE - 1u);
     let low = min(u32(at), TABLE_SIZE - 2u);
-    return mix(table[low], table[low + 1u], at - f32(low));
+    return TableEntry(low, at - f32(low));
+}
+
+fn classify(density: f32) -> vec4f {
+    let at = table_entry(density);
+    return mix(table[at.low], table[at.low + 1u], at.fraction);
 }

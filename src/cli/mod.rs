@@ -2,7 +2,6 @@
 //! window.
 
 mod bench;
-mod bench_report;
 mod cpu_time;
 mod error;
 mod info;

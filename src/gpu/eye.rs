@@ -3,7 +3,7 @@
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_volume::LightVolume;
 use super::tables::{Tables, dilation, view_entry};
-use super::uniforms::{self, rows};
+use super::uniforms;
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
@@ -13,6 +13,7 @@ use crate::model::{
 use crate::plan::{SheetFrame, eye_frame};
 
 /// Everything that the eye pass of one picture needs besides the volume.
+#[derive(Debug)]
 pub(super) struct EyePass {
     frame: SheetFrame,
     uniform: uniforms::Eye,
@@ -48,8 +49,6 @@ impl EyePass {
         }
         let stretch = frame.max_stretch_level() > 0.0;
         let constants = constants(&settings.sampling, &settings.shadows, stretch, (on.len(), shadowed));
-        let [sx, sy, sz] = rows(&scene.scene_from_index);
-        let [ix, iy, iz] = rows(&scene.index_from_scene);
         let (eye, w) = match settings.camera.projection {
             Projection::Perspective => (settings.camera.eye(), 1.0),
             Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
@@ -57,12 +56,7 @@ impl EyePass {
         let uniform = uniforms::Eye {
             frame: uniforms::SheetFrame::new(&frame),
             shading: pack_shading(settings, scene, options),
-            scene_from_index_x: sx,
-            scene_from_index_y: sy,
-            scene_from_index_z: sz,
-            index_from_scene_x: ix,
-            index_from_scene_y: iy,
-            index_from_scene_z: iz,
+            space: uniforms::Space::new(scene),
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
             end_row: size[1],

@@ -3,10 +3,12 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use super::light_backproject::{Schedule, packed};
+use super::eye::EyePass;
+use super::light_backproject::Schedule;
 use super::light_march::Sheets;
 use super::light_raycast::BRICKS_PER_STEP;
 use super::light_volume::{LightVolume, read_bricks};
+use super::listed_bricks::packed;
 use super::volume::GpuVolume;
 use crate::model::{Light, ShadowAlgorithm};
 use crate::plan::{BrickSet, LightKey, LightView, Request, light_views};
@@ -166,6 +168,8 @@ pub struct Job {
     /// Key of every light's volume in this picture; `None` for lights without.
     pub(super) keys: Vec<Option<LightKey>>,
     pub(super) builds: Vec<LightBuild>,
+    /// Set up when the first rows of the picture are drawn.
+    pub(super) eye: Option<EyePass>,
     pub(super) steps: VecDeque<Step>,
     pub(super) total: usize,
 }

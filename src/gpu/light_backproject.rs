@@ -6,6 +6,7 @@ use super::GpuError;
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_march::Sheets;
 use super::light_volume::LightVolume;
+use super::listed_bricks;
 use super::tables::view_entry;
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
@@ -13,9 +14,6 @@ use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
 use crate::model::{Kernel, Quadrature, Shadows};
 use crate::plan::LightView;
-
-/// Bricks per row of a dispatch: two workgroups each, within the 65535 that all adapters allow.
-pub(super) const BRICKS_PER_ROW: u32 = 32768;
 
 /// The bricks of a light volume, by the chunk of slabs that completes them.
 #[derive(Debug)]
@@ -31,16 +29,11 @@ impl Schedule {
         for brick in light.filled.positions() {
             let (first, last) = final_slabs(scene, view, light, brick);
             for list in &mut chunks[(first / chunk) as usize..=(last / chunk) as usize] {
-                list.push(packed(brick));
+                list.push(listed_bricks::packed(brick));
             }
         }
         Self { chunks }
     }
-}
-
-/// A brick's coordinates as the shaders read them.
-pub(super) fn packed([x, y, z]: [usize; 3]) -> u32 {
-    x as u32 | (y as u32) << 10 | (z as u32) << 20
 }
 
 /// The first and the last slab that completes any voxel of a brick.
@@ -131,7 +124,7 @@ pub(super) fn backproject(
         bricks: bricks.len() as u32,
     };
     let uniform = context.buffer("Backprojection::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let list = context.buffer("Backprojection::bricks", bricks, wgpu::BufferUsages::STORAGE);
+    let list = listed_bricks::upload(context, bricks);
     let sampler = context.sampler("Backprojection::ring_sampler", wgpu::AddressMode::Repeat);
     let bind_group = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("Backprojection::bind_group"),
@@ -150,7 +143,6 @@ pub(super) fn backproject(
     });
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &bind_group, &[]);
-    let listed = bricks.len() as u32;
-    pass.dispatch_workgroups(2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1);
+    listed_bricks::dispatch(&mut pass, bricks);
     Ok(())
 }

@@ -2,10 +2,10 @@
 
 use super::eye::pack_light;
 use super::kernel::{kernel_constants, quadrature_constant};
-use super::light_backproject::BRICKS_PER_ROW;
 use super::light_volume::LightVolume;
+use super::listed_bricks;
 use super::tables::{Tables, view_entry};
-use super::uniforms::{self, rows};
+use super::uniforms;
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::model::{Deposit, Light, Settings, Shadows};
@@ -36,16 +36,9 @@ pub(super) fn raycast(
     }
     let Gpu { context, shaders, volume, nothing: _ } = gpu;
     let pipeline = shaders.pipeline("light_raycast.wgsl", &constants(&settings.shadows))?;
-    let [sx, sy, sz] = rows(&volume.scene.scene_from_index);
-    let [ix, iy, iz] = rows(&volume.scene.index_from_scene);
     let uniform = uniforms::Raycast {
         light: pack_light(light, Some(target), true, settings),
-        scene_from_index_x: sx,
-        scene_from_index_y: sy,
-        scene_from_index_z: sz,
-        index_from_scene_x: ix,
-        index_from_scene_y: iy,
-        index_from_scene_z: iz,
+        space: uniforms::Space::new(&volume.scene),
         dims: target.dims.map(|n| n as u32),
         bricks: bricks.len() as u32,
         voxel_step: target.divisor as f32,
@@ -54,7 +47,7 @@ pub(super) fn raycast(
         leaping: u32::from(options.leaping),
     };
     let uniform = context.buffer("Raycast::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let list = context.buffer("Raycast::bricks", bricks, wgpu::BufferUsages::STORAGE);
+    let list = listed_bricks::upload(context, bricks);
     let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("Raycast::bind_group"),
         layout: &pipeline.get_bind_group_layout(0),
@@ -75,7 +68,6 @@ pub(super) fn raycast(
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &own, &[]);
     pass.set_bind_group(1, &of_volume, &[]);
-    let listed = bricks.len() as u32;
-    pass.dispatch_workgroups(2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1);
+    listed_bricks::dispatch(&mut pass, bricks);
     Ok(())
 }

@@ -17,6 +17,7 @@ mod light_cache;
 mod light_march;
 mod light_raycast;
 mod light_volume;
+mod listed_bricks;
 mod picture;
 mod prefilter;
 mod readback;

@@ -200,7 +200,15 @@ impl Renderer {
         steps.push(Step::Display);
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(self.gpu_bytes());
         let total = steps.len();
-        Ok(Job { request, transparent: options.transparent, keys, builds, steps: steps.into(), total })
+        Ok(Job {
+            request,
+            transparent: options.transparent,
+            keys,
+            builds,
+            eye: None,
+            steps: steps.into(),
+            total,
+        })
     }
 
     /// Submits the next step. Returns whether there are more; after the last one the new picture is
@@ -285,13 +293,13 @@ impl Renderer {
                 };
                 let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
                 if *begin == 0 && part.0 == 0 {
-                    let everything = BrickSet::full(build.read.dims);
-                    let (read, occupied) = if self.options.leaping {
-                        (&build.read, &tables.lighting.occupied)
+                    let occupied = &tables.lighting.occupied;
+                    let mut sheets = if self.options.leaping {
+                        Sheets::new(&self.context, geometry, chunk, &build.read, occupied)?
                     } else {
-                        (&everything, &everything)
+                        let everything = BrickSet::full(build.read.dims);
+                        Sheets::new(&self.context, geometry, chunk, &everything, &everything)?
                     };
-                    let mut sheets = Sheets::new(&self.context, geometry, chunk, read, occupied)?;
                     sheets.dark = self.options.dark;
                     let peak = self.gpu_bytes() + sheets.bytes();
                     self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
@@ -344,7 +352,9 @@ impl Renderer {
                     })
                     .collect();
                 let attenuation: Vec<&LightVolume> = found.iter().copied().flatten().collect();
-                let eye = EyePass::new(&volume.scene, settings, target.size, &found, &self.options);
+                let eye = job.eye.get_or_insert_with(|| {
+                    EyePass::new(&volume.scene, settings, target.size, &found, &self.options)
+                });
                 self.report.slabs = eye.slab_count();
                 let picture = &target.picture_view;
                 eye.draw(gpu, tables, &attenuation, picture, rows.clone(), encoder)?;

@@ -6,6 +6,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec2, DVec3};
 
+use crate::math::SceneSpace;
 use crate::plan::SheetFrame as Frame;
 
 fn vec3(v: DVec3) -> [f32; 3] {
@@ -137,18 +138,40 @@ pub struct Backprojection {
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Raycast {
     pub light: Light,
-    pub scene_from_index_x: [f32; 4],
-    pub scene_from_index_y: [f32; 4],
-    pub scene_from_index_z: [f32; 4],
-    pub index_from_scene_x: [f32; 4],
-    pub index_from_scene_y: [f32; 4],
-    pub index_from_scene_z: [f32; 4],
+    pub space: Space,
     pub dims: [u32; 3],
     pub bricks: u32,
     pub voxel_step: f32,
     pub ray_step: f32,
     pub dark: f32,
     pub leaping: u32,
+}
+
+/// `common/space.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Space {
+    pub scene_from_index_x: [f32; 4],
+    pub scene_from_index_y: [f32; 4],
+    pub scene_from_index_z: [f32; 4],
+    pub index_from_scene_x: [f32; 4],
+    pub index_from_scene_y: [f32; 4],
+    pub index_from_scene_z: [f32; 4],
+}
+
+impl Space {
+    pub fn new(scene: &SceneSpace) -> Self {
+        let [scene_from_index_x, scene_from_index_y, scene_from_index_z] = rows(&scene.scene_from_index);
+        let [index_from_scene_x, index_from_scene_y, index_from_scene_z] = rows(&scene.index_from_scene);
+        Self {
+            scene_from_index_x,
+            scene_from_index_y,
+            scene_from_index_z,
+            index_from_scene_x,
+            index_from_scene_y,
+            index_from_scene_z,
+        }
+    }
 }
 
 /// `common/lights.wgsl`.
@@ -193,12 +216,7 @@ pub struct Shading {
 pub struct Eye {
     pub frame: SheetFrame,
     pub shading: Shading,
-    pub scene_from_index_x: [f32; 4],
-    pub scene_from_index_y: [f32; 4],
-    pub scene_from_index_z: [f32; 4],
-    pub index_from_scene_x: [f32; 4],
-    pub index_from_scene_y: [f32; 4],
-    pub index_from_scene_z: [f32; 4],
+    pub space: Space,
     pub eye: [f32; 4],
     pub first_row: u32,
     pub end_row: u32,

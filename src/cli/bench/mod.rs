@@ -2,27 +2,29 @@
 //!
 //! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
 //! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
-//! halves of the light pass of those frames); *growth* (light volumes of clouds of growing size);
+//! halves of the light pass of those frames); *growth* (light volumes of clouds of growing size, splatted
+//! and by rays, with everything that saves work and without);
 //! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms).
 
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::bench_report::{Samples, round};
+mod growth;
+mod paper;
+mod report;
+
+use report::{Samples, round};
+
 use super::scene::{Loaded, LookArgs, parse_size};
 use super::{CliError, print_line};
-use crate::data::synthetic;
 use crate::gpu::{Context, RenderOptions, Renderer};
-use crate::model::{Settings, ShadowAlgorithm, auto};
+use crate::model::{Settings, ShadowAlgorithm};
 
 /// Frames before the clock runs: pipelines are compiled, caches are warm.
 const WARM_UP: usize = 2;
 
 /// Degrees that camera or light move per frame.
 const STEP_DEG: f64 = 12.0;
-
-/// Sizes of the growth case.
-const GROWTH: [usize; 3] = [64, 128, 256];
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -39,7 +41,7 @@ pub(super) struct BenchArgs {
     /// Timed frames per case
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
-    /// Only the case of this name
+    /// Only the case of this name; growth runs only when asked for, since it takes minutes
     #[arg(long, value_name = "CASE", value_parser = ["orbit", "light-drag", "light-build", "growth", "paper"])]
     only: Option<String>,
     #[command(flatten)]
@@ -48,7 +50,7 @@ pub(super) struct BenchArgs {
 
 /// Runs the cases and prints them.
 pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
-    let wants = |case: &str| args.only.as_deref().is_none_or(|only| only == case);
+    let wants = |case: &str| args.only.as_deref().map_or(case != "growth", |only| only == case);
     let mut cases = Vec::new();
     let mut ratios = serde_json::Map::new();
     let loaded = args.look.load(&args.volume)?;
@@ -73,7 +75,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         Bench { args, loaded: &loaded, renderer, settings }.paper(&mut cases, &mut ratios)?;
     }
     if wants("growth") {
-        growth(args, &context, &mut cases, &mut ratios)?;
+        growth::run(&context, usize::from(args.frames), &mut cases, &mut ratios)?;
     }
     let result = json!({
         "adapter": context.info.name,
@@ -158,76 +160,9 @@ impl Bench<'_> {
         Ok(samples)
     }
 
-    /// P §5: what a light volume and a picture take by each algorithm, and the paper's ratios of its
-    /// seconds for the lobster.
-    fn paper(
-        &mut self,
-        cases: &mut Vec<Value>,
-        ratios: &mut serde_json::Map<String, Value>,
-    ) -> Result<(), CliError> {
-        let algorithms = [
-            ("paper-1-direct", ShadowAlgorithm::Direct),
-            ("paper-2-raycast", ShadowAlgorithm::Raycast),
-            ("paper-3-splat", ShadowAlgorithm::Splat),
-        ];
-        let mut took = Vec::new();
-        for (name, algorithm) in algorithms {
-            self.settings.shadows.algorithm = algorithm;
-            let mut made = Vec::new();
-            let samples = self.light_drag(&mut made)?;
-            let mut case = made.swap_remove(0);
-            case["name"] = json!(name);
-            case["light_volume_ms"] = json!(round(samples.light_build()));
-            cases.push(case);
-            took.push((samples.light_build(), samples.eye()));
-        }
-        let [(_, direct), (raycast, _), (splat, frame)] = took[..] else { return Ok(()) };
-        let rows = [
-            ("light_volume_raycast_over_splat", raycast / splat, 132.0 / 35.0),
-            ("picture_direct_over_splat", direct / frame, 44.0 / 29.0),
-            // With a cached light volume each picture saves so much.
-            ("pictures_that_pay_a_splatted_light_volume", splat / (direct - frame), 35.0 / (44.0 - 29.0)),
-            ("light_volume_over_picture", splat / frame, 1.25),
-        ];
-        for (name, found, paper) in rows {
-            ratios.insert(name.to_owned(), json!({ "measured": round(found), "paper": round(paper) }));
-        }
-        Ok(())
-    }
-
     fn case(&self, name: &str, samples: &Samples, rebuilds: u64) -> Value {
         describe(name, self.loaded, self.args.size, &self.settings, samples, rebuilds)
     }
-}
-
-/// Light volumes of clouds of growing size, and the exponent of the growth per doubling.
-fn growth(
-    args: &BenchArgs,
-    context: &Context,
-    cases: &mut Vec<Value>,
-    ratios: &mut serde_json::Map<String, Value>,
-) -> Result<(), CliError> {
-    let mut previous: Option<f64> = None;
-    for n in GROWTH {
-        let loaded = Loaded::new(synthetic::builtin("cloud", Some(n))?);
-        let settings = auto::first_settings(&loaded.volume, &loaded.histogram);
-        // The picture grows with the volume (the paper's M = N).
-        let size = [n as u32; 2];
-        let renderer = Renderer::new(context)?;
-        let sized =
-            BenchArgs { size, volume: args.volume.clone(), only: None, look: args.look.clone(), ..*args };
-        let mut bench = Bench { args: &sized, loaded: &loaded, renderer, settings: settings.clone() };
-        let mut made = Vec::new();
-        let samples = bench.light_drag(&mut made)?;
-        cases.push(describe("growth", &loaded, size, &settings, &samples, u64::from(args.frames)));
-        let build = samples.light_build();
-        if let Some(before) = previous {
-            ratios.insert(format!("light_build_{}_over_{}", n, n / 2), json!(round(build / before)));
-            ratios.insert(format!("growth_exponent_to_{n}"), json!(round((build / before).log2())));
-        }
-        previous = Some(build);
-    }
-    Ok(())
 }
 
 fn describe(

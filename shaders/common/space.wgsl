@@ -1,0 +1,36 @@
+// How the grid lies in scene space (src/math/scene.rs).
+struct Space {
+    // Index space to scene space: three rows of an affine map.
+    scene_from_index_x: vec4f,
+    scene_from_index_y: vec4f,
+    scene_from_index_z: vec4f,
+    // Scene vectors to index vectors: three rows.
+    index_from_scene_x: vec4f,
+    index_from_scene_y: vec4f,
+    index_from_scene_z: vec4f,
+}
+
+// The place of an index-space point.
+fn place_of(space: Space, p: vec3f) -> vec3f {
+    let point = vec4f(p, 1.0);
+    return vec3f(
+        dot(space.scene_from_index_x, point),
+        dot(space.scene_from_index_y, point),
+        dot(space.scene_from_index_z, point),
+    );
+}
+
+// A vector of scene space, in index space.
+fn to_index(space: Space, v: vec3f) -> vec3f {
+    return vec3f(
+        dot(space.index_from_scene_x.xyz, v),
+        dot(space.index_from_scene_y.xyz, v),
+        dot(space.index_from_scene_z.xyz, v),
+    );
+}
+
+// A gradient over index space, per scene unit: it transforms with (index ← scene)ᵀ.
+fn gradient_to_scene(space: Space, gradient: vec3f) -> vec3f {
+    return space.index_from_scene_x.xyz * gradient.x + space.index_from_scene_y.xyz * gradient.y
+        + space.index_from_scene_z.xyz * gradient.z;
+}

@@ -1,0 +1,141 @@
+//! How the cost of a light volume grows with the volume's edge N: the paper's O(N³) for splatting and
+//! O(N⁴) for rays show where nothing is skipped; with brick skipping and early exit both grow less.
+
+use serde_json::{Value, json};
+
+use super::report::{Samples, round};
+use crate::cli::CliError;
+use crate::cli::scene::Loaded;
+use crate::data::synthetic;
+use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary};
+use crate::model::{ShadowAlgorithm, auto};
+
+/// Voxels along each axis of the clouds.
+const SIZES: [usize; 3] = [64, 128, 256];
+
+/// No more frames of a size once they took so long: rays through 256³ voxels without skipping take a
+/// software adapter minutes.
+const PATIENCE_S: f64 = 20.0;
+
+/// What saves work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Savings {
+    /// Bricks are skipped, rays end when nothing is left, and only what the picture looks up is
+    /// filled.
+    All,
+    /// Every sample of every ray, every voxel.
+    None,
+}
+
+/// Times light volumes of clouds by both algorithms.
+pub(super) fn run(
+    context: &Context,
+    frames: usize,
+    cases: &mut Vec<Value>,
+    ratios: &mut serde_json::Map<String, Value>,
+) -> Result<(), CliError> {
+    let shaders = ShaderLibrary::new(context);
+    let clouds = SIZES.map(|n| synthetic::builtin("cloud", Some(n)).map(Loaded::new));
+    let clouds: Vec<Loaded> = clouds.into_iter().collect::<Result<_, _>>()?;
+    for savings in [Savings::All, Savings::None] {
+        let label = if savings == Savings::All { "skipping" } else { "everything" };
+        let mut by_algorithm = Vec::new();
+        for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast] {
+            let name = if algorithm == ShadowAlgorithm::Splat { "splat" } else { "raycast" };
+            let mut builds: Vec<f64> = Vec::new();
+            for (at, loaded) in clouds.iter().enumerate() {
+                let renderer = Renderer::with_shaders(context, shaders.clone())?;
+                let samples = light_builds(renderer, loaded, algorithm, savings, frames, at == 0)?;
+                builds.push(samples.light_build());
+                let mut case = json!({
+                    "name": format!("growth-{name}-{label}"),
+                    "volume": loaded.volume.name(),
+                    "dims": loaded.volume.dims(),
+                    "light_volume_ms": round(samples.light_build()),
+                });
+                if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
+                    case.extend(timings);
+                }
+                cases.push(case);
+            }
+            for (pair, n) in builds.windows(2).zip(&SIZES[1..]) {
+                ratios.insert(format!("{name}_{label}_{n}_over_{}", n / 2), json!(round(pair[1] / pair[0])));
+            }
+            ratios.insert(format!("{name}_{label}_exponent"), json!(round(exponent(&builds))));
+            by_algorithm.push(builds);
+        }
+        for ((splat, raycast), n) in by_algorithm[0].iter().zip(&by_algorithm[1]).zip(SIZES) {
+            ratios.insert(format!("raycast_over_splat_{label}_{n}"), json!(round(raycast / splat)));
+        }
+    }
+    Ok(())
+}
+
+/// Fills the light volume of a cloud's first look again and again; the light turns for each.
+fn light_builds(
+    mut renderer: Renderer,
+    loaded: &Loaded,
+    algorithm: ShadowAlgorithm,
+    savings: Savings,
+    frames: usize,
+    compiles: bool,
+) -> Result<Samples, CliError> {
+    let mut settings = auto::first_settings(&loaded.volume, &loaded.histogram);
+    settings.shadows.algorithm = algorithm;
+    // The picture does not matter here, but it is what asks for light.
+    let size = [64; 2];
+    let mut options = RenderOptions { timed: true, ..RenderOptions::default() };
+    if savings == Savings::None {
+        options = RenderOptions { leaping: false, fill_everything: true, dark: 0.0, ..options };
+    }
+    let warm_up = usize::from(compiles);
+    let mut samples = Samples::default();
+    let start = std::time::Instant::now();
+    for frame in 0..warm_up + frames.max(1) {
+        if let Some(light) = settings.lights.first_mut() {
+            let turn = glam::DQuat::from_rotation_z(super::STEP_DEG.to_radians());
+            light.position = (turn * glam::DVec3::from(light.position)).into();
+        }
+        let mut draw = || {
+            renderer.draw(&loaded.volume, &loaded.bricks, &settings, size, &options)?;
+            Ok::<_, CliError>(renderer.report().clone())
+        };
+        if frame < warm_up {
+            draw()?;
+        } else {
+            samples.time(draw)?;
+        }
+        if frame >= warm_up && start.elapsed().as_secs_f64() > PATIENCE_S {
+            break;
+        }
+    }
+    Ok(samples)
+}
+
+/// The slope of log₂(milliseconds) over doublings, by least squares; 0 of fewer than two sizes.
+fn exponent(builds: &[f64]) -> f64 {
+    let count = builds.len() as f64;
+    if builds.len() < 2 {
+        return 0.0;
+    }
+    let middle = (count - 1.0) / 2.0;
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for (at, ms) in builds.iter().enumerate() {
+        let x = at as f64 - middle;
+        sum += x * ms.log2();
+        weight += x * x;
+    }
+    sum / weight
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponents() {
+        assert!((exponent(&[1.0, 8.0, 64.0]) - 3.0).abs() < 1e-12);
+        assert!((exponent(&[5.0, 80.0]) - 4.0).abs() < 1e-12);
+        assert_eq!(exponent(&[5.0]), 0.0);
+    }
+}

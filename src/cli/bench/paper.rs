@@ -1,0 +1,47 @@
+//! The table of P §5: light volume and picture by each of the three shadow algorithms.
+
+use serde_json::{Value, json};
+
+use super::Bench;
+use super::report::round;
+use crate::cli::CliError;
+use crate::model::ShadowAlgorithm;
+
+impl Bench<'_> {
+    /// P §5: what a light volume and a picture take by each algorithm, and the paper's ratios of its
+    /// seconds for the lobster.
+    pub(super) fn paper(
+        &mut self,
+        cases: &mut Vec<Value>,
+        ratios: &mut serde_json::Map<String, Value>,
+    ) -> Result<(), CliError> {
+        let algorithms = [
+            ("paper-1-direct", ShadowAlgorithm::Direct),
+            ("paper-2-raycast", ShadowAlgorithm::Raycast),
+            ("paper-3-splat", ShadowAlgorithm::Splat),
+        ];
+        let mut took = Vec::new();
+        for (name, algorithm) in algorithms {
+            self.settings.shadows.algorithm = algorithm;
+            let mut made = Vec::new();
+            let samples = self.light_drag(&mut made)?;
+            let mut case = made.swap_remove(0);
+            case["name"] = json!(name);
+            case["light_volume_ms"] = json!(round(samples.light_build()));
+            cases.push(case);
+            took.push((samples.light_build(), samples.eye()));
+        }
+        let [(_, direct), (raycast, _), (splat, frame)] = took[..] else { return Ok(()) };
+        let rows = [
+            ("light_volume_raycast_over_splat", raycast / splat, 132.0 / 35.0),
+            ("picture_direct_over_splat", direct / frame, 44.0 / 29.0),
+            // With a cached light volume each picture saves so much.
+            ("pictures_that_pay_a_splatted_light_volume", splat / (direct - frame), 35.0 / (44.0 - 29.0)),
+            ("light_volume_over_picture", splat / frame, 1.25),
+        ];
+        for (name, found, paper) in rows {
+            ratios.insert(name.to_owned(), json!({ "measured": round(found), "paper": round(paper) }));
+        }
+        Ok(())
+    }
+}
