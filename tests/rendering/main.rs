@@ -11,4 +11,6 @@ mod compare;
 mod gpu_vs_reference;
 mod mutations;
 mod scenes;
+mod stretch;
 mod thresholds;
+mod variants;

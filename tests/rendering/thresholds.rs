@@ -2,6 +2,7 @@
 //! premultiplied light before tone mapping; 1/255 is one step of an 8-bit display.
 
 use super::compare::Limit;
+use chiaroscuro::model::ShadowAlgorithm;
 
 /// GPU against reference with the same weights: what is left are f16 sheets and light volumes
 /// (2^−11 each), f32 positions and the early exit at 1/4096.
@@ -53,3 +54,28 @@ pub(crate) const FAR_LIGHT: f64 = 0.005;
 
 /// The chord law under oblique rays, relative.
 pub(crate) const OBLIQUE_CHORD: f64 = 0.01;
+
+/// Beer–Lambert along rays from samples, relative: as [`RAY_BEER_LAMBERT`], plus the pixel's width.
+pub(crate) const DIRECT_BEER_LAMBERT: f64 = 1e-3;
+
+/// The 10–90 % width of a shadow's edge in voxels: a binary edge, whose samples are blurred once by
+/// the B-spline; then sampled at voxels and looked up with one linear fetch; then also splatted.
+pub(crate) const EDGE_WIDTHS: [(ShadowAlgorithm, f64); 3] =
+    [(ShadowAlgorithm::Direct, 1.31), (ShadowAlgorithm::Raycast, 1.80), (ShadowAlgorithm::Splat, 2.36)];
+/// Relative: the widths depend on the phase between light pixels and voxels.
+pub(crate) const EDGE_WIDTH: f64 = 0.08;
+/// How far the middle of the edge may be from the geometric one, in voxels.
+pub(crate) const EDGE_CENTRE: f64 = 0.25;
+
+/// Mean luminance with splatted shadows over that with rays from every sample ("slightly darker").
+pub(crate) const SELF_SHADOW: (f64, f64) = (0.88, 1.0);
+/// By how much half a cure must brighten at least: more than rounding can.
+pub(crate) const SELF_SHADOW_GROWS: f64 = 1.001;
+
+/// A checkerboard with a period of four voxels under pixels at least as wide: contrast, and change of
+/// a pixel from frame to frame.
+pub(crate) const STRETCHED_CONTRAST: f64 = 0.05;
+/// See [`STRETCHED_CONTRAST`].
+pub(crate) const STRETCHED_FLICKER: f64 = 0.01;
+/// Change of homogeneous fog's opacity by the stretch: the amplitude must fall as the width grows.
+pub(crate) const STRETCHED_FOG: f64 = 0.005;

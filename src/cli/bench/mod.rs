@@ -197,12 +197,12 @@ fn print_table(result: &Value) {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])));
     print_line(
-        "case                volume               wall ms    cpu ms    eye    march  back-project  rebuilds",
+        "case                        volume         wall ms    cpu ms    eye    march  back-project     rays",
     );
     for case in result["cases"].as_array().into_iter().flatten() {
         let number = |value: &Value| value.as_f64().map_or("–".to_owned(), |ms| format!("{ms:.1}"));
         print_line(&format!(
-            "{:<19} {:<20} {:>7} {:>9} {:>6} {:>8} {:>13} {:>9}",
+            "{:<27} {:<13} {:>8} {:>9} {:>6} {:>8} {:>13} {:>8}",
             text(&case["name"]),
             format!("{} {}", text(&case["volume"]), case["dims"][0]),
             number(&case["wall_ms"]["median"]),
@@ -210,7 +210,7 @@ fn print_table(result: &Value) {
             number(&case["stages"]["eye"]),
             number(&case["stages"]["light_march"]),
             number(&case["stages"]["light_backproject"]),
-            case["light_rebuilds"],
+            number(&case["stages"]["light_raycast"]),
         ));
     }
     for (name, ratio) in result["ratios"].as_object().into_iter().flatten() {
