@@ -32,9 +32,9 @@ pub(super) struct BenchArgs {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Volume: a file, or builtin:NAME[:N]
-    #[arg(long, value_name = "FILE", default_value = "builtin:chair:128")]
-    volume: String,
+    /// Volume: a file, or builtin:NAME[:N]; can be given several times
+    #[arg(long = "volume", value_name = "FILE", default_value = "builtin:chair:128")]
+    volumes: Vec<String>,
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
     size: [u32; 2],
@@ -53,26 +53,32 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let wants = |case: &str| args.only.as_deref().map_or(case != "growth", |only| only == case);
     let mut cases = Vec::new();
     let mut ratios = serde_json::Map::new();
-    let loaded = args.look.load(&args.volume)?;
-    let look = args.look.look(&loaded)?;
     let context = Context::headless()?;
-    if wants("orbit") || wants("light-drag") || wants("light-build") {
+    let of_volumes = ["orbit", "light-drag", "light-build", "paper"];
+    for volume in args.volumes.iter().filter(|_| of_volumes.into_iter().any(wants)) {
+        let loaded = args.look.load(volume)?;
         let mut renderer = Renderer::new(&context)?;
-        let settings = look.settings(&mut renderer, &loaded)?;
+        let settings = args.look.look(&loaded)?.settings(&mut renderer, &loaded)?;
         let mut bench = Bench { args, loaded: &loaded, renderer, settings };
-        let (with, without) = bench.orbit(&mut cases)?;
-        ratios
-            .insert("shadowed_over_unshadowed_frame".to_owned(), json!(round(with.cost() / without.cost())));
-        if wants("light-drag") || wants("light-build") {
-            let drag = bench.light_drag(&mut cases)?;
-            let ratio = drag.light_build() / without.eye();
-            ratios.insert("light_build_over_unshadowed_frame".to_owned(), json!(round(ratio)));
+        let mut found = serde_json::Map::new();
+        if wants("orbit") || wants("light-drag") || wants("light-build") {
+            let (with, without) = bench.orbit(&mut cases)?;
+            found.insert(
+                "shadowed_over_unshadowed_frame".to_owned(),
+                json!(round(with.cost() / without.cost())),
+            );
+            if wants("light-drag") || wants("light-build") {
+                let drag = bench.light_drag(&mut cases)?;
+                let ratio = drag.light_build() / without.eye();
+                found.insert("light_build_over_unshadowed_frame".to_owned(), json!(round(ratio)));
+            }
         }
-    }
-    if wants("paper") {
-        let mut renderer = Renderer::new(&context)?;
-        let settings = look.settings(&mut renderer, &loaded)?;
-        Bench { args, loaded: &loaded, renderer, settings }.paper(&mut cases, &mut ratios)?;
+        if wants("paper") {
+            bench.paper(&mut cases, &mut found)?;
+        }
+        let several = args.volumes.len() > 1;
+        let name = |ratio| if several { format!("{}: {ratio}", loaded.volume.name()) } else { ratio };
+        ratios.extend(found.into_iter().map(|(ratio, value)| (name(ratio), value)));
     }
     if wants("growth") {
         growth::run(&context, usize::from(args.frames), &mut cases, &mut ratios)?;

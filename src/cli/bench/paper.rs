@@ -31,6 +31,7 @@ impl Bench<'_> {
             cases.push(case);
             took.push((samples.light_build(), samples.eye()));
         }
+        let (with, without) = self.orbit(&mut Vec::new())?;
         let [(_, direct), (raycast, _), (splat, frame)] = took[..] else { return Ok(()) };
         let rows = [
             ("light_volume_raycast_over_splat", raycast / splat, 132.0 / 35.0),
@@ -38,6 +39,8 @@ impl Bench<'_> {
             // With a cached light volume each picture saves so much.
             ("pictures_that_pay_a_splatted_light_volume", splat / (direct - frame), 35.0 / (44.0 - 29.0)),
             ("light_volume_over_picture", splat / frame, 1.25),
+            // "Comparable" rendering times.
+            ("picture_with_over_without_shadows", with.cost() / without.cost(), 1.0),
         ];
         for (name, found, paper) in rows {
             ratios.insert(name.to_owned(), json!({ "measured": round(found), "paper": round(paper) }));
