@@ -8,7 +8,8 @@ use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{
-    Deposit, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm, Shadows,
+    Deposit, Gradients, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm,
+    Shadows,
 };
 use crate::plan::{SheetFrame, eye_frame};
 
@@ -53,6 +54,7 @@ impl EyePass {
             Projection::Perspective => (settings.camera.eye(), 1.0),
             Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
         };
+        let (gradient_pixels, gradient_slabs) = frame.gradient_steps();
         let uniform = uniforms::Eye {
             frame: uniforms::SheetFrame::new(&frame),
             shading: pack_shading(settings, scene, options),
@@ -62,6 +64,10 @@ impl EyePass {
             end_row: size[1],
             leaping: u32::from(options.leaping),
             dark: options.dark,
+            gradient_pixels: gradient_pixels as i32,
+            gradient_slabs: gradient_slabs as i32,
+            dilation: dilation(frame.max_stretch_level()),
+            pad0: 0,
             lights: packed,
         };
         Self { frame, uniform, constants }
@@ -133,6 +139,7 @@ pub(super) fn constants(
     let mut constants = kernel_constants(sampling.kernel).to_vec();
     constants.push(quadrature_constant(sampling.quadrature));
     constants.push(("STRETCH", flag(stretch)));
+    constants.push(("SHEET_GRADIENTS", flag(sampling.gradients == Gradients::Sheets)));
     constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
     if shadows.algorithm == ShadowAlgorithm::Direct {
         constants.push(("DIRECT", 1.0));

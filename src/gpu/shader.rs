@@ -6,12 +6,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 17] = [
+pub const SHADERS: [(&str, &str); 18] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
     ("common/lights.wgsl", include_str!("../../shaders/common/lights.wgsl")),
     ("common/listed_bricks.wgsl", include_str!("../../shaders/common/listed_bricks.wgsl")),
     ("common/resample.wgsl", include_str!("../../shaders/common/resample.wgsl")),
+    ("common/shade.wgsl", include_str!("../../shaders/common/shade.wgsl")),
     ("common/shadow_ray.wgsl", include_str!("../../shaders/common/shadow_ray.wgsl")),
     ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
     ("common/space.wgsl", include_str!("../../shaders/common/space.wgsl")),

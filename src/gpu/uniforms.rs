@@ -210,7 +210,7 @@ pub struct Shading {
     pub dark_depth: f32,
 }
 
-/// `eye.wgsl`.
+/// `common/shade.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Eye {
@@ -222,6 +222,10 @@ pub struct Eye {
     pub end_row: u32,
     pub leaping: u32,
     pub dark: f32,
+    pub gradient_pixels: i32,
+    pub gradient_slabs: i32,
+    pub dilation: i32,
+    pub pad0: i32,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 

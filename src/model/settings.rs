@@ -257,6 +257,27 @@ impl Shadows {
         self.slab * scene.smallest_edge()
     }
 }
+/// Where normals come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gradients {
+    /// Differences of the reconstructed volume around the sample.
+    Volume,
+    /// Differences between neighbouring sheets and their pixels (the paper's reference 16).
+    Sheets,
+}
+
+/// How sheets are filled and emptied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Engine {
+    /// Every pixel, and every voxel of a light volume, gathers what splats would bring: the same
+    /// sums, quickly.
+    Gather,
+    /// Every voxel is splatted into the sheets, and every pixel of a light's sheets back into the
+    /// grid, as the paper has it (figure 3).
+    Scatter,
+}
 
 /// How the eye's sheets are sampled.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -268,11 +289,22 @@ pub struct Sampling {
     pub slab: f64,
     /// Points per slab.
     pub quadrature: Quadrature,
+    /// Where normals come from; scattered sheets are all that there is of the volume, so there
+    /// they come from sheets.
+    pub gradients: Gradients,
+    /// How sheets are filled, those of lights too.
+    pub engine: Engine,
 }
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { kernel: Kernel::BSpline, slab: 1.0, quadrature: Quadrature::One }
+        Self {
+            kernel: Kernel::BSpline,
+            slab: 1.0,
+            quadrature: Quadrature::One,
+            gradients: Gradients::Volume,
+            engine: Engine::Gather,
+        }
     }
 }
 
@@ -315,6 +347,17 @@ impl Default for Output {
 }
 
 impl Settings {
+    /// Whether voxels are scattered. Rays from every sample need the volume, so with them the
+    /// picture is gathered whatever the engine.
+    pub fn scatters(&self) -> bool {
+        self.sampling.engine == Engine::Scatter && self.shadows.algorithm != ShadowAlgorithm::Direct
+    }
+
+    /// Whether normals come from sheets.
+    pub fn has_sheet_gradients(&self) -> bool {
+        self.scatters() || self.sampling.gradients == Gradients::Sheets
+    }
+
     /// The eye's transfer function as a table for a volume of that value range.
     pub fn baked_eye(&self, range: (f64, f64), scene: &SceneSpace) -> BakedTransfer {
         self.transfer.bake(range, unit_in_scene(self.opacity_unit, scene), 1.0)

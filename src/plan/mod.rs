@@ -17,8 +17,8 @@ pub use occupancy::BrickSet;
 pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 
 use crate::model::{
-    Background, Camera, Deposit, Hood, Interpolation, Kernel, Length, Light, LightKind, Output, Quadrature,
-    Resolution, Sampling, Settings, Shading, ShadowAlgorithm, Shadows, ToneMap, TransferFunction,
+    Background, Camera, Deposit, Engine, Hood, Interpolation, Kernel, Length, Light, LightKind, Output,
+    Quadrature, Resolution, Sampling, Settings, Shading, ShadowAlgorithm, Shadows, ToneMap, TransferFunction,
 };
 
 /// A picture to be made: of which volume, how, and how large.
@@ -45,6 +45,7 @@ pub struct LightKey {
     hood_deg: Option<[f64; 2]>,
     density_scale: f64,
     algorithm: ShadowAlgorithm,
+    engine: Engine,
     opacity: OpacityKey,
     first_touch: bool,
     deposit: Deposit,
@@ -86,7 +87,7 @@ impl LightKey {
             opacity_unit,
             shading: _,
             shadows,
-            sampling: _,
+            sampling: Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine },
             output: _,
         } = &request.settings;
         let light = lights.get(index)?.in_world(camera);
@@ -130,6 +131,8 @@ impl LightKey {
             hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
             density_scale: *density_scale,
             algorithm: *algorithm,
+            // Rays need no sheets.
+            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
             opacity: OpacityKey {
                 points: points.iter().map(|point| [point.value, point.opacity]).collect(),
                 interpolation: *interpolation,
@@ -208,7 +211,7 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
     let Background { top: _, bottom: _ } = background;
     let (ToneMap::Neutral | ToneMap::Clip) = tone_map;
     let Camera { .. } = camera;
-    let Sampling { kernel: _, slab: _, quadrature: _ } = sampling;
+    let Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine: _ } = sampling;
     let Shading { emission: _, ambient: _, diffuse: _, specular: _, shininess: _, surface_gradient: _ } =
         shading;
     let eye = eye_table

@@ -151,6 +151,13 @@ impl SheetFrame {
         (self.pitch_at(depth) / self.voxel_edge).max(1e-9).log2().clamp(0.0, MAX_STRETCH_LEVEL)
     }
 
+    /// Pixels and slabs to either side between which gradients from sheets are differences: about a
+    /// voxel, as between the samples of a gradient from the volume.
+    pub fn gradient_steps(&self) -> (u32, u32) {
+        let steps = |step: f64| (self.voxel_edge / step).round().max(1.0) as u32;
+        (steps(self.pitch), steps(self.slab))
+    }
+
     /// The largest [`Self::stretch_level`] of any slab.
     pub fn max_stretch_level(&self) -> f64 {
         let last = self.first_depth + f64::from(self.slab_count) * self.slab;

@@ -72,12 +72,13 @@ impl<'r> Shader<'r> {
         }
     }
 
-    /// C(s) of P eq. 2 at an index-space point with the transfer function's colour `C_o`:
+    /// C(s) of P eq. 2 at an index-space point with the transfer function's colour `C_o` and the
+    /// density's gradient in scene space:
     /// `C_o · (emission + k_a + Σ C_l·k_d·|N·L|) + Σ C_l·k_s·(N·H)^n_s`.
-    pub(super) fn color(&self, point: DVec3, base: [f64; 3], level: f64) -> [f64; 3] {
+    pub(super) fn color(&self, point: DVec3, base: [f64; 3], gradient: DVec3) -> [f64; 3] {
         let shading = &self.reference.settings.shading;
         let scene = &self.reference.scene;
-        let surface = self.surface(point, level);
+        let surface = self.surface(gradient);
         let place = scene.scene_from_index.transform_point3(point);
         let to_eye = self.towards_eye(place);
         let mut diffuse = [shading.emission + shading.ambient; 3];
@@ -125,7 +126,7 @@ impl<'r> Shader<'r> {
 
     /// Central differences of the prefiltered density, one voxel (or one stretched voxel) to either
     /// side, turned into scene space as gradients are: by the transposed inverse.
-    fn surface(&self, point: DVec3, level: f64) -> Surface {
+    pub(super) fn gradient(&self, point: DVec3, level: f64) -> DVec3 {
         let level = level.clamp(0.0, MAX_LEVEL as f64);
         let step = level.exp2();
         let difference = |axis: DVec3| {
@@ -133,7 +134,10 @@ impl<'r> Shader<'r> {
             (fetch(point + axis * step) - fetch(point - axis * step)) / (2.0 * step)
         };
         let in_index = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
-        let gradient = self.reference.scene.index_from_scene.matrix3.transpose() * in_index;
+        self.reference.scene.index_from_scene.matrix3.transpose() * in_index
+    }
+
+    fn surface(&self, gradient: DVec3) -> Surface {
         let length = gradient.length();
         let outward = if self.reference.options.fault == Fault::FlippedNormal { 1.0 } else { -1.0 };
         let change = length * self.opacity_unit;
@@ -189,7 +193,8 @@ mod tests {
         let half = Attenuation { dims: [1; 3], divisor: 16, values: vec![0.5] };
         for (attenuations, arriving) in [(vec![], 1.0), (vec![Some(half)], 0.5)] {
             let shader = Shader::new(&reference, &attenuations);
-            let found = shader.color(DVec3::splat(7.5), [1.0, 0.5, 0.0], 0.0);
+            let middle = DVec3::splat(7.5);
+            let found = shader.color(middle, [1.0, 0.5, 0.0], shader.gradient(middle, 0.0));
             let diffuse = 0.1 + 0.15 + 2.0 * arriving * 0.85 * (1.0 - weight + weight * 0.6);
             // The half-vector of (0.6, 0.8, 0) and (1, 0, 0): cos² = (1 + 0.6)/2.
             let specular = 2.0 * arriving * 0.25 * weight * 0.8;

@@ -7,7 +7,7 @@ use crate::scenes;
 use crate::thresholds::{LITERAL, SAME_WEIGHTS};
 use chiaroscuro::gpu::{Renderer, stored_density};
 use chiaroscuro::model::{
-    Camera, Deposit, Kernel, LightKind, LightLock, Projection, Quadrature, Resolution, Settings,
+    Camera, Deposit, Gradients, Kernel, LightKind, LightLock, Projection, Quadrature, Resolution, Settings,
     ShadowAlgorithm,
 };
 use chiaroscuro::reference::{Options, Reference, Weights};
@@ -234,4 +234,16 @@ fn literal_footprints_parallel() {
 #[test]
 fn literal_footprints_perspective() {
     check_literal(128, LightKind::Perspective, [2.0, -1.3, 2.4]);
+}
+
+/// Gradients from neighbouring sheets: thin slabs, perspective, voxels that are no cubes.
+#[test]
+fn gradients_from_neighbouring_sheets() {
+    let mut settings = scenes::look();
+    settings.sampling.gradients = Gradients::Sheets;
+    settings.sampling.slab = 0.5;
+    check("gradients from sheets", DVec3::new(1.0, 1.2, 1.7), &settings);
+    settings.camera.projection = Projection::Orthographic;
+    settings.camera.distance = 1.2;
+    check("gradients from sheets, near", DVec3::ONE, &settings);
 }
