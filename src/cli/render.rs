@@ -74,6 +74,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             },
             "light_rebuilds": renderer.light_rebuilds(),
             "slabs": took.slabs,
+            "splats": renderer.splats()?,
             "peak_gpu_bytes": took.peak_gpu_bytes,
             "mean_luminance": mean_luminance(&picture),
             "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(&settings).unwrap_or_default())),

@@ -10,7 +10,7 @@ use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
 use crate::data::{Bricks, Histogram, Volume, VoxelType};
 use crate::gpu::{Renderer, balance};
-use crate::model::{Settings, ShadowAlgorithm, apply_json, apply_path, auto};
+use crate::model::{Engine, Settings, ShadowAlgorithm, apply_json, apply_path, auto};
 
 /// Largest file that is read as a preset: a thousand times the size of a real one.
 const MAX_PRESET_BYTES: u64 = 4 << 20;
@@ -109,6 +109,15 @@ enum ShadowArg {
     Direct,
 }
 
+/// How sheets are filled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum EngineArg {
+    /// Pixels gather what voxels would splat: the same sums, quickly
+    Gather,
+    /// Voxels are splatted, as the paper has it
+    Scatter,
+}
+
 /// The look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
@@ -124,6 +133,9 @@ pub(super) struct LookArgs {
     /// How shadows are made
     #[arg(long, value_enum)]
     shadows: Option<ShadowArg>,
+    /// How sheets are filled
+    #[arg(long, value_enum)]
+    engine: Option<EngineArg>,
     #[command(flatten)]
     raw: RawArgs,
 }
@@ -199,7 +211,8 @@ impl LookArgs {
             }
             settings = next;
         }
-        let look = Look { settings, balanced, set: self.set.clone(), shadows: self.shadows };
+        let look =
+            Look { settings, balanced, set: self.set.clone(), shadows: self.shadows, engine: self.engine };
         look.with_single_settings(look.settings.clone())?;
         Ok(look)
     }
@@ -212,6 +225,7 @@ pub(super) struct Look {
     balanced: bool,
     set: Vec<String>,
     shadows: Option<ShadowArg>,
+    engine: Option<EngineArg>,
 }
 
 impl Look {
@@ -240,6 +254,11 @@ impl Look {
             Some(ShadowArg::Splat) => settings.shadows.algorithm = ShadowAlgorithm::Splat,
             Some(ShadowArg::Raycast) => settings.shadows.algorithm = ShadowAlgorithm::Raycast,
             Some(ShadowArg::Direct) => settings.shadows.algorithm = ShadowAlgorithm::Direct,
+            None => {}
+        }
+        match self.engine {
+            Some(EngineArg::Gather) => settings.sampling.engine = Engine::Gather,
+            Some(EngineArg::Scatter) => settings.sampling.engine = Engine::Scatter,
             None => {}
         }
         Ok(settings)

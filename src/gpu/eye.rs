@@ -2,10 +2,11 @@
 
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_volume::LightVolume;
+use super::scatter_eye::scatter_dilation;
 use super::tables::{Tables, dilation, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
-use super::{GpuError, RenderOptions};
+use super::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{
     Deposit, Gradients, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm,
@@ -78,6 +79,38 @@ impl EyePass {
         self.frame.slab_count
     }
 
+    /// The eye's rays and slabs.
+    pub(super) fn frame(&self) -> &SheetFrame {
+        &self.frame
+    }
+
+    /// What the shaders know about the eye, for the whole picture from scattered sheets.
+    pub(super) fn uniform_buffer(&self, context: &Context) -> wgpu::Buffer {
+        let uniform = uniforms::Eye { dilation: scatter_dilation(&self.frame), ..self.uniform };
+        context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// The variant of `scatter_eye.wgsl`: the number of lights.
+    pub(super) fn scatter_constants(&self) -> Vec<(&'static str, f64)> {
+        self.constants.iter().filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED")).copied().collect()
+    }
+
+    /// Bind group 2: the light volumes.
+    pub(super) fn light_bind_group(
+        &self,
+        gpu: Gpu<'_>,
+        pipeline: &wgpu::ComputePipeline,
+        attenuation: &[&LightVolume],
+    ) -> wgpu::BindGroup {
+        let view = |slot: usize| attenuation.get(slot).map_or(gpu.nothing, |light| &light.view);
+        let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
+        gpu.context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Eye::lights"),
+            layout: &pipeline.get_bind_group_layout(2),
+            entries: &views,
+        })
+    }
+
     /// Draws some rows of the picture. `attenuation` holds the volumes of the shadowed lights, in
     /// the order in which the settings list those lights.
     pub(super) fn draw(
@@ -89,7 +122,7 @@ impl EyePass {
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, volume, nothing } = gpu;
+        let Gpu { context, shaders, volume, .. } = gpu;
         let pipeline = shaders.pipeline("eye.wgsl", &self.constants)?;
         let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, ..self.uniform };
         let uniform = context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
@@ -106,14 +139,7 @@ impl EyePass {
             ],
         });
         let of_volume = volume.bind_group(context, &pipeline, dilation(self.frame.max_stretch_level()));
-        let views: Vec<_> = (0..MAX_LIGHTS as u32)
-            .map(|slot| view_entry(slot, attenuation.get(slot as usize).map_or(nothing, |light| &light.view)))
-            .collect();
-        let of_lights = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Eye::lights"),
-            layout: &pipeline.get_bind_group_layout(2),
-            entries: &views,
-        });
+        let of_lights = self.light_bind_group(gpu, &pipeline, attenuation);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("Eye::pass"),
             timestamp_writes: None,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::light_march::{Sheets, march};
 use super::readback::{Attenuation, read_floats};
-use super::volume::Gpu;
+use super::scatter_light::LightScatter;
 use super::{GpuError, RenderOptions, Renderer};
 use crate::data::{Bricks, Volume};
 use crate::model::Settings;
@@ -63,24 +63,26 @@ impl Renderer {
         view: usize,
     ) -> Result<Vec<f32>, GpuError> {
         self.draw(volume, bricks, settings, [8, 8], &RenderOptions::default())?;
-        let (Some(gpu_volume), Some(tables)) = (&self.volume, &self.tables) else {
-            return Err(GpuError::Refused("no volume".to_owned()));
-        };
+        let (gpu, tables) = self.gpu()?;
         let lamp = settings.lights[light].in_world(&settings.camera);
-        let geometry = &light_views(&lamp, &settings.shadows, &gpu_volume.scene)[view];
-        let everything = BrickSet::full(gpu_volume.bricks.dims);
+        let geometry = &light_views(&lamp, &settings.shadows, &gpu.volume.scene)[view];
+        let everything = BrickSet::full(gpu.volume.bricks.dims);
         let count = geometry.frame.slab_count;
         let sheets = Sheets::new(&self.context, geometry, count, &everything, &tables.lighting.occupied)?;
-        let gpu = Gpu {
-            context: &self.context,
-            shaders: &self.shaders,
-            volume: gpu_volume,
-            nothing: &self.nothing,
-        };
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let table = &tables.lighting.buffer;
-        march(gpu, table, (&lamp, &settings.shadows), geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
+        let lamp = (&lamp, &settings.shadows);
+        if settings.scatters() {
+            let (voxels, counter) = self.scattering()?;
+            let target = self.lights.first().ok_or_else(|| GpuError::Refused("no light".to_owned()))?;
+            let of_light = (&settings.shadows, target);
+            let options = RenderOptions::default();
+            let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, &options)?;
+            scatter.march(gpu, voxels, counter, table, lamp, geometry, &sheets, 0..count, &mut encoder)?;
+        } else {
+            march(gpu, table, lamp, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
+        }
         self.context.queue.submit([encoder.finish()]);
         let mut values = read_floats(&self.context, &sheets.ring)?;
         values.truncate((count * geometry.frame.size[0] * geometry.frame.size[1]) as usize);

@@ -9,6 +9,8 @@ use super::light_march::Sheets;
 use super::light_raycast::BRICKS_PER_STEP;
 use super::light_volume::{LightVolume, read_bricks};
 use super::listed_bricks::packed;
+use super::scatter_eye::{EyeScatter, SLABS_PER_STEP};
+use super::scatter_light::LightScatter;
 use super::volume::GpuVolume;
 use crate::model::{Light, ShadowAlgorithm};
 use crate::plan::{BrickSet, LightKey, LightView, Request, light_views};
@@ -75,6 +77,8 @@ pub(super) enum Step {
     /// Index of the light build, and which of its bricks.
     Raycast(usize, Range<usize>),
     Eye(Range<u32>),
+    /// Slabs of the eye's scattered sheets.
+    ScatterEye(Range<u32>),
     Display,
 }
 
@@ -86,7 +90,7 @@ impl Step {
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) => Stage::LightBackproject,
             Self::Raycast(..) => Stage::LightRaycast,
-            Self::Eye(_) => Stage::Eye,
+            Self::Eye(_) | Self::ScatterEye(_) => Stage::Eye,
             Self::Display => Stage::Display,
         }
     }
@@ -106,10 +110,14 @@ pub(super) struct LightBuild {
     pub chunks: Vec<u32>,
     /// Data bricks whose sheets will be read.
     pub read: BrickSet,
-    /// Bricks of the light volume for rays to fill.
+    /// Bricks of the light volume, for rays to fill or sums to be normalised in.
     pub bricks: Vec<u32>,
-    /// Sheets and schedule of the view that is being marched.
+    /// Sheets and schedule of the view that is being marched …
     pub current: Option<(Sheets, Schedule)>,
+    /// … and what is scattered into them and back, if it is.
+    pub scatter: Option<LightScatter>,
+    /// Whether voxels are scattered.
+    pub scatters: bool,
 }
 
 impl LightBuild {
@@ -127,14 +135,28 @@ impl LightBuild {
         let lamp = settings.lights[light].in_world(&settings.camera);
         let splats = shadows.algorithm == ShadowAlgorithm::Splat;
         let views = if splats { light_views(&lamp, &shadows, &volume.scene) } else { Vec::new() };
-        let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| chunk_slabs(volume, view))).collect();
+        let usual = |view| if settings.scatters() { SLABS_PER_STEP } else { chunk_slabs(volume, view) };
+        let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| usual(view))).collect();
         let read = read_bricks(volume, &fresh.filled, fresh.divisor, &views);
-        let bricks = if splats { Vec::new() } else { fresh.filled.positions().map(packed).collect() };
-        Self { light, lamp, key: fresh.key.clone(), views, chunks, read, bricks, current: None }
+        let bricks = fresh.filled.positions().map(packed).collect();
+        Self {
+            light,
+            lamp,
+            key: fresh.key.clone(),
+            views,
+            chunks,
+            read,
+            bricks,
+            current: None,
+            scatter: None,
+            scatters: splats && settings.scatters(),
+        }
     }
 
     /// The steps of build number `at`, each chunk of a view cut into `parts`.
     pub(super) fn steps(&self, at: usize, parts: u32) -> Vec<Step> {
+        // Scattered slabs are short enough, and not cut into pixels.
+        let parts = if self.scatters { 1 } else { parts };
         let mut steps = Vec::new();
         for (view, chunk) in self.chunks.iter().enumerate() {
             for begin in (0..self.views[view].frame.slab_count).step_by(*chunk as usize) {
@@ -170,6 +192,8 @@ pub struct Job {
     pub(super) builds: Vec<LightBuild>,
     /// Set up when the first rows of the picture are drawn.
     pub(super) eye: Option<EyePass>,
+    /// Its sheets, if voxels are scattered.
+    pub(super) scatter: Option<EyeScatter>,
     pub(super) steps: VecDeque<Step>,
     pub(super) total: usize,
 }

@@ -143,6 +143,6 @@ pub(super) fn backproject(
     });
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &bind_group, &[]);
-    listed_bricks::dispatch(&mut pass, bricks);
+    listed_bricks::dispatch(&mut pass, bricks.len() as u32);
     Ok(())
 }

@@ -24,7 +24,8 @@ pub(super) struct Sheets {
     /// The same.
     pub ring_view: wgpu::TextureView,
     transmittance: wgpu::Buffer,
-    distances: wgpu::TextureView,
+    /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
+    pub distances: wgpu::TextureView,
 }
 
 impl Sheets {
@@ -75,6 +76,27 @@ impl Sheets {
         })
     }
 
+    /// Bind group 0 of the passes that march.
+    pub(super) fn march_bind_group(
+        &self,
+        context: &Context,
+        pipeline: &wgpu::ComputePipeline,
+        uniform: &wgpu::Buffer,
+        table: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("March::bind_group"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, table.as_entire_binding()),
+                view_entry(2, &self.distances),
+                entry(3, self.transmittance.as_entire_binding()),
+                view_entry(4, &self.ring_view),
+            ],
+        })
+    }
+
     /// Bytes of the ring and of the running transmittance.
     pub(super) fn bytes(&self) -> u64 {
         let size = self.ring.size();
@@ -103,6 +125,30 @@ fn rows_of(height: u32, part: (u32, u32)) -> Range<u32> {
     cut(part.0)..cut(part.0 + 1)
 }
 
+/// What the shaders know about the light and the slabs `slabs.0 .. slabs.1` of a view.
+pub(super) fn march_uniform(
+    light: &Light,
+    view: &LightView,
+    sheets: &Sheets,
+    slabs: (u32, u32),
+    rows: Range<u32>,
+) -> uniforms::March {
+    let cone = light.cone();
+    uniforms::March {
+        frame: uniforms::SheetFrame::new(&view.frame),
+        begin: slabs.0,
+        end: slabs.1,
+        layers: sheets.layers,
+        first_row: rows.start,
+        end_row: rows.end,
+        extinction_scale: light.density_scale as f32,
+        hood_inner: cone.cos_inner as f32,
+        hood_outer: cone.cos_outer as f32,
+        hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
+        dark: sheets.dark,
+    }
+}
+
 /// Marches a part of the pixels through the slabs `begin .. end` of a view.
 pub(super) fn march(
     gpu: Gpu<'_>,
@@ -120,32 +166,9 @@ pub(super) fn march(
     }
     let stretch = view.frame.max_stretch_level();
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(shadows, stretch > 0.0))?;
-    let cone = light.cone();
-    let uniform = uniforms::March {
-        frame: uniforms::SheetFrame::new(&view.frame),
-        begin: slabs.0,
-        end: slabs.1,
-        layers: sheets.layers,
-        first_row: rows.start,
-        end_row: rows.end,
-        extinction_scale: light.density_scale as f32,
-        hood_inner: cone.cos_inner as f32,
-        hood_outer: cone.cos_outer as f32,
-        hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
-        dark: sheets.dark,
-    };
+    let uniform = march_uniform(light, view, sheets, slabs, rows.clone());
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("March::bind_group"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            entry(0, uniform.as_entire_binding()),
-            entry(1, table.as_entire_binding()),
-            view_entry(2, &sheets.distances),
-            entry(3, sheets.transmittance.as_entire_binding()),
-            view_entry(4, &sheets.ring_view),
-        ],
-    });
+    let own = sheets.march_bind_group(context, &pipeline, &uniform, table);
     let of_volume = volume.bind_group(context, &pipeline, dilation(stretch));
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some("March::pass"),

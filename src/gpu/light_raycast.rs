@@ -68,6 +68,6 @@ pub(super) fn raycast(
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &own, &[]);
     pass.set_bind_group(1, &of_volume, &[]);
-    listed_bricks::dispatch(&mut pass, bricks);
+    listed_bricks::dispatch(&mut pass, bricks.len() as u32);
     Ok(())
 }

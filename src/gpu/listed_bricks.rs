@@ -16,7 +16,6 @@ pub(super) fn upload(context: &Context, bricks: &[u32]) -> wgpu::Buffer {
 }
 
 /// Two workgroups for each brick.
-pub(super) fn dispatch(pass: &mut wgpu::ComputePass<'_>, bricks: &[u32]) {
-    let listed = bricks.len() as u32;
+pub(super) fn dispatch(pass: &mut wgpu::ComputePass<'_>, listed: u32) {
     pass.dispatch_workgroups(2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1);
 }

@@ -63,6 +63,27 @@ pub(super) fn read_texture(context: &Context, texture: &wgpu::Texture) -> Result
     Ok(bytes)
 }
 
+/// The first word of a buffer.
+pub(super) fn read_word(context: &Context, source: &wgpu::Buffer) -> Result<u32, GpuError> {
+    let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("Readback::word"),
+        size: 4,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(source, 0, &buffer, 0, 4);
+    context.queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |result| {
+        if let Err(err) = result {
+            log::error!("reading back failed: {err}");
+        }
+    });
+    context.wait()?;
+    let view = buffer.get_mapped_range(..).map_err(|err| GpuError::Refused(err.to_string()))?;
+    Ok(u32::from_le_bytes([view[0], view[1], view[2], view[3]]))
+}
+
 /// The texels of a one-channel float texture.
 pub(super) fn read_floats(context: &Context, texture: &wgpu::Texture) -> Result<Vec<f32>, GpuError> {
     let bytes = read_texture(context, texture)?;

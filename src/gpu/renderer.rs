@@ -3,21 +3,19 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::display::{Target, display};
-use super::eye::EyePass;
-use super::job::{Job, LightStep, Stage, Step};
-use super::light_backproject::{Schedule, backproject};
-use super::light_march::{Sheets, march};
-use super::light_raycast::raycast;
+use super::display::Target;
+use super::job::{Job, Stage, Step};
 use super::light_volume::LightVolume;
 use super::picture::{Picture, RenderOptions, Report};
-use super::readback::read_texture;
+use super::readback::{read_texture, read_word};
+use super::scatter_eye::SLABS_PER_STEP;
+use super::scatter_voxels::ScatterVoxels;
 use super::tables::Tables;
-use super::volume::{Gpu, GpuVolume, texture_3d};
+use super::volume::{GpuVolume, texture_3d};
 use super::{Context, GpuError, ShaderLibrary, prefilter};
 use crate::data::{Bricks, Volume};
 use crate::model::Settings;
-use crate::plan::{BrickSet, Request};
+use crate::plan::{Request, eye_frame};
 
 /// Renders volumes on one device.
 #[derive(Debug)]
@@ -25,19 +23,23 @@ pub struct Renderer {
     pub(super) context: Context,
     pub(super) shaders: ShaderLibrary,
     pub(super) volume: Option<GpuVolume>,
-    uploaded: bool,
+    pub(super) uploaded: bool,
     pub(super) tables: Option<Tables>,
     pub(super) lights: Vec<LightVolume>,
     /// What is shown, and a spare one to draw into.
     front: Option<Target>,
-    back: Option<Target>,
+    pub(super) back: Option<Target>,
+    /// The volume's voxels for scattering, once a picture has asked for them.
+    pub(super) voxels: Option<ScatterVoxels>,
+    /// Counts what the picture scatters.
+    pub(super) splats: Option<wgpu::Buffer>,
     /// Bound where a light has no volume.
     pub(super) nothing: wgpu::TextureView,
     pub(super) options: RenderOptions,
     pub(super) rebuilds: Vec<u64>,
     /// Counts pictures.
     pub(super) clock: u64,
-    report: Report,
+    pub(super) report: Report,
 }
 
 impl Renderer {
@@ -66,6 +68,8 @@ impl Renderer {
             lights: Vec::new(),
             front: None,
             back: None,
+            voxels: None,
+            splats: None,
             nothing: nothing.create_view(&wgpu::TextureViewDescriptor::default()),
             options: RenderOptions::default(),
             rebuilds: Vec::new(),
@@ -94,7 +98,16 @@ impl Renderer {
     pub fn gpu_bytes(&self) -> u64 {
         let targets = self.front.iter().chain(&self.back).map(Target::bytes).sum::<u64>();
         let lights = self.lights.iter().map(LightVolume::bytes).sum::<u64>();
-        targets + lights + self.volume.as_ref().map_or(0, GpuVolume::bytes)
+        let voxels = self.voxels.as_ref().map_or(0, ScatterVoxels::bytes);
+        targets + lights + voxels + self.volume.as_ref().map_or(0, GpuVolume::bytes)
+    }
+
+    /// How many footprints the last picture has splatted; 0 of one that gathers. Waits for it.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    pub fn splats(&self) -> Result<u64, GpuError> {
+        self.splats.as_ref().map_or(Ok(0), |counter| read_word(&self.context, counter).map(u64::from))
     }
 
     /// What the last picture took.
@@ -196,7 +209,7 @@ impl Renderer {
             self.back = None;
             self.back = Some(Target::new(&self.context, request.size)?);
         }
-        steps.push(Step::Eye(0..request.size[1]));
+        steps.extend(self.eye_steps(&request)?);
         steps.push(Step::Display);
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(self.gpu_bytes());
         let total = steps.len();
@@ -206,9 +219,33 @@ impl Renderer {
             keys,
             builds,
             eye: None,
+            scatter: None,
             steps: steps.into(),
             total,
         })
+    }
+
+    /// The steps that draw the picture.
+    fn eye_steps(&mut self, request: &Request) -> Result<Vec<Step>, GpuError> {
+        self.splats = None;
+        let Request { settings, size, .. } = request;
+        let Some(gpu_volume) = &self.volume else { return Err(GpuError::Refused("no volume".to_owned())) };
+        let frame = eye_frame(&settings.camera, &gpu_volume.scene, *size, settings.sampling.slab);
+        if settings.scatters() {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+            self.splats = Some(self.context.buffer("Renderer::splats", &[0u32], usage));
+            if self.voxels.is_none() {
+                self.voxels = Some(ScatterVoxels::new(&self.context, gpu_volume)?);
+            }
+        }
+        // With everything behind the eye there is no sheet: the gathering pass clears the picture.
+        if settings.scatters() && frame.slab_count > 0 {
+            let firsts = (0..frame.slab_count).step_by(SLABS_PER_STEP as usize);
+            let end = |k: u32| frame.slab_count.min(k + SLABS_PER_STEP);
+            Ok(firsts.map(|k| Step::ScatterEye(k..end(k))).collect())
+        } else {
+            Ok(vec![Step::Eye(0..size[1])])
+        }
     }
 
     /// Submits the next step. Returns whether there are more; after the last one the new picture is
@@ -263,105 +300,8 @@ impl Renderer {
             self.volume = Some(fresh);
             self.uploaded = false;
             self.tables = None;
+            self.voxels = None;
             self.lights.clear();
-        }
-        Ok(())
-    }
-
-    fn encode(
-        &mut self,
-        job: &mut Job,
-        step: &Step,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let (Some(volume), Some(tables), Some(target)) = (&self.volume, &self.tables, &self.back) else {
-            return Err(GpuError::Refused("the job is out of date".to_owned()));
-        };
-        let settings = &job.request.settings;
-        let gpu = Gpu { context: &self.context, shaders: &self.shaders, volume, nothing: &self.nothing };
-        match step {
-            Step::Upload(slices) => volume.upload(&self.context, slices.clone()),
-            Step::Pyramid(level, slices) => {
-                prefilter::fill(&self.context, &self.shaders, volume, *level, slices, encoder)?;
-                // The last of them: what follows is no pyramid.
-                self.uploaded = !matches!(job.steps.front(), Some(Step::Pyramid(..)));
-            }
-            Step::March(LightStep { build, view, begin, part }) => {
-                let build = &mut job.builds[*build];
-                let Some(light) = self.lights.iter().find(|light| light.key == build.key) else {
-                    return Err(GpuError::Refused("the job is out of date".to_owned()));
-                };
-                let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
-                if *begin == 0 && part.0 == 0 {
-                    let occupied = &tables.lighting.occupied;
-                    let mut sheets = if self.options.leaping {
-                        Sheets::new(&self.context, geometry, chunk, &build.read, occupied)?
-                    } else {
-                        let everything = BrickSet::full(build.read.dims);
-                        Sheets::new(&self.context, geometry, chunk, &everything, &everything)?
-                    };
-                    sheets.dark = self.options.dark;
-                    let peak = self.gpu_bytes() + sheets.bytes();
-                    self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
-                    let schedule = Schedule::new(&volume.scene, geometry, light, sheets.chunk);
-                    build.current = Some((sheets, schedule));
-                    if *view == 0 {
-                        self.rebuilds[build.light] += 1;
-                    }
-                }
-                let Some((sheets, _)) = &build.current else { return Ok(()) };
-                let slabs = (*begin, (*begin + chunk).min(geometry.frame.slab_count));
-                let table = &tables.lighting.buffer;
-                let lamp = (&build.lamp, &settings.shadows);
-                march(gpu, table, lamp, geometry, sheets, (slabs, *part), encoder)?;
-            }
-            Step::Backproject(LightStep { build, view, begin, part }) => {
-                let build = &mut job.builds[*build];
-                let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
-                let Some(light) = self.lights.iter_mut().find(|light| light.key == build.key) else {
-                    return Err(GpuError::Refused("the job is out of date".to_owned()));
-                };
-                let Some(current) = &build.current else { return Ok(()) };
-                let end = (*begin + chunk).min(geometry.frame.slab_count);
-                let slabs = (*begin, end);
-                backproject(gpu, &settings.shadows, geometry, current, light, (slabs, *part), encoder)?;
-                let is_last = end == geometry.frame.slab_count && part.0 + 1 == part.1;
-                if is_last && view + 1 == build.views.len() {
-                    light.complete = true;
-                    build.current = None;
-                }
-            }
-            Step::Raycast(build, bricks) => {
-                let build = &job.builds[*build];
-                let Some(light) = self.lights.iter_mut().find(|light| light.key == build.key) else {
-                    return Err(GpuError::Refused("the job is out of date".to_owned()));
-                };
-                if bricks.start == 0 {
-                    self.rebuilds[build.light] += 1;
-                }
-                let list = &build.bricks[bricks.clone()];
-                raycast(gpu, tables, (&build.lamp, settings), &self.options, light, list, encoder)?;
-                light.complete = bricks.end == build.bricks.len();
-            }
-            Step::Eye(rows) => {
-                let found: Vec<Option<&LightVolume>> = job
-                    .keys
-                    .iter()
-                    .map(|key| {
-                        key.as_ref().and_then(|key| self.lights.iter().find(|light| light.key == *key))
-                    })
-                    .collect();
-                let attenuation: Vec<&LightVolume> = found.iter().copied().flatten().collect();
-                let eye = job.eye.get_or_insert_with(|| {
-                    EyePass::new(&volume.scene, settings, target.size, &found, &self.options)
-                });
-                self.report.slabs = eye.slab_count();
-                let picture = &target.picture_view;
-                eye.draw(gpu, tables, &attenuation, picture, rows.clone(), encoder)?;
-            }
-            Step::Display => {
-                display(&self.context, &self.shaders, &settings.output, job.transparent, target, encoder)?;
-            }
         }
         Ok(())
     }

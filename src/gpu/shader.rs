@@ -6,12 +6,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 18] = [
+pub const SHADERS: [(&str, &str); 26] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
+    ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
     ("common/lights.wgsl", include_str!("../../shaders/common/lights.wgsl")),
     ("common/listed_bricks.wgsl", include_str!("../../shaders/common/listed_bricks.wgsl")),
+    ("common/march.wgsl", include_str!("../../shaders/common/march.wgsl")),
     ("common/resample.wgsl", include_str!("../../shaders/common/resample.wgsl")),
+    ("common/scatter.wgsl", include_str!("../../shaders/common/scatter.wgsl")),
     ("common/shade.wgsl", include_str!("../../shaders/common/shade.wgsl")),
     ("common/shadow_ray.wgsl", include_str!("../../shaders/common/shadow_ray.wgsl")),
     ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
@@ -25,6 +28,11 @@ pub const SHADERS: [(&str, &str); 18] = [
     ("light_march.wgsl", include_str!("../../shaders/light_march.wgsl")),
     ("light_raycast.wgsl", include_str!("../../shaders/light_raycast.wgsl")),
     ("prefilter.wgsl", include_str!("../../shaders/prefilter.wgsl")),
+    ("scatter_eye.wgsl", include_str!("../../shaders/scatter_eye.wgsl")),
+    ("scatter_light.wgsl", include_str!("../../shaders/scatter_light.wgsl")),
+    ("scatter_normalise.wgsl", include_str!("../../shaders/scatter_normalise.wgsl")),
+    ("scatter_reverse.wgsl", include_str!("../../shaders/scatter_reverse.wgsl")),
+    ("scatter_splat.wgsl", include_str!("../../shaders/scatter_splat.wgsl")),
 ];
 
 /// Joins sources and makes pipelines, each once.

@@ -97,7 +97,31 @@ pub struct Slices {
     pub pad1: u32,
 }
 
-/// `light_march.wgsl`.
+/// `common/scatter.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Scatter {
+    pub frame: SheetFrame,
+    pub sheets_from_index_x: [f32; 4],
+    pub sheets_from_index_y: [f32; 4],
+    pub sheets_from_index_z: [f32; 4],
+    pub half: [f32; 3],
+    pub stretch: f32,
+    pub dims: [f32; 3],
+    pub k: u32,
+    pub bricks: [i32; 3],
+    pub layers: u32,
+    pub first: u32,
+    pub count: u32,
+    pub pixel_share: f32,
+    pub voxel_step: f32,
+    pub light_dims: [u32; 3],
+    pub cube_face: u32,
+    pub first_pixel: [f32; 2],
+    pub pad0: [f32; 2],
+}
+
+/// `common/march.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct March {

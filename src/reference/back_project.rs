@@ -63,9 +63,11 @@ impl Reference<'_> {
     pub fn back_project(&self, sheets: &[ViewSheets]) -> Attenuation {
         let mut volume = Attenuation::unlit(self.scene.dims, self.settings.shadows.resolution.divisor());
         for sheets in sheets.iter().filter(|sheets| !sheets.deposits.is_empty()) {
-            let filled: Vec<_> = match self.options.weights {
-                Weights::Footprint if !self.settings.shadows.first_touch => self.scatter(sheets, &volume),
-                Weights::Gather | Weights::Footprint => (0..volume.values.len())
+            let filled: Vec<_> = match self.weights() {
+                Weights::Footprint | Weights::Scatter if !self.settings.shadows.first_touch => {
+                    self.scatter(sheets, &volume)
+                }
+                _ => (0..volume.values.len())
                     .into_par_iter()
                     .map(|voxel| self.gathered(sheets, volume.point_of(voxel)))
                     .collect(),
@@ -110,12 +112,16 @@ impl Reference<'_> {
     /// slice of the voxel's kernel that lies in the sheet's slab; a voxel is divided by its sum of
     /// weights as soon as the sheets have passed it (the rolling normalisation).
     fn scatter(&self, sheets: &ViewSheets, volume: &Attenuation) -> Vec<Option<f64>> {
-        let profile = self.profile(self.settings.shadows.kernel);
+        let shadows = &self.settings.shadows;
+        let profile = self.profile(shadows.kernel);
+        let points = (self.weights() == Weights::Scatter).then_some(shadows.quadrature);
         let mut light = vec![Sums::default(); volume.values.len()];
         let mut done = vec![None; light.len()];
         for k in 0..sheets.view.frame.slab_count {
             // The kernel is as wide as a light voxel, or as a pixel where that is wider.
-            let slice = SlabSlice::new(&sheets.view.frame, k, profile.reach(), volume.divisor as f64);
+            let slice = SlabSlice::new(&sheets.view.frame, k, &profile, points, volume.divisor as f64);
+            // Near a light pixels are small and many: each counts for as much of the grid as it covers.
+            let share = points.map_or(1.0, |_| slice.voxels_per_pixel());
             light.par_iter_mut().zip(&mut done).enumerate().for_each(|(voxel, (sums, done))| {
                 let centre = volume.point_of(voxel);
                 if slice.is_beyond(centre) {
@@ -127,7 +133,7 @@ impl Reference<'_> {
                 };
                 for j in rows {
                     for i in columns.clone() {
-                        let weight = slice.mean_of(|t| profile.of_light(t), centre, i, j);
+                        let weight = share * slice.mean_of(|t| profile.of_light(t), centre, i, j);
                         sums.add(sheets.deposit(i as usize, j as usize, k as usize), weight);
                     }
                 }

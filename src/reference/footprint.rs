@@ -12,6 +12,7 @@ use glam::{DMat3, DVec3};
 
 use super::field::Field;
 use super::kernel::{Profile, quadrature_nodes};
+use crate::model::{Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
 /// Turns index-space points into positions on sheets: the inverse of [`SheetFrame::point`].
@@ -56,16 +57,44 @@ pub(super) struct SlabSlice<'f> {
     /// Half the extents of a kernel's box in (w·i, w·j, z).
     half: DVec3,
     middle: f64,
+    averaging: Averaging,
+}
+
+/// How the kernel is averaged over the slab.
+#[derive(Debug, Clone, Copy)]
+enum Averaging {
+    /// The integral along the ray.
+    Integral,
+    /// The mean of one or two points.
+    Points(Quadrature),
+    /// The integral of a round Gaussian of that standard deviation, cut at a cylinder along the ray,
+    /// two voxels (times `width`) in radius and half length.
+    Round { sigma: f64, width: f64 },
 }
 
 impl<'f> SlabSlice<'f> {
-    /// Slab `k`, for a kernel that ends `reach` voxels from its middle and is never narrower than
-    /// `least_stretch` voxels per voxel.
-    pub(super) fn new(frame: &'f SheetFrame, k: u32, reach: f64, least_stretch: f64) -> Self {
+    /// Slab `k`, for a kernel that is never narrower than `least_stretch` voxels per voxel: integrated
+    /// over the slab, or as the scattering engine does with these `points`.
+    pub(super) fn new(
+        frame: &'f SheetFrame,
+        k: u32,
+        profile: &Profile,
+        points: Option<Quadrature>,
+        least_stretch: f64,
+    ) -> Self {
+        let (averaging, reach) = match (points, profile.kernel) {
+            (None, _) => (Averaging::Integral, profile.reach()),
+            (Some(_), Kernel::Gaussian { sigma }) => {
+                // The cylinder fits into a ball.
+                let round = Averaging::Round { sigma, width: profile.width };
+                (round, profile.reach() * std::f64::consts::SQRT_2)
+            }
+            (Some(quadrature), _) => (Averaging::Points(quadrature), profile.reach()),
+        };
         let projector = Projector::new(frame);
         let middle = frame.depth_of(f64::from(k));
         let stretch = (frame.pitch_at(middle) / frame.voxel_edge).max(least_stretch);
-        Self { frame, projector, stretch, half: projector.half_extents(reach * stretch), middle }
+        Self { frame, projector, stretch, half: projector.half_extents(reach * stretch), middle, averaging }
     }
 
     /// The pixels (columns, rows) that the kernel's slice around `centre` can touch; `None` where
@@ -92,27 +121,69 @@ impl<'f> SlabSlice<'f> {
         self.middle - self.projector.locate(centre).z >= self.half.z + self.frame.slab / 2.0
     }
 
+    /// The part of a voxel's volume that a pixel of this slab stands for.
+    pub(super) fn voxels_per_pixel(&self) -> f64 {
+        let pitch = self.frame.pitch_at(self.middle) / self.frame.voxel_edge;
+        pitch * pitch * self.frame.slab / self.frame.voxel_edge
+    }
+
     /// h̄: the mean over the slab, along pixel (i, j)'s ray, of the kernel around `centre`.
     pub(super) fn mean_of(&self, kernel: impl Fn(f64) -> f64, centre: DVec3, i: u32, j: u32) -> f64 {
         let (i, j) = (f64::from(i), f64::from(j));
         let start = (self.frame.point(i, j, self.middle) - centre) / self.stretch;
         let step = self.frame.direction.at(i, j) * self.frame.slab / self.stretch;
-        let sum: f64 = quadrature_nodes()
-            .into_iter()
-            .map(|(offset, weight)| {
-                let r = start + step * offset;
-                let x = kernel(r.x);
-                // Most points lie outside the cube: no need to look at the other axes.
-                if x == 0.0 { 0.0 } else { weight * x * kernel(r.y) * kernel(r.z) }
-            })
-            .sum();
-        sum / self.stretch.powi(3)
+        let product = |offset: f64| {
+            let r = start + step * offset;
+            let x = kernel(r.x);
+            // Most points lie outside the cube: no need to look at the other axes.
+            if x == 0.0 { 0.0 } else { x * kernel(r.y) * kernel(r.z) }
+        };
+        let mean = match self.averaging {
+            Averaging::Integral => {
+                quadrature_nodes().into_iter().map(|(offset, weight)| weight * product(offset)).sum::<f64>()
+            }
+            Averaging::Points(quadrature) => {
+                let offsets = quadrature.offsets();
+                offsets.iter().map(|&offset| product(offset)).sum::<f64>() / offsets.len() as f64
+            }
+            Averaging::Round { sigma, width } => round_mean(start, step, sigma, width),
+        };
+        mean / self.stretch.powi(3)
     }
 }
 
+/// The mean of a Gaussian of area 1 around the origin over the segment `start` ± `step`/2. It is a product:
+/// of the distance across the ray, and of the part of the kernel's length between the segment's ends.
+fn round_mean(start: DVec3, step: DVec3, sigma: f64, width: f64) -> f64 {
+    let (sigma, radius) = (sigma * width, 2.0 * width);
+    let length = step.length();
+    let along = step / length;
+    let middle = start.dot(along);
+    let squared = (start - along * middle).length_squared();
+    let (near, far) = ((middle - length / 2.0).max(-radius), (middle + length / 2.0).min(radius));
+    if squared >= radius * radius || near >= far {
+        return 0.0;
+    }
+    let variance = sigma * sigma;
+    let amplitude = (std::f64::consts::TAU * variance).powf(-1.5);
+    let at = |t: f64| (-t * t / (2.0 * variance)).exp();
+    let part: f64 = quadrature_nodes()
+        .into_iter()
+        .map(|(offset, weight)| weight * at(f64::midpoint(near, far) + offset * (far - near)))
+        .sum();
+    amplitude * (-squared / (2.0 * variance)).exp() * part * (far - near) / length
+}
+
 /// The sheet of slab `k`, row by row: Σ ρ(v) · h̄ over all voxels whose kernel overlaps it.
-pub(super) fn splat(field: &Field, frame: &SheetFrame, profile: &Profile, shift: DVec3, k: u32) -> Vec<f64> {
-    let slice = SlabSlice::new(frame, k, profile.reach(), 1.0);
+pub(super) fn splat(
+    field: &Field,
+    frame: &SheetFrame,
+    profile: &Profile,
+    points: Option<Quadrature>,
+    shift: DVec3,
+    k: u32,
+) -> Vec<f64> {
+    let slice = SlabSlice::new(frame, k, profile, points, 1.0);
     let [nx, ny, _] = field.dims;
     let width = frame.size[0] as usize;
     let mut sheet = vec![0.0; width * frame.size[1] as usize];
@@ -161,7 +232,7 @@ mod tests {
         let frame = &views[0].frame;
         let k = frame.slab_count / 2;
         let profile = Profile { kernel: Kernel::BSpline, width: 1.0 };
-        let slice = SlabSlice::new(frame, k, profile.reach(), 1.0);
+        let slice = SlabSlice::new(frame, k, &profile, None, 1.0);
         let centre = DVec3::splat(4.0);
         let [columns, rows] = slice.pixels_under(centre).unwrap();
         let total: f64 = rows

@@ -50,6 +50,9 @@ pub enum Weights {
     Gather,
     /// The paper's: kernel slices integrated over the slab, not normalised on the way to the sheet.
     Footprint,
+    /// Those of the scattering engine: a round Gaussian's slices integrated over the slab, other
+    /// kernels evaluated at one or two points per slab, neither normalised on the way to the sheet.
+    Scatter,
 }
 
 /// A deliberate mistake. Tests use it to prove that a comparison with the GPU, or a check against
@@ -78,7 +81,7 @@ pub enum Fault {
 /// What kind of reference is wanted.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
-    /// Whose weights.
+    /// Whose weights; [`Weights::Gather`] stands for those of the settings' engine.
     pub weights: Weights,
     /// Which mistake, if any.
     pub fault: Fault,
@@ -119,6 +122,12 @@ impl<'a> Reference<'a> {
     /// Whether light `index` has an attenuation volume.
     fn casts(&self, index: usize) -> bool {
         self.settings.shadows.algorithm.has_volume() && self.settings.lights[index].needs_volume()
+    }
+
+    /// Whose weights are used: those of the settings' engine unless others are asked for.
+    fn weights(&self) -> Weights {
+        let gathers = self.options.weights == Weights::Gather;
+        if gathers && self.settings.scatters() { Weights::Scatter } else { self.options.weights }
     }
 
     fn profile(&self, kernel: Kernel) -> Profile {

@@ -43,9 +43,10 @@ impl<'r> Stack<'r> {
     /// The mean densities of slab `k`, row by row; 0 outside the volume's support.
     pub(super) fn densities(&self, k: u32) -> Vec<f64> {
         let Self { reference, frame, profile, quadrature, .. } = self;
-        match reference.options.weights {
-            Weights::Footprint => {
-                footprint::splat(&reference.field, frame, profile, reference.kernel_shift(), k)
+        match reference.weights() {
+            weights @ (Weights::Footprint | Weights::Scatter) => {
+                let points = (weights == Weights::Scatter).then_some(*quadrature);
+                footprint::splat(&reference.field, frame, profile, points, reference.kernel_shift(), k)
             }
             Weights::Gather => {
                 let width = frame.size[0];

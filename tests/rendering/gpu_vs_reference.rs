@@ -10,7 +10,7 @@ use chiaroscuro::model::{
     Camera, Deposit, Gradients, Kernel, LightKind, LightLock, Projection, Quadrature, Resolution, Settings,
     ShadowAlgorithm,
 };
-use chiaroscuro::reference::{Options, Reference, Weights};
+use chiaroscuro::reference::{Options, Reference, Rounding, Weights};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [96, 80];
@@ -21,14 +21,26 @@ fn round_to_f16(value: f32) -> f32 {
 
 /// Sheets, light volumes and picture of one look, each against the reference.
 fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
-    let loaded = Loaded::new(scenes::creature(48, spacing_mm));
-    let context = context();
+    let loaded = Loaded::new(scenes::creature(8, spacing_mm));
     assert_eq!(
-        stored_density(&context, &loaded.volume, 0.3),
+        stored_density(&context(), &loaded.volume, 0.3),
         round_to_f16(0.3),
         "8-bit data are stored as f16"
     );
-    let options = Options { rounding: Some(round_to_f16), ..Options::default() };
+    check_against(name, 48, spacing_mm, settings, Some(round_to_f16));
+}
+
+/// The same at a size, with densities stored as `rounding` says.
+pub(crate) fn check_against(
+    name: &str,
+    n: usize,
+    spacing_mm: DVec3,
+    settings: &Settings,
+    rounding: Option<Rounding>,
+) {
+    let loaded = Loaded::new(scenes::creature(n, spacing_mm));
+    let context = context();
+    let options = Options { rounding, ..Options::default() };
     let reference = Reference::new(&loaded.volume, settings, options);
     let mut renderer = Renderer::new(&context).expect("a renderer");
     let mut failures = Vec::new();

@@ -10,6 +10,7 @@ mod common;
 mod compare;
 mod gpu_vs_reference;
 mod mutations;
+mod scatter;
 mod scenes;
 mod stretch;
 mod thresholds;

@@ -1,0 +1,50 @@
+// The march of light through sheets, however these were filled (P §3.5, eq. 10): from slab to slab the
+// transmittance falls, and each keeps in a ring of layers what it will deposit in the light volume.
+#import "common/sheet_frame.wgsl"
+
+struct March {
+    frame: SheetFrame,
+    // Slabs of this chunk: first, and one beyond the last.
+    begin: u32,
+    end: u32,
+    layers: u32,
+    // Rows of this dispatch: first, and one beyond the last.
+    first_row: u32,
+    end_row: u32,
+    // Multiplies extinctions.
+    extinction_scale: f32,
+    // The light's hood, as in common/lights.wgsl, its axis along the sheets' axes.
+    hood_inner: f32,
+    hood_outer: f32,
+    hood_axis: vec3f,
+    // Light is followed until less than this is left of it.
+    dark: f32,
+}
+
+@group(0) @binding(0) var<uniform> march: March;
+// Distances in bricks: r to the nearest that is read, g to the nearest that attenuates light.
+@group(0) @binding(2) var distances: texture_3d<u32>;
+// Transmittance in front of the next slab, per pixel.
+@group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;
+@group(0) @binding(4) var ring: texture_storage_3d<STORAGE_FORMAT, write>;
+
+// P eq. 10 read literally takes the transmittance in front of the slab.
+override DEPOSIT_FRONT: bool = false;
+
+// The mean transmittance over a slab of optical depth tau, over that in front of it: (1 − e^−τ)/τ.
+fn slab_mean(tau: f32) -> f32 {
+    // The series avoids 0/0; at 0.01 its error is τ³/24 = 4e-8.
+    return select((1.0 - exp(-tau)) / tau, 1.0 - tau * (0.5 - tau / 6.0), tau < 0.01);
+}
+
+// What the hood lets through to a pixel: the sheet in front of the first slab.
+fn unattenuated(pixel: vec2f) -> f32 {
+    let slope = march.frame.slope + march.frame.slope_di * pixel.x + march.frame.slope_dj * pixel.y;
+    let along = normalize(vec3f(slope, 1.0));
+    return smoothstep(march.hood_outer, march.hood_inner, dot(march.hood_axis, along));
+}
+
+// What a slab of optical depth tau deposits, with the transmittance t in front of it.
+fn deposited(t: f32, tau: f32) -> f32 {
+    return select(t * slab_mean(tau), t, DEPOSIT_FRONT);
+}

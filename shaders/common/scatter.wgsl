@@ -1,0 +1,64 @@
+// Splatting as the paper has it (P §3.5, figure 3): what all its passes know about the slab at hand.
+#import "common/sheet_frame.wgsl"
+
+struct Scatter {
+    frame: SheetFrame,
+    // Index space to (w·i, w·j, z) with w = 1 + z · inverse_distance, which is linear: three rows.
+    sheets_from_index_x: vec4f,
+    sheets_from_index_y: vec4f,
+    sheets_from_index_z: vec4f,
+    // Half the extents of a kernel in (w·i, w·j, z).
+    half: vec3f,
+    // How many times wider the kernel is than in index space.
+    stretch: f32,
+    // Voxels.
+    dims: vec3f,
+    // The slab.
+    k: u32,
+    bricks: vec3i,
+    // Layers of the ring of sheets.
+    layers: u32,
+    // First of the bricks listed for this slab …
+    first: u32,
+    // … and how many there are.
+    count: u32,
+    // Weight of a pixel in the grid: pixels per voxel face.
+    pixel_share: f32,
+    // Data voxels per voxel of the light volume.
+    voxel_step: f32,
+    // Voxels of the light volume.
+    light_dims: vec3u,
+    // 1 when the view owns only the quarter-space around its axis.
+    cube_face: u32,
+    first_pixel: vec2f,
+    pad0: vec2f,
+}
+
+@group(1) @binding(0) var<uniform> scatter: Scatter;
+// Sums of density × footprint in units of 2⁻²⁴: integers, so that their order does not matter.
+@group(1) @binding(1) var<storage, read_write> sheets: array<atomic<i32>>;
+
+// One, as sums hold it: far below what 8 or 16 bits of density show, and room for sums up to 128.
+const UNIT = 16777216.0;
+
+fn sheet_index(pixel: vec2u, k: u32) -> u32 {
+    return (k % scatter.layers * scatter.frame.size.y + pixel.y) * scatter.frame.size.x + pixel.x;
+}
+
+// Where an index-space point is seen.
+fn locate(p: vec3f) -> vec3f {
+    let point = vec4f(p, 1.0);
+    return vec3f(
+        dot(scatter.sheets_from_index_x, point),
+        dot(scatter.sheets_from_index_y, point),
+        dot(scatter.sheets_from_index_z, point),
+    );
+}
+
+// The brick of a point in the grid or up to two voxels around it; −1 elsewhere.
+fn brick_with_material(p: vec3f) -> vec3i {
+    if (any(p < vec3f(-2.0)) || any(p > scatter.dims + 1.0)) {
+        return vec3i(-1);
+    }
+    return clamp(vec3i(floor(p / 8.0)), vec3i(0), scatter.bricks - 1);
+}

@@ -1,0 +1,29 @@
+// The march of light through scattered sheets (P §3.5, eq. 10): one thread per pixel takes the slab's
+// sum and leaves room for the next.
+#import "common/table.wgsl"
+#import "common/march.wgsl"
+#import "common/scatter.wgsl"
+
+// Bricks beyond an occupied one that a stretched kernel can see.
+override DILATION: i32 = 0;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if (any(id.xy >= march.frame.size)) {
+        return;
+    }
+    let pixel = id.y * march.frame.size.x + id.x;
+    let density = f32(atomicExchange(&sheets[sheet_index(id.xy, scatter.k)], 0)) / UNIT;
+    let t = select(transmittance[pixel], unattenuated(vec2f(id.xy)), scatter.k == 0u);
+    let ray = ray_of(march.frame, vec2f(id.xy));
+    let brick = brick_with_material(ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k)));
+    var tau = 0.0;
+    if (t > march.dark && brick.x >= 0) {
+        // Sums are complete only where something attenuates light at all.
+        if (i32(textureLoad(distances, brick, 0).g) <= DILATION) {
+            tau = classify(density).a * march.extinction_scale * march.frame.slab * ray.obliquity;
+        }
+    }
+    textureStore(ring, vec3u(id.xy, scatter.k % march.layers), vec4f(deposited(t, tau)));
+    transmittance[pixel] = t * exp(-tau);
+}

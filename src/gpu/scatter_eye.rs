@@ -1,0 +1,144 @@
+//! The eye pass over scattered sheets.
+
+use std::ops::Range;
+
+use super::eye::EyePass;
+use super::light_volume::LightVolume;
+use super::scatter_splat::{Scatterer, stretch_at, sums};
+use super::scatter_voxels::ScatterVoxels;
+use super::tables::{Tables, view_entry};
+use super::volume::{Gpu, entry};
+use super::{GpuError, RenderOptions};
+use crate::data::BRICK_EDGE;
+use crate::model::Settings;
+use crate::plan::{BrickSet, SheetFrame};
+
+/// Slabs per submission: each is splatted and composited, which takes a software adapter some
+/// milliseconds.
+pub(super) const SLABS_PER_STEP: u32 = 4;
+
+/// The eye's sheets, and what its rays have gathered so far.
+#[derive(Debug)]
+pub(super) struct EyeScatter {
+    scatterer: Scatterer,
+    rays: wgpu::Buffer,
+    clamped: wgpu::Sampler,
+    /// Slabs to either side between which gradients are differences.
+    ahead: u32,
+}
+
+impl EyeScatter {
+    /// Prepares the sheets of a picture.
+    pub(super) fn new(
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        tables: &Tables,
+        frame: &SheetFrame,
+        settings: &Settings,
+        options: &RenderOptions,
+    ) -> Result<Self, GpuError> {
+        let ahead = frame.gradient_steps().1;
+        let sampling = &settings.sampling;
+        let kernel = (sampling.kernel, sampling.quadrature);
+        let seen = splatted_bricks(frame, &tables.eye.occupied, options);
+        Ok(Self {
+            scatterer: Scatterer::new(gpu, voxels, frame, kernel, &seen, 2 * ahead + 1)?,
+            // Four 32-bit floats per ray.
+            rays: sums(gpu.context, "EyeScatter::rays", 4, frame.size)?,
+            clamped: gpu.context.sampler("EyeScatter::clamped", wgpu::AddressMode::ClampToEdge),
+            ahead,
+        })
+    }
+
+    /// Splats and composites some slabs. `attenuation` as for [`EyePass::draw`].
+    #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
+    pub(super) fn draw(
+        &self,
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        counter: &wgpu::Buffer,
+        eye: &EyePass,
+        tables: &Tables,
+        attenuation: &[&LightVolume],
+        picture: &wgpu::TextureView,
+        slabs: Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline("scatter_eye.wgsl", &eye.scatter_constants())?;
+        let uniform = eye.uniform_buffer(context);
+        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("EyeScatter::bind_group"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, tables.eye.buffer.as_entire_binding()),
+                view_entry(2, &tables.eye_distances),
+                view_entry(3, picture),
+            ],
+        });
+        let of_lights = eye.light_bind_group(gpu, &pipeline, attenuation);
+        for k in slabs {
+            // The slabs ahead are there when their neighbours need them.
+            let from = if k == 0 { 0 } else { k + self.ahead };
+            for splatted in from..=k + self.ahead {
+                if self.scatterer.is_filled(splatted) {
+                    self.scatterer.splat(gpu, voxels, counter, splatted, encoder)?;
+                }
+            }
+            // Nothing to composite, and nothing to make room for.
+            let touched = k == 0
+                || self.scatterer.is_filled(k)
+                || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
+            if !touched {
+                continue;
+            }
+            let slab = self.scatterer.uniform_buffer(context, k, 1.0);
+            let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("EyeScatter::sheets"),
+                layout: &pipeline.get_bind_group_layout(1),
+                entries: &[
+                    entry(0, slab.as_entire_binding()),
+                    entry(1, self.scatterer.sheets.as_entire_binding()),
+                    entry(3, self.rays.as_entire_binding()),
+                    entry(4, wgpu::BindingResource::Sampler(&self.clamped)),
+                ],
+            });
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("EyeScatter::composite"),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &own, &[]);
+            pass.set_bind_group(1, &shared, &[]);
+            pass.set_bind_group(2, &of_lights, &[]);
+            let [width, height] = self.scatterer.frame.size;
+            pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
+        }
+        Ok(())
+    }
+
+    /// Bytes of sheets and rays.
+    pub(super) fn bytes(&self) -> u64 {
+        self.scatterer.bytes() + self.rays.size()
+    }
+}
+
+/// Bricks whose voxels can reach a sample that shows anything, or one between which and that sample a
+/// gradient is taken.
+pub(super) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: &RenderOptions) -> BrickSet {
+    if !options.leaping {
+        return BrickSet::full(occupied.dims);
+    }
+    let widest = stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0));
+    // A kernel's radius, at most √2 of it along a slanted axis, and a gradient's step of one pixel or voxel.
+    let reach = (2.0 * std::f64::consts::SQRT_2 + 1.5) * widest + frame.slab / frame.voxel_edge;
+    occupied.dilated((reach / BRICK_EDGE as f64).ceil() as usize)
+}
+
+/// Bricks beyond an occupied one whose samples a stretched kernel lets see it: brick ranges look three
+/// voxels beyond their brick.
+pub(super) fn scatter_dilation(frame: &SheetFrame) -> i32 {
+    let widest = stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0));
+    ((2.0 * std::f64::consts::SQRT_2 * widest - 3.0).max(0.0) / BRICK_EDGE as f64).ceil() as i32
+}

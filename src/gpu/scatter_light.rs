@@ -1,0 +1,188 @@
+//! The light pass over scattered sheets: splats voxels, marches the light, splats the sheets back into
+//! the grid and divides by the weights.
+
+use std::ops::Range;
+
+use super::light_march::{Sheets, constants as march_constants, march_uniform};
+use super::light_volume::LightVolume;
+use super::listed_bricks;
+use super::scatter_eye::{scatter_dilation, splatted_bricks};
+use super::scatter_splat::{Scatterer, sums};
+use super::scatter_voxels::ScatterVoxels;
+use super::tables::{Tables, view_entry};
+use super::volume::{Gpu, entry};
+use super::{GpuError, RenderOptions};
+use crate::model::{Light, Shadows};
+use crate::plan::LightView;
+
+/// The sheets of one view of a light, and what was splatted back into the grid.
+#[derive(Debug)]
+pub(super) struct LightScatter {
+    scatterer: Scatterer,
+    /// Σ D·h per light voxel …
+    light: wgpu::Buffer,
+    /// … and the weight volume, Σ h.
+    weights: wgpu::Buffer,
+    dilation: i32,
+    /// Data voxels per light voxel.
+    divisor: usize,
+}
+
+impl LightScatter {
+    /// Prepares a view.
+    pub(super) fn new(
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        tables: &Tables,
+        view: &LightView,
+        (shadows, target): (&Shadows, &LightVolume),
+        options: &RenderOptions,
+    ) -> Result<Self, GpuError> {
+        let seen = splatted_bricks(&view.frame, &tables.lighting.occupied, options);
+        let kernel = (shadows.kernel, shadows.quadrature);
+        let [nx, ny, nz] = target.dims.map(|n| n as u32);
+        Ok(Self {
+            scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, &seen, 1)?.towards_grid(
+                view.first_pixel.as_vec2().into(),
+                view.cube_face,
+                (target.dims, target.divisor),
+            ),
+            light: sums(gpu.context, "LightScatter::light", nz, [nx, ny])?,
+            weights: sums(gpu.context, "LightScatter::weights", nz, [nx, ny])?,
+            dilation: scatter_dilation(&view.frame),
+            divisor: target.divisor,
+        })
+    }
+
+    /// Splats some slabs and marches the light through them.
+    #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
+    pub(super) fn march(
+        &self,
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        counter: &wgpu::Buffer,
+        table: &wgpu::Buffer,
+        (lamp, shadows): (&Light, &Shadows),
+        view: &LightView,
+        sheets: &Sheets,
+        slabs: Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let [.., deposit] = march_constants(shadows, false);
+        let constants = [deposit, ("DILATION", f64::from(self.dilation))];
+        let pipeline = shaders.pipeline("scatter_light.wgsl", &constants)?;
+        let rows = 0..view.frame.size[1];
+        let uniform = march_uniform(lamp, view, sheets, (slabs.start, slabs.end), rows);
+        let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
+        let own = sheets.march_bind_group(context, &pipeline, &uniform, table);
+        for k in slabs {
+            if self.scatterer.is_filled(k) {
+                self.scatterer.splat(gpu, voxels, counter, k, encoder)?;
+            }
+            let slab = self.scatterer.uniform_buffer(context, k, 1.0);
+            let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("LightScatter::sheets"),
+                layout: &pipeline.get_bind_group_layout(1),
+                entries: &[
+                    entry(0, slab.as_entire_binding()),
+                    entry(1, self.scatterer.sheets.as_entire_binding()),
+                ],
+            });
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("LightScatter::march"),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &own, &[]);
+            pass.set_bind_group(1, &shared, &[]);
+            let [width, height] = view.frame.size;
+            pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
+        }
+        Ok(())
+    }
+
+    /// Splats some sheets back into the grid.
+    pub(super) fn splat_back(
+        &self,
+        gpu: Gpu<'_>,
+        sheets: &Sheets,
+        slabs: Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline("scatter_reverse.wgsl", self.scatterer.constants())?;
+        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("LightScatter::grid"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                view_entry(0, &sheets.distances),
+                view_entry(1, &sheets.ring_view),
+                entry(2, self.light.as_entire_binding()),
+                entry(3, self.weights.as_entire_binding()),
+            ],
+        });
+        for k in slabs {
+            let slab = self.scatterer.uniform_buffer(context, k, self.divisor as f64);
+            let shared = self.scatterer.bind_group(context, &pipeline, &slab, false);
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("LightScatter::splat_back"),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &own, &[]);
+            pass.set_bind_group(1, &shared, &[]);
+            let [width, height] = self.scatterer.frame.size;
+            pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
+        }
+        Ok(())
+    }
+
+    /// Divides light by weights into the listed bricks of the light volume.
+    pub(super) fn normalise(
+        &self,
+        gpu: Gpu<'_>,
+        target: &LightVolume,
+        bricks: &[u32],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if bricks.is_empty() {
+            return Ok(());
+        }
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline("scatter_normalise.wgsl", &[])?;
+        let list = listed_bricks::upload(context, bricks);
+        let mut uniform = self.scatterer.uniform(0, 1.0);
+        uniform.count = bricks.len() as u32;
+        let uniform = context.buffer("LightScatter::normalise", &[uniform], wgpu::BufferUsages::UNIFORM);
+        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("LightScatter::normalise"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                entry(0, list.as_entire_binding()),
+                entry(1, self.light.as_entire_binding()),
+                entry(2, self.weights.as_entire_binding()),
+                view_entry(3, &target.view),
+            ],
+        });
+        let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("LightScatter::slab"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[entry(0, uniform.as_entire_binding())],
+        });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("LightScatter::normalise"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &own, &[]);
+        pass.set_bind_group(1, &shared, &[]);
+        listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+        Ok(())
+    }
+
+    /// Bytes of sheets, light and weights.
+    pub(super) fn bytes(&self) -> u64 {
+        self.scatterer.bytes() + self.light.size() + self.weights.size()
+    }
+}

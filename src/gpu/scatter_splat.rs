@@ -1,0 +1,340 @@
+//! Forward splatting: voxels into the sheets of one stack, slab after slab; what all scattering passes
+//! share.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::kernel::{kernel_constants, quadrature_constant};
+use super::listed_bricks;
+use super::scatter_voxels::ScatterVoxels;
+use super::uniforms::{self, rows};
+use super::volume::{Gpu, entry};
+use super::{Context, GpuError};
+use crate::data::BRICK_EDGE;
+use crate::model::{Kernel, Quadrature};
+use crate::plan::{BrickSet, SheetFrame};
+
+/// Entries of the footprint tables, as in `common/footprint.wgsl`.
+const FOOTPRINT_SIZE: usize = 512;
+
+/// Where kernels end, in voxels.
+const RADIUS: f64 = 2.0;
+
+/// A stack of sheets that voxels are splatted into.
+#[derive(Debug)]
+pub(super) struct Scatterer {
+    /// Rays and slabs.
+    pub frame: SheetFrame,
+    /// Kernel and quadrature, as override constants.
+    constants: [(&'static str, f64); 3],
+    /// What does not change from slab to slab.
+    uniform: uniforms::Scatter,
+    /// Half a kernel's extents in (w·i, w·j, z), where it is not stretched.
+    half: DVec3,
+    /// Bricks, slab by slab …
+    bricks: wgpu::Buffer,
+    /// … of which those of slab k are `starts[k] .. starts[k + 1]`.
+    starts: Vec<u32>,
+    /// Sums, as integers.
+    pub sheets: wgpu::Buffer,
+    footprints: wgpu::Buffer,
+}
+
+impl Scatterer {
+    /// Prepares a stack of sheets of which `layers` are kept. Only bricks of `seen` are splatted.
+    pub(super) fn new(
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        frame: &SheetFrame,
+        (kernel, quadrature): (Kernel, Quadrature),
+        seen: &BrickSet,
+        layers: u32,
+    ) -> Result<Self, GpuError> {
+        let Gpu { context, volume, .. } = gpu;
+        let sheets_from_index = sheets_from_index(frame);
+        let half = half_extents(frame, &sheets_from_index, kernel);
+        let widest = stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0));
+        let (starts, listed) =
+            slab_lists(frame, &sheets_from_index, voxels.among(seen), half.z * widest.max(1.0));
+        let [x, y, z] = rows(&sheets_from_index);
+        let uniform = uniforms::Scatter {
+            frame: uniforms::SheetFrame::new(frame),
+            sheets_from_index_x: x,
+            sheets_from_index_y: y,
+            sheets_from_index_z: z,
+            dims: volume.volume.dims().map(|n| n as f32),
+            bricks: volume.bricks.dims.map(|n| n as i32),
+            layers,
+            voxel_step: 1.0,
+            light_dims: volume.volume.dims().map(|n| n as u32),
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let [kernel_code, sigma] = kernel_constants(kernel);
+        Ok(Self {
+            frame: frame.clone(),
+            constants: [kernel_code, sigma, quadrature_constant(quadrature)],
+            uniform,
+            half,
+            bricks: context.buffer("Scatterer::bricks", &listed, wgpu::BufferUsages::STORAGE),
+            starts,
+            sheets: sums(context, "Scatterer::sheets", layers, frame.size)?,
+            footprints: context.buffer(
+                "Scatterer::footprints",
+                &footprint_table(kernel),
+                wgpu::BufferUsages::STORAGE,
+            ),
+        })
+    }
+
+    /// The same stack seen from a light volume: `divisor` data voxels per light voxel.
+    #[must_use]
+    pub(super) fn towards_grid(
+        mut self,
+        first_pixel: [f32; 2],
+        cube_face: bool,
+        (light_dims, divisor): ([usize; 3], usize),
+    ) -> Self {
+        self.uniform.first_pixel = first_pixel;
+        self.uniform.cube_face = u32::from(cube_face);
+        self.uniform.light_dims = light_dims.map(|n| n as u32);
+        self.uniform.voxel_step = divisor as f32;
+        self
+    }
+
+    /// Kernel and quadrature, as override constants.
+    pub(super) fn constants(&self) -> &[(&'static str, f64)] {
+        &self.constants
+    }
+
+    /// Whether anything is splatted into slab `k`.
+    pub(super) fn is_filled(&self, k: u32) -> bool {
+        k < self.frame.slab_count && self.starts[k as usize] < self.starts[k as usize + 1]
+    }
+
+    /// What shaders know about slab `k`, for kernels that are nowhere narrower than `least_stretch`
+    /// voxels per voxel.
+    pub(super) fn uniform(&self, k: u32, least_stretch: f64) -> uniforms::Scatter {
+        let stretch = stretch_at(&self.frame, f64::from(k)).max(least_stretch);
+        let pitch = self.frame.pitch_at(self.frame.depth_of(f64::from(k))) / self.frame.voxel_edge;
+        let starts = &self.starts[k as usize..=k as usize + 1];
+        uniforms::Scatter {
+            half: (self.half * stretch).as_vec3().into(),
+            stretch: stretch as f32,
+            k,
+            first: starts[0],
+            count: starts[1] - starts[0],
+            pixel_share: (pitch * pitch * self.frame.slab / self.frame.voxel_edge) as f32,
+            ..self.uniform
+        }
+    }
+
+    /// The same as a buffer.
+    pub(super) fn uniform_buffer(&self, context: &Context, k: u32, least_stretch: f64) -> wgpu::Buffer {
+        let uniform = self.uniform(k, least_stretch);
+        context.buffer("Scatterer::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// The bind group of passes with footprints.
+    pub(super) fn bind_group(
+        &self,
+        context: &Context,
+        pipeline: &wgpu::ComputePipeline,
+        uniform: &wgpu::Buffer,
+        with_sheets: bool,
+    ) -> wgpu::BindGroup {
+        let mut entries =
+            vec![entry(0, uniform.as_entire_binding()), entry(2, self.footprints.as_entire_binding())];
+        if with_sheets {
+            entries.push(entry(1, self.sheets.as_entire_binding()));
+        }
+        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Scatterer::bind_group"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &entries,
+        })
+    }
+
+    /// Splats the voxels of slab `k`, and counts them.
+    pub(super) fn splat(
+        &self,
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        counter: &wgpu::Buffer,
+        k: u32,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline("scatter_splat.wgsl", &self.constants)?;
+        let uniform = self.uniform_buffer(context, k, 1.0);
+        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Scatterer::voxels"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                entry(0, self.bricks.as_entire_binding()),
+                entry(1, voxels.buffer.as_entire_binding()),
+                entry(2, counter.as_entire_binding()),
+            ],
+        });
+        let shared = self.bind_group(context, &pipeline, &uniform, true);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("Scatterer::splat"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &own, &[]);
+        pass.set_bind_group(1, &shared, &[]);
+        let [start, end] = [self.starts[k as usize], self.starts[k as usize + 1]];
+        listed_bricks::dispatch(&mut pass, end - start);
+        Ok(())
+    }
+
+    /// Bytes of sheets and lists.
+    pub(super) fn bytes(&self) -> u64 {
+        self.sheets.size() + self.bricks.size()
+    }
+}
+
+/// Integer sums, one per pixel of so many layers; they begin at zero.
+pub(super) fn sums(
+    context: &Context,
+    label: &'static str,
+    layers: u32,
+    [width, height]: [u32; 2],
+) -> Result<wgpu::Buffer, GpuError> {
+    let size = 4 * u64::from(layers) * u64::from(width) * u64::from(height);
+    let limit = context.device.limits().max_storage_buffer_binding_size;
+    if size > limit {
+        return Err(GpuError::OverLimit {
+            what: "a buffer to scatter into".to_owned(),
+            size,
+            limit,
+            help: "the gathering engine makes the same picture without it",
+        });
+    }
+    Ok(context.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    }))
+}
+
+/// How many times wider kernels are at slab `k` than in index space.
+pub(super) fn stretch_at(frame: &SheetFrame, k: f64) -> f64 {
+    (frame.pitch_at(frame.depth_of(k)) / frame.voxel_edge).max(1.0)
+}
+
+/// Index space to (w·i, w·j, z), where w = 1 + z · `inverse_distance`: the inverse of the frame's rays,
+/// point = origin + w·i · right + w·j · down + z · forward.
+fn sheets_from_index(frame: &SheetFrame) -> DAffine3 {
+    let matrix3 = DMat3::from_cols(frame.origin.per_i, frame.origin.per_j, frame.direction.base).inverse();
+    DAffine3 { matrix3, translation: -(matrix3 * frame.origin.base) }
+}
+
+/// Half a kernel's extents in (w·i, w·j, z). That of the Gaussian is a cylinder along the ray; the
+/// others are cubes along the axes of the grid.
+fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: Kernel) -> DVec3 {
+    let rows = sheets_from_index.matrix3.transpose();
+    if !matches!(kernel, Kernel::Gaussian { .. }) {
+        return RADIUS
+            * DVec3::new(
+                rows.x_axis.abs().element_sum(),
+                rows.y_axis.abs().element_sum(),
+                rows.z_axis.abs().element_sum(),
+            );
+    }
+    // A point of the cylinder is off the voxel by up to the radius along the ray and by as much across.
+    let [w, h] = frame.size.map(f64::from);
+    let depth = rows.z_axis.length();
+    let deepest = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]
+        .map(|(i, j)| {
+            let cosine = (rows.z_axis.dot(frame.direction.at(i, j).normalize()) / depth).abs().min(1.0);
+            cosine + (1.0 - cosine * cosine).sqrt()
+        })
+        .into_iter()
+        .fold(1.0, f64::max);
+    RADIUS * DVec3::new(rows.x_axis.length(), rows.y_axis.length(), depth * deepest)
+}
+
+/// For every slab the bricks whose voxels reach it, with where their voxels begin; lists start at the
+/// first array's entries.
+fn slab_lists(
+    frame: &SheetFrame,
+    sheets_from_index: &DAffine3,
+    bricks: impl Iterator<Item = ([usize; 3], u32)>,
+    half_depth: f64,
+) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let count = frame.slab_count as usize;
+    let mut lists = vec![Vec::new(); count];
+    let last = (BRICK_EDGE - 1) as f64;
+    for (brick, first_word) in bricks {
+        let corner = DVec3::from(brick.map(|c| (c * BRICK_EDGE) as f64));
+        let depths = (0..8).map(|side| {
+            let step = DVec3::new(f64::from(side & 1), f64::from(side >> 1 & 1), f64::from(side >> 2));
+            sheets_from_index.transform_point3(corner + step * last).z
+        });
+        let (near, far) =
+            depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
+        let slab = |depth: f64| (depth - frame.first_depth) / frame.slab;
+        let first = slab(near - half_depth).floor().max(0.0) as usize;
+        let end = (slab(far + half_depth).floor() + 1.0).clamp(0.0, count as f64) as usize;
+        let packed = [listed_bricks::packed(brick), first_word];
+        for list in lists.iter_mut().take(end).skip(first) {
+            list.push(packed);
+        }
+    }
+    let mut starts = vec![0];
+    let mut all: Vec<[u32; 2]> = Vec::new();
+    for list in lists {
+        all.extend(list);
+        starts.push(all.len() as u32);
+    }
+    // A binding cannot be empty.
+    if all.is_empty() {
+        all.push([0; 2]);
+    }
+    (starts, all)
+}
+
+/// `common/footprint.wgsl`: the Gaussian by the square of the distance across the ray, and its integral
+/// along the ray, both of a kernel of radius two voxels; zeros for other kernels.
+fn footprint_table(kernel: Kernel) -> Vec<[f32; 2]> {
+    let Kernel::Gaussian { sigma } = kernel else { return vec![[0.0; 2]; FOOTPRINT_SIZE] };
+    let variance = sigma * sigma;
+    let across = |squared: f64| (-squared / (2.0 * variance)).exp() / (std::f64::consts::TAU * variance);
+    let along = |t: f64| (-t * t / (2.0 * variance)).exp() / (std::f64::consts::TAU * variance).sqrt();
+    let step = 2.0 * RADIUS / (FOOTPRINT_SIZE - 1) as f64;
+    let mut integral = 0.0;
+    (0..FOOTPRINT_SIZE)
+        .map(|at| {
+            let t = at as f64 * step - RADIUS;
+            if at > 0 {
+                // Simpson's rule: at a step of 1/128 voxel exact to 32 bits.
+                integral += step / 6.0 * (along(t - step) + 4.0 * along(t - step / 2.0) + along(t));
+            }
+            let squared = at as f64 / (FOOTPRINT_SIZE - 1) as f64 * RADIUS * RADIUS;
+            [across(squared) as f32, integral as f32]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pre_integrated_footprint_has_volume_one() {
+        for sigma in [0.4, 0.6] {
+            let table = footprint_table(Kernel::Gaussian { sigma });
+            // ∫ 2πr · across dr = ∫ π · across d(r²).
+            let step = RADIUS * RADIUS / (FOOTPRINT_SIZE - 1) as f64;
+            let disc: f64 =
+                table.iter().map(|[across, _]| std::f64::consts::PI * f64::from(*across) * step).sum::<f64>()
+                    - 0.5 * std::f64::consts::PI * step * f64::from(table[0][0]);
+            let cut = (-RADIUS * RADIUS / (2.0 * sigma * sigma)).exp();
+            assert!((disc - (1.0 - cut)).abs() < 1e-4, "σ {sigma}: {disc}");
+            // Beyond two voxels lies what a Gaussian of that width has there.
+            let length = f64::from(table[FOOTPRINT_SIZE - 1][1]);
+            assert!((0.9990..1.0).contains(&length), "σ {sigma}: {length}");
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! What each step of a job records: the frame's passes, in the order in which they run.
+
+use std::ops::Range;
+
+use super::display::display;
+use super::eye::EyePass;
+use super::job::{Job, LightStep, Step};
+use super::light_backproject::{Schedule, backproject};
+use super::light_march::{Sheets, march};
+use super::light_raycast::raycast;
+use super::light_volume::LightVolume;
+use super::scatter_eye::EyeScatter;
+use super::scatter_light::LightScatter;
+use super::scatter_voxels::ScatterVoxels;
+use super::tables::Tables;
+use super::volume::Gpu;
+use super::{GpuError, Renderer, prefilter};
+use crate::plan::BrickSet;
+
+/// What went away between `begin` and `step`.
+fn out_of_date() -> GpuError {
+    GpuError::Refused("the job is out of date".to_owned())
+}
+
+impl Renderer {
+    /// Records one step.
+    pub(super) fn encode(
+        &mut self,
+        job: &mut Job,
+        step: &Step,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        match step {
+            Step::Upload(slices) => {
+                self.volume.as_ref().ok_or_else(out_of_date)?.upload(&self.context, slices.clone());
+                Ok(())
+            }
+            Step::Pyramid(level, slices) => {
+                let volume = self.volume.as_ref().ok_or_else(out_of_date)?;
+                prefilter::fill(&self.context, &self.shaders, volume, *level, slices, encoder)?;
+                // The last of them: what follows is no pyramid.
+                self.uploaded = !matches!(job.steps.front(), Some(Step::Pyramid(..)));
+                Ok(())
+            }
+            Step::March(light) => self.encode_march(job, light, encoder),
+            Step::Backproject(light) => self.encode_backproject(job, light, encoder),
+            Step::Raycast(build, bricks) => self.encode_raycast(job, *build, bricks, encoder),
+            Step::Eye(_) | Step::ScatterEye(_) => self.encode_eye(job, step, encoder),
+            Step::Display => {
+                let target = self.back.as_ref().ok_or_else(out_of_date)?;
+                let output = &job.request.settings.output;
+                display(&self.context, &self.shaders, output, job.transparent, target, encoder)
+            }
+        }
+    }
+
+    /// What all passes over the volume work with.
+    pub(super) fn gpu(&self) -> Result<(Gpu<'_>, &Tables), GpuError> {
+        let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else { return Err(out_of_date()) };
+        let gpu = Gpu { context: &self.context, shaders: &self.shaders, volume, nothing: &self.nothing };
+        Ok((gpu, tables))
+    }
+
+    /// What scattering passes work with besides.
+    pub(super) fn scattering(&self) -> Result<(&ScatterVoxels, &wgpu::Buffer), GpuError> {
+        self.voxels.as_ref().zip(self.splats.as_ref()).ok_or_else(out_of_date)
+    }
+
+    fn encode_march(
+        &mut self,
+        job: &mut Job,
+        LightStep { build, view, begin, part }: &LightStep,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let settings = &job.request.settings;
+        let build = &mut job.builds[*build];
+        let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
+        let (gpu, tables) = self.gpu()?;
+        let mut peak = 0;
+        if *begin == 0 && part.0 == 0 {
+            let light = self.lights.iter().find(|light| light.key == build.key).ok_or_else(out_of_date)?;
+            let occupied = &tables.lighting.occupied;
+            let mut sheets = if self.options.leaping {
+                Sheets::new(&self.context, geometry, chunk, &build.read, occupied)?
+            } else {
+                let everything = BrickSet::full(build.read.dims);
+                Sheets::new(&self.context, geometry, chunk, &everything, &everything)?
+            };
+            sheets.dark = self.options.dark;
+            peak = self.gpu_bytes() + sheets.bytes();
+            if build.scatters {
+                let of_light = (&settings.shadows, light);
+                let (voxels, _) = self.scattering()?;
+                let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, &self.options)?;
+                peak += scatter.bytes();
+                build.scatter = Some(scatter);
+            }
+            let schedule = Schedule::new(&gpu.volume.scene, geometry, light, sheets.chunk);
+            build.current = Some((sheets, schedule));
+        }
+        let Some((sheets, _)) = &build.current else { return Ok(()) };
+        let slabs = *begin..(*begin + chunk).min(geometry.frame.slab_count);
+        let table = &tables.lighting.buffer;
+        let lamp = (&build.lamp, &settings.shadows);
+        if let Some(scatter) = &build.scatter {
+            let (voxels, counter) = self.scattering()?;
+            scatter.march(gpu, voxels, counter, table, lamp, geometry, sheets, slabs, encoder)?;
+        } else {
+            march(gpu, table, lamp, geometry, sheets, ((slabs.start, slabs.end), *part), encoder)?;
+        }
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
+        if *begin == 0 && part.0 == 0 && *view == 0 {
+            self.rebuilds[build.light] += 1;
+        }
+        Ok(())
+    }
+
+    fn encode_backproject(
+        &mut self,
+        job: &mut Job,
+        LightStep { build, view, begin, part }: &LightStep,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let shadows = &job.request.settings.shadows;
+        let build = &mut job.builds[*build];
+        let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
+        let at = self.lights.iter().position(|light| light.key == build.key).ok_or_else(out_of_date)?;
+        let light = &self.lights[at];
+        let Some(current) = &build.current else { return Ok(()) };
+        let slabs = *begin..(*begin + chunk).min(geometry.frame.slab_count);
+        let ends_view = slabs.end == geometry.frame.slab_count && part.0 + 1 == part.1;
+        let (gpu, _) = self.gpu()?;
+        match &build.scatter {
+            // The first sheet that touches a voxel needs no sums.
+            Some(scatter) if !shadows.first_touch => {
+                scatter.splat_back(gpu, &current.0, slabs, encoder)?;
+                if ends_view {
+                    scatter.normalise(gpu, light, &build.bricks, encoder)?;
+                }
+            }
+            _ => {
+                let slabs = ((slabs.start, slabs.end), *part);
+                backproject(gpu, shadows, geometry, current, light, slabs, encoder)?;
+            }
+        }
+        if ends_view && view + 1 == build.views.len() {
+            self.lights[at].complete = true;
+            build.current = None;
+            build.scatter = None;
+        }
+        Ok(())
+    }
+
+    fn encode_raycast(
+        &mut self,
+        job: &mut Job,
+        build: usize,
+        bricks: &Range<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let build = &job.builds[build];
+        let at = self.lights.iter().position(|light| light.key == build.key).ok_or_else(out_of_date)?;
+        let (gpu, tables) = self.gpu()?;
+        let list = &build.bricks[bricks.clone()];
+        let lamp = (&build.lamp, &job.request.settings);
+        raycast(gpu, tables, lamp, &self.options, &self.lights[at], list, encoder)?;
+        if bricks.start == 0 {
+            self.rebuilds[build.light] += 1;
+        }
+        self.lights[at].complete = bricks.end == build.bricks.len();
+        Ok(())
+    }
+
+    fn encode_eye(
+        &mut self,
+        job: &mut Job,
+        step: &Step,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let settings = &job.request.settings;
+        let find =
+            |key: &Option<_>| key.as_ref().and_then(|key| self.lights.iter().find(|light| light.key == *key));
+        let found: Vec<Option<&LightVolume>> = job.keys.iter().map(find).collect();
+        let attenuation: Vec<&LightVolume> = found.iter().copied().flatten().collect();
+        let target = self.back.as_ref().ok_or_else(out_of_date)?;
+        let (gpu, tables) = self.gpu()?;
+        let eye = job.eye.get_or_insert_with(|| {
+            EyePass::new(&gpu.volume.scene, settings, target.size, &found, &self.options)
+        });
+        let slabs = eye.slab_count();
+        let mut peak = 0;
+        match step {
+            Step::ScatterEye(range) => {
+                let (voxels, counter) = self.scattering()?;
+                if range.start == 0 {
+                    let fresh = EyeScatter::new(gpu, voxels, tables, eye.frame(), settings, &self.options)?;
+                    peak = self.gpu_bytes() + fresh.bytes();
+                    job.scatter = Some(fresh);
+                }
+                let scatter = job.scatter.as_ref().ok_or_else(out_of_date)?;
+                let picture = &target.picture_view;
+                let range = range.clone();
+                scatter.draw(gpu, voxels, counter, eye, tables, &attenuation, picture, range, encoder)?;
+            }
+            Step::Eye(rows) => {
+                eye.draw(gpu, tables, &attenuation, &target.picture_view, rows.clone(), encoder)?;
+            }
+            _ => {}
+        }
+        self.report.slabs = slabs;
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
+        Ok(())
+    }
+}

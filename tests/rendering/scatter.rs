@@ -1,0 +1,154 @@
+//! The scattering engine: against the reference with the same weights, against the gathering engine,
+//! and against the footprint itself.
+
+use crate::common::{Loaded, context, render};
+use crate::compare::{compare, flat32, wide};
+use crate::gpu_vs_reference::check_against;
+use crate::scenes::{self, isotropic, linear_extinction, straight};
+use crate::thresholds::{ENGINES, FOOTPRINT};
+use chiaroscuro::data::{Samples, Volume};
+use chiaroscuro::gpu::{Renderer, SHADERS};
+use chiaroscuro::model::{
+    Camera, Deposit, Engine, Gradients, Kernel, Length, LightKind, Quadrature, Resolution, Settings,
+};
+use glam::DVec3;
+
+fn scattered() -> Settings {
+    let mut settings = scenes::look();
+    settings.sampling.engine = Engine::Scatter;
+    settings
+}
+
+/// Densities are listed with 16 normalised bits: eight-bit data exactly.
+fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
+    check_against(name, 32, spacing_mm, settings, None);
+}
+
+#[test]
+fn b_spline_parallel() {
+    check("scattered", DVec3::ONE, &scattered());
+}
+
+#[test]
+fn gaussian_tables_perspective_anisotropic() {
+    let mut settings = scattered();
+    let kernel = Kernel::Gaussian { sigma: 0.55 };
+    settings.sampling.kernel = kernel;
+    settings.shadows.kernel = kernel;
+    settings.shadows.deposit = Deposit::Front;
+    settings.lights = vec![scenes::light(LightKind::Perspective, [1.9, -1.4, 2.0])];
+    check("scattered Gaussian", DVec3::new(1.0, 1.2, 1.6), &settings);
+}
+
+#[test]
+fn two_points_thin_slabs_half_resolution() {
+    let mut settings = scattered();
+    settings.sampling.quadrature = Quadrature::Two;
+    settings.shadows.quadrature = Quadrature::Two;
+    settings.sampling.slab = 0.5;
+    settings.shadows.kernel = Kernel::Prefiltered;
+    settings.shadows.resolution = Resolution::Half;
+    check("scattered, half", DVec3::ONE, &settings);
+}
+
+#[test]
+fn a_light_inside_and_first_touch() {
+    let mut settings = scattered();
+    settings.lights = vec![scenes::light(LightKind::Perspective, [0.3, -0.2, 0.5])];
+    check("scattered, light inside", DVec3::ONE, &settings);
+    settings.lights = scenes::look().lights;
+    settings.shadows.first_touch = true;
+    check("scattered, first touch", DVec3::ONE, &settings);
+}
+
+/// No. 16: The engines' pictures are the same sums in another order.
+#[test]
+fn both_engines_make_the_same_picture() {
+    let loaded = Loaded::new(scenes::creature(48, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut settings = scenes::look();
+    settings.sampling.gradients = Gradients::Sheets;
+    // Pixels no wider than voxels: the engines stretch kernels differently.
+    settings.camera.distance = 2.6;
+    let gathered = render(&mut renderer, &loaded, &settings, [128, 96]);
+    assert_eq!(renderer.splats().expect("nothing to count"), 0);
+    settings.sampling.engine = Engine::Scatter;
+    let scattered = render(&mut renderer, &loaded, &settings, [128, 96]);
+    let splats = renderer.splats().expect("they are counted");
+    let voxels =
+        (0..48).flat_map(|z| loaded.volume.slice_densities(z)).filter(|&density| density > 0.0).count();
+    println!("{splats} footprints of {voxels} voxels");
+    // The eye's B-spline is four voxels long, so it meets four or more of the slabs; so does the light's.
+    assert!(splats as usize > 4 * voxels, "{splats} footprints of {voxels} voxels");
+    compare("engines", &flat32(&scattered.light), &wide(&gathered.light.concat()), ENGINES)
+        .unwrap_or_else(|err| panic!("{err}"));
+    let again = render(&mut renderer, &loaded, &settings, [128, 96]);
+    assert_eq!(again.light, scattered.light, "integers do not mind the order");
+}
+
+/// One voxel under twenty shifts of the camera by parts of a pixel: the sheets together hold its
+/// footprint, the Gaussian integrated along each ray, as far as the table's radius of two voxels.
+#[test]
+fn single_voxels_reproduce_the_footprint() {
+    let n = 16;
+    let sigma = 0.6;
+    let mut values = vec![0u8; n * n * n];
+    values[7 + n * (8 + n * 9)] = 255;
+    let volume = Volume::with_spacing("impulse", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
+    let loaded = Loaded::new(volume);
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    // Thin, and linear in density: alpha is 1 − e^−τ with τ proportional to the footprint.
+    let per_voxel = 0.5;
+    let mut worst = 0.0f64;
+    for phase in 0..20 {
+        let size = [40, 40];
+        // 2.5 pixels per voxel, and the whole volume in the picture.
+        let camera = Camera {
+            target: [f64::from(phase) * 0.0137, f64::from(phase) * 0.0071, f64::from(phase) * 0.0113],
+            distance: 1.0,
+            fov_y_deg: 90.0,
+            ..straight(-57.0, 31.0)
+        };
+        let mut settings = Settings {
+            transfer: linear_extinction(per_voxel),
+            opacity_unit: Length::Voxels(1.0),
+            camera,
+            ..Settings::default()
+        };
+        isotropic(&mut settings);
+        settings.lights[0].casts_shadows = false;
+        settings.sampling.kernel = Kernel::Gaussian { sigma };
+        settings.sampling.engine = Engine::Scatter;
+        let picture = render(&mut renderer, &loaded, &settings, size);
+        let voxel = loaded.volume.scene().scene_from_index.transform_point3(DVec3::new(7.0, 8.0, 9.0));
+        let edge = loaded.volume.scene().smallest_edge();
+        for (at, texel) in picture.light.iter().enumerate() {
+            let (i, j) = ((at % 40) as f64 + 0.5, (at / 40) as f64 + 0.5);
+            let (origin, direction) = settings.camera.ray_through(i, j, 40.0, 40.0);
+            let miss = (voxel - origin).reject_from(direction).length() / edge;
+            let across =
+                (-miss * miss / (2.0 * sigma * sigma)).exp() / (std::f64::consts::TAU * sigma * sigma);
+            let expected = if miss < 2.0 { per_voxel * across } else { 0.0 };
+            // The edge of the table is a jump of 0.2 %.
+            if (miss - 2.0).abs() > 1e-3 {
+                worst = worst.max((-(1.0 - f64::from(texel[3])).ln() - expected).abs());
+            }
+        }
+    }
+    println!("footprint: within {worst:.2e}");
+    assert!(worst <= FOOTPRINT, "{worst}");
+}
+
+/// What scatters has no texture of densities to sample.
+#[test]
+fn scattering_samples_no_density() {
+    for name in ["scatter_splat", "scatter_eye", "scatter_light", "scatter_reverse", "scatter_normalise"] {
+        let name = format!("{name}.wgsl");
+        assert!(SHADERS.iter().any(|(known, _)| *known == name), "{name}");
+        let source = chiaroscuro::gpu::ShaderLibrary::source(&name, wgpu::TextureFormat::R16Float)
+            .expect("the shader is there");
+        for texture in ["density_texture", "pyramid_texture"] {
+            assert!(!source.contains(texture), "{name} has {texture}");
+        }
+    }
+}
