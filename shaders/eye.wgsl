@@ -6,6 +6,7 @@
 #import "common/shadow_ray.wgsl"
 #import "common/shade.wgsl"
 
+@group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
 // For rays to lights: the lighting transfer function, and the distance in bricks to the nearest that
 // it makes attenuate light.
 @group(0) @binding(4) var<storage, read> lighting_table: array<vec4f, 1024>;
@@ -67,7 +68,7 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
     let down = (sheet(vec2f(pixel.x, high.y), k) - sheet(vec2f(pixel.x, low.y), k)) / max(high.y - low.y, 1.0);
     let slabs = f32(eye.gradient_slabs);
     let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * slabs * eye.frame.slab);
-    return gradient_of_sheets(pixel, depth_of(eye.frame, k), vec3f(across, down, deep));
+    return gradient_of_sheets(pixel, depth_of(eye.frame, k), vec3f(across, down, deep), vec3f(0.0));
 }
 
 @compute @workgroup_size(8, 8)

@@ -5,7 +5,7 @@
 #import "common/scatter.wgsl"
 #import "common/shade.wgsl"
 
-// Colour so far; in place of alpha the transmittance.
+// Colour and opacity so far.
 @group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
 @group(1) @binding(4) var clamped: sampler;
 
@@ -13,15 +13,15 @@ fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towar
     return looked_up(light, volume, surface.point + to_index(eye.space, towards.direction) * eye.shading.bias);
 }
 
-// The sheet's value at a pixel and slab; nothing lies before the first slab or behind the last.
+// The sheet's value at a pixel; nothing lies before the first or behind the last.
 fn sheet(pixel: vec2i, k: i32) -> f32 {
-    if (k < 0 || k >= i32(scatter.frame.slab_count)) {
+    if (k < 0 || k >= i32(scatter.sheet_count)) {
         return 0.0;
     }
     return f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(k))])) / UNIT;
 }
 
-fn gradient_between_sheets(pixel: vec2i, k: i32) -> vec3f {
+fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
     let last = vec2i(eye.frame.size) - 1;
     let low = max(pixel - eye.gradient_pixels, vec2i(0));
     let high = min(pixel + eye.gradient_pixels, last);
@@ -29,8 +29,9 @@ fn gradient_between_sheets(pixel: vec2i, k: i32) -> vec3f {
     let across = (sheet(vec2i(high.x, pixel.y), k) - sheet(vec2i(low.x, pixel.y), k)) / reach.x;
     let down = (sheet(vec2i(pixel.x, high.y), k) - sheet(vec2i(pixel.x, low.y), k)) / reach.y;
     let slabs = eye.gradient_slabs;
-    let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * f32(slabs) * eye.frame.slab);
-    return gradient_of_sheets(vec2f(pixel), depth_of(eye.frame, f32(k)), vec3f(across, down, deep));
+    let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * f32(slabs) * met.thickness);
+    let axis = select(scatter.axis, vec3f(0.0), ORDER == ORDER_IMAGE_ALIGNED);
+    return gradient_of_sheets(vec2f(pixel), met.depth, vec3f(across, down, deep), axis);
 }
 
 @compute @workgroup_size(8, 8)
@@ -41,26 +42,24 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let k = i32(scatter.k);
     let pixel = vec2i(id.xy);
     let at = id.y * eye.frame.size.x + id.x;
-    var state = vec4f(0.0, 0.0, 0.0, 1.0);
-    if (k > 0) {
-        state = rays[at];
-    }
-    let depth = depth_of(eye.frame, f32(k));
+    let before = rays[at];
+    let left = 1.0 - before.a;
     let ray = ray_of(eye.frame, vec2f(id.xy));
-    let p = ray.origin + ray.direction * depth;
+    let met = crossing_of(ray, f32(k));
+    let p = ray.origin + ray.direction * met.depth;
     let material = classify(sheet(pixel, k));
     let brick = brick_with_material(p);
-    if (material.a > 0.0 && state.a >= eye.dark && brick.x >= 0) {
+    // In front of a perspective eye.
+    let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
+    if (material.a > 0.0 && left >= eye.dark && brick.x >= 0 && in_front) {
         // Sums are complete only where the transfer function shows something at all.
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation || eye.leaping == 0u) {
-            let rgb = shade(p, gradient_between_sheets(pixel, k), material.rgb);
-            let passed = exp(-material.a * eye.frame.slab * ray.obliquity);
-            state = vec4f(state.rgb + state.a * (1.0 - passed) * rgb, state.a * passed);
+            let rgb = shade(p, gradient_between_sheets(pixel, k, met), material.rgb);
+            let opacity = 1.0 - exp(-material.a * met.thickness * ray.obliquity);
+            rays[at] = before + left * opacity * vec4f(rgb, 1.0);
         }
     }
-    rays[at] = state;
-    textureStore(picture, id.xy, vec4f(state.rgb, 1.0 - state.a));
-    // Nobody looks back that far again: room for a slab to come.
+    // Nobody looks back that far again: room for a sheet to come.
     if (k >= eye.gradient_slabs) {
         atomicStore(&sheets[sheet_index(id.xy, scatter.k - u32(eye.gradient_slabs))], 0);
     }

@@ -268,3 +268,42 @@ fn a_missing_file_leaves_the_volume_alone() {
     assert_eq!(harness.state().settings(), &before);
     wait_until_idle(&mut harness);
 }
+
+#[test]
+fn two_looks_share_the_picture() {
+    let mut harness = window();
+    let (rect, size) = harness.state().viewport_rect().expect("a picture");
+    let (before, _) = picture(&mut harness);
+    let fills = harness.state().light_rebuilds();
+    harness.key_press(egui::Key::C);
+    wait_until_idle(&mut harness);
+    assert_eq!(harness.state().light_rebuilds(), fills, "the same camera needs no new light");
+    let (both, _) = picture(&mut harness);
+    // The left part is this look, the right one that without shadows; the line and labels lie between.
+    let [width, height] = size.map(|n| n as usize);
+    let differs = |from: f64, to: f64| {
+        let columns = (width as f64 * from) as usize..(width as f64 * to) as usize;
+        let rows = height / 8..height * 7 / 8;
+        rows.flat_map(|row| columns.clone().map(move |column| (row * width + column) * 4))
+            .filter(|&at| before[at..at + 3] != both[at..at + 3])
+            .count()
+    };
+    assert_eq!(differs(0.02, 0.46), 0, "left of the line");
+    assert!(differs(0.54, 0.98) > 100, "right of the line");
+    // Dragging the line shows more of the left look, and does not turn the camera.
+    let camera = harness.state().settings().camera.clone();
+    drag(&mut harness, rect.center() + vec2(0.0, rect.height() / 4.0), vec2(0.44 * rect.width(), 0.0));
+    assert_eq!(harness.state().settings().camera, camera);
+    let (dragged, _) = picture(&mut harness);
+    let columns = (width as f64 * 0.54) as usize..(width as f64 * 0.85) as usize;
+    let same = (height / 8..height * 7 / 8).all(|row| {
+        columns.clone().all(|column| {
+            let at = (row * width + column) * 4;
+            before[at..at + 3] == dragged[at..at + 3]
+        })
+    });
+    assert!(same, "what the line has passed shows the left look");
+    harness.key_press(egui::Key::C);
+    wait_until_idle(&mut harness);
+    assert!(picture(&mut harness).0 == before, "one look again");
+}

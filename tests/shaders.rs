@@ -337,9 +337,13 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 light_dims,
                 cube_face,
                 first_pixel,
-                pad0,
+                sheet_count,
+                first_slice,
+                axis,
+                slice_step,
             }),
         ),
+        ("scatter_footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
         ("display.wgsl", layout!(Display { top, bottom, transparent, clip, pad0, pad1 })),
         ("prefilter.wgsl", layout!(Slices { first, end, pad0, pad1 })),
         ("downsample.wgsl", layout!(Slices { first, end, pad0, pad1 })),
@@ -533,7 +537,9 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     for text in [format!("brick * {BRICK_EDGE}u + local"), format!("group.x % 2u * {half}u")] {
         assert!(listed.contains(&text), "common/listed_bricks.wgsl must have {text}");
     }
-    for name in ["light_backproject.wgsl", "light_raycast.wgsl"] {
+    let over_bricks =
+        ["light_backproject.wgsl", "light_raycast.wgsl", "scatter_normalise.wgsl", "scatter_splat.wgsl"];
+    for name in over_bricks {
         let text = format!("@workgroup_size({BRICK_EDGE}, {BRICK_EDGE}, {half})");
         assert!(file(name).contains(&text), "{name} must have {text}");
     }
@@ -549,6 +555,13 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("light_march.wgsl", [8, 8, 1]),
         ("light_raycast.wgsl", [8, 8, 4]),
         ("prefilter.wgsl", [8, 4, 4]),
+        ("scatter_eye.wgsl", [8, 8, 1]),
+        ("scatter_footprints.wgsl", [64, 1, 1]),
+        ("scatter_light.wgsl", [8, 8, 1]),
+        ("scatter_normalise.wgsl", [8, 8, 4]),
+        ("scatter_resolve.wgsl", [8, 8, 1]),
+        ("scatter_reverse.wgsl", [8, 8, 1]),
+        ("scatter_splat.wgsl", [8, 8, 4]),
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();
     assert_eq!(entry_shaders(), names, "a new pass: say its size here");

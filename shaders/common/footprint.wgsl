@@ -58,9 +58,48 @@ fn profile(t: f32, of_light: bool) -> f32 {
     return kernel_at(t);
 }
 
+// A round Gaussian integrated along the whole ray, over the length that a step of one depth takes in index
+// space; stretched where pixels are wider than voxels.
+fn whole_footprint(centre: vec3f, ray: Ray, stretch: f32) -> f32 {
+    let speed = length(ray.direction);
+    let along = ray.direction / speed;
+    let offset = ray.origin - centre;
+    let miss = offset - along * dot(offset, along);
+    let squared = dot(miss, miss) / (stretch * stretch);
+    if (squared >= 4.0) {
+        return 0.0;
+    }
+    return entry_at(squared * 0.25).x * entry_at(1.0).y / (speed * stretch * stretch);
+}
+
+// The stretch of a kernel at a depth.
+fn stretch_of(depth: f32) -> f32 {
+    let pitch = scatter.frame.pitch * (1.0 + depth * scatter.frame.inverse_distance);
+    return max(pitch / scatter.frame.voxel_edge, 1.0);
+}
+
 fn footprint(centre: vec3f, ray: Ray, depth: f32, of_light: bool) -> f32 {
     if (KERNEL == KERNEL_GAUSSIAN) {
         return gaussian_footprint(centre, ray, depth);
     }
     return sliced_footprint(centre, ray, depth, of_light);
+}
+
+struct Box {
+    first: vec2f,
+    last: vec2f,
+}
+
+// Pixels that a kernel around a voxel can touch, by where it is seen: none when first is beyond last.
+fn pixels_under(at: vec3f) -> Box {
+    // Seen from where it is widest and where it is narrowest.
+    let spread = scatter.frame.inverse_distance;
+    let near = max(1.0 + (at.z - scatter.half.z) * spread, 1e-6);
+    let far = max(1.0 + (at.z + scatter.half.z) * spread, 1e-6);
+    let low = at.xy - scatter.half.xy;
+    let high = at.xy + scatter.half.xy;
+    return Box(
+        max(ceil(min(low / near, low / far)), vec2f(0.0)),
+        min(floor(max(high / near, high / far)), vec2f(scatter.frame.size) - 1.0),
+    );
 }

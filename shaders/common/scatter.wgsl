@@ -31,8 +31,22 @@ struct Scatter {
     // 1 when the view owns only the quarter-space around its axis.
     cube_face: u32,
     first_pixel: vec2f,
-    pad0: vec2f,
+    // Sheets of the stack.
+    sheet_count: u32,
+    // Sheets along the volume: slice k is first_slice + k · slice_step …
+    first_slice: f32,
+    // … along this axis of index space.
+    axis: vec3f,
+    slice_step: f32,
 }
+
+// What the sheets are, src/model/settings.rs: across the line of sight, slices of voxels, or single
+// footprints.
+const ORDER_IMAGE_ALIGNED = 0u;
+const ORDER_VOLUME_ALIGNED = 1u;
+const ORDER_EVERY_FOOTPRINT = 2u;
+
+override ORDER: u32 = 0u;
 
 @group(1) @binding(0) var<uniform> scatter: Scatter;
 // Sums of density × footprint in units of 2⁻²⁴: integers, so that their order does not matter.
@@ -43,6 +57,26 @@ const UNIT = 16777216.0;
 
 fn sheet_index(pixel: vec2u, k: u32) -> u32 {
     return (k % scatter.layers * scatter.frame.size.y + pixel.y) * scatter.frame.size.x + pixel.x;
+}
+
+// The slice of voxels that is sheet k.
+fn slice_of(k: f32) -> f32 {
+    return scatter.first_slice + k * scatter.slice_step;
+}
+
+// Where a ray meets a sheet, in depth, and how much of the ray's depth the sheet stands for.
+struct Crossing {
+    depth: f32,
+    thickness: f32,
+}
+
+fn crossing_of(ray: Ray, k: f32) -> Crossing {
+    if (ORDER == ORDER_IMAGE_ALIGNED) {
+        return Crossing(depth_of(scatter.frame, k), scatter.frame.slab);
+    }
+    let speed = dot(scatter.axis, ray.direction);
+    let least = select(max(speed, 1e-3), min(speed, -1e-3), speed < 0.0);
+    return Crossing((slice_of(k) - dot(scatter.axis, ray.origin)) / least, 1.0 / abs(least));
 }
 
 // Where an index-space point is seen.

@@ -32,8 +32,6 @@ struct Eye {
 @group(0) @binding(0) var<uniform> eye: Eye;
 // Distance in bricks to the nearest that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<u32>;
-@group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
-
 @group(2) @binding(0) var attenuation_0: texture_3d<f32>;
 @group(2) @binding(1) var attenuation_1: texture_3d<f32>;
 @group(2) @binding(2) var attenuation_2: texture_3d<f32>;
@@ -96,12 +94,17 @@ fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
 
 // The gradient in scene space from differences of the sheets: per pixel to the right, per pixel down
 // and per unit of depth. With the columns of J what a step of each kind moves the sample, it is J⁻ᵀ of
-// the differences (the paper's [16], for any projection and voxel shape).
-fn gradient_of_sheets(pixel: vec2f, depth: f32, differences: vec3f) -> vec3f {
+// the differences (the paper's [16], for any projection and voxel shape). Sheets lie across the line of
+// sight, or across an axis of index space if it is not zero.
+fn gradient_of_sheets(pixel: vec2f, depth: f32, differences: vec3f, axis: vec3f) -> vec3f {
     let frame = eye.frame;
-    let right = frame.origin_di + depth * frame.direction_di;
-    let down = frame.origin_dj + depth * frame.direction_dj;
     let forward = ray_of(frame, pixel).direction;
+    let speed = dot(axis, forward);
+    let back = select(vec3f(0.0), forward / speed, speed != 0.0);
+    let right_across = frame.origin_di + depth * frame.direction_di;
+    let down_across = frame.origin_dj + depth * frame.direction_dj;
+    let right = right_across - back * dot(axis, right_across);
+    let down = down_across - back * dot(axis, down_across);
     let volume = dot(right, cross(down, forward));
     let gradient = (cross(down, forward) * differences.x + cross(forward, right) * differences.y
         + cross(right, down) * differences.z) / volume;

@@ -1,7 +1,8 @@
 //! The middle of the window: the picture, pixel for pixel, and the mouse on it.
 
-use eframe::egui::{self, Color32, Mesh, Pos2, Rect, Role, Sense, Shape, Vec2, WidgetInfo, pos2};
+use eframe::egui::{self, Rect, Role, Sense, Shape, WidgetInfo, pos2};
 
+use super::compare::Compare;
 use super::light_handles::LightHandles;
 use super::orbit;
 use super::viewport::Viewport;
@@ -45,13 +46,15 @@ pub(super) struct Stage<'a> {
     pub handles: &'a mut LightHandles,
     /// The light whose handle is marked.
     pub selected_light: &'a mut usize,
+    /// Two looks in one picture.
+    pub compare: &'a mut Compare,
     /// Of the open volume, in scene units; `None` without a volume.
     pub support_radius: Option<f64>,
 }
 
 /// Shows the picture and everything that is done with the mouse on it.
 pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), GpuError>) {
-    let Stage { settings, viewport, handles, selected_light, support_radius } = stage;
+    let Stage { settings, viewport, handles, selected_light, compare, support_radius } = stage;
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
@@ -68,14 +71,14 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     let picture = ui.painter().add(Shape::Noop);
     handles.show(ui, canvas.rect, settings, support_radius, selected_light);
     settings.sanitise();
-    let result =
-        if canvas.size.contains(&0) { Ok(()) } else { viewport.advance(settings, canvas.size, ui.ctx()) };
-    if let Some(texture) = viewport.texture() {
-        let mut mesh = Mesh::with_texture(texture);
-        let whole = Rect::from_min_size(Pos2::ZERO, Vec2::splat(1.0));
-        mesh.add_rect_with_uv(canvas.rect, whole, Color32::WHITE);
-        ui.painter().set(picture, mesh);
-    }
+    let result = if canvas.size.contains(&0) {
+        Ok(())
+    } else {
+        viewport.advance(compare.looks(settings), canvas.size, ui.ctx())
+    };
+    let pictures = viewport.pictures();
+    compare.ui(ui, canvas.rect, &pictures);
+    ui.painter().set(picture, compare.shapes(canvas.rect, &pictures));
     (canvas, result)
 }
 

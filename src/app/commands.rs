@@ -37,6 +37,8 @@ pub(super) enum Command {
     ToggleSide,
     /// Show or hide the handles of the lights.
     ToggleHandles,
+    /// Show two looks in one picture, or one again.
+    ToggleCompare,
     /// Show keys and mouse.
     ShowHelp,
     /// Show what this is and what it runs on.
@@ -44,7 +46,7 @@ pub(super) enum Command {
 }
 
 /// A command with its key, as help shows it.
-pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 12] = [
+pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 13] = [
     (KeyboardShortcut::new(Modifiers::COMMAND, Key::O), Command::OpenDialog),
     (KeyboardShortcut::new(Modifiers::COMMAND, Key::L), Command::OpenPath),
     (KeyboardShortcut::new(Modifiers::COMMAND, Key::S), Command::SaveSettings),
@@ -55,6 +57,7 @@ pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 12] = [
     (KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), Command::Undo),
     (KeyboardShortcut::new(Modifiers::NONE, Key::N), Command::ToggleSide),
     (KeyboardShortcut::new(Modifiers::NONE, Key::H), Command::ToggleHandles),
+    (KeyboardShortcut::new(Modifiers::NONE, Key::C), Command::ToggleCompare),
     (KeyboardShortcut::new(Modifiers::NONE, Key::R), Command::ResetView),
     (KeyboardShortcut::new(Modifiers::NONE, Key::B), Command::Balance),
     (KeyboardShortcut::new(Modifiers::NONE, Key::F1), Command::ShowHelp),
@@ -80,6 +83,7 @@ impl Command {
             Self::Balance => "Balance brightness",
             Self::ToggleSide => "Side panel",
             Self::ToggleHandles => "Light handles",
+            Self::ToggleCompare => "Compare two looks",
             Self::ShowHelp => "Keys and mouse",
             Self::ShowAbout => "About Chiaroscuro",
         }

@@ -45,6 +45,7 @@ impl App {
             Command::Balance => self.start_balance(ctx),
             Command::ToggleSide => self.side_open ^= true,
             Command::ToggleHandles => self.handles.hidden ^= true,
+            Command::ToggleCompare => self.compare.on ^= true,
             Command::ShowHelp => self.help.keys = true,
             Command::ShowAbout => self.help.about = true,
         }

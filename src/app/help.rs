@@ -6,12 +6,13 @@ use super::commands::SHORTCUTS;
 use super::viewport::Facts;
 
 /// What the mouse does, in the picture and in the editor.
-const MOUSE: [(&str, &str); 8] = [
+const MOUSE: [(&str, &str); 9] = [
     ("Drag the picture", "orbit"),
     ("Shift-drag or middle drag", "pan"),
     ("Wheel", "nearer or further"),
     ("Drag a light's handle", "move the light"),
     ("Wheel on a perspective light's handle", "its distance"),
+    ("Drag the line between two looks", "see more of one of them"),
     ("Click in the transfer function", "add a point"),
     ("Drag a point, or arrow keys", "move it"),
     ("Double click, or Delete", "remove it"),

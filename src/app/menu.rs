@@ -18,6 +18,8 @@ pub(super) struct Menu<'a> {
     pub side: bool,
     /// Whether the handles are there.
     pub handles: bool,
+    /// Whether two looks are shown.
+    pub compares: bool,
     /// What the user asks for.
     pub commands: &'a mut Vec<Command>,
 }
@@ -78,7 +80,12 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.radio_value(projection, Projection::Perspective, "Perspective");
     ui.radio_value(projection, Projection::Orthographic, "Orthographic");
     ui.separator();
-    for (command, mut shown) in [(Command::ToggleSide, menu.side), (Command::ToggleHandles, menu.handles)] {
+    let switches = [
+        (Command::ToggleSide, menu.side),
+        (Command::ToggleHandles, menu.handles),
+        (Command::ToggleCompare, menu.compares),
+    ];
+    for (command, mut shown) in switches {
         let label = format!("{} ({})", command.label(), command.shortcut_text(ui.ctx()));
         if ui.checkbox(&mut shown, label).clicked() {
             menu.commands.push(command);

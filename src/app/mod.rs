@@ -5,6 +5,7 @@
 
 mod canvas;
 mod commands;
+mod compare;
 mod execute;
 mod export;
 mod files;
@@ -32,6 +33,7 @@ use eframe::egui;
 
 use self::canvas::{Canvas, Stage};
 use self::commands::Command;
+use self::compare::Compare;
 use self::export::Export;
 use self::files::Files;
 use self::help::Help;
@@ -159,6 +161,7 @@ pub struct App {
     adjust: Option<Adjustment>,
     history: History,
     handles: LightHandles,
+    compare: Compare,
     editor: TransferEditor,
     selected_light: usize,
     side_open: bool,
@@ -205,6 +208,7 @@ impl App {
             adjust,
             history: History::default(),
             handles: LightHandles::default(),
+            compare: Compare::default(),
             editor: TransferEditor::default(),
             selected_light: 0,
             side_open: true,
@@ -224,7 +228,7 @@ impl App {
 
     /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
     pub fn is_idle(&self) -> bool {
-        self.loader.progress().is_none() && self.viewport.is_idle(&self.settings)
+        self.loader.progress().is_none() && self.viewport.is_idle(&self.compare.looks(&self.settings))
     }
 
     /// Where the picture is, in points, and its size in physical pixels.
@@ -239,7 +243,7 @@ impl App {
 
     /// How often light volumes were filled for this volume.
     pub fn light_rebuilds(&self) -> u64 {
-        self.viewport.facts(&self.settings).light_rebuilds
+        self.viewport.light_rebuilds()
     }
 
     /// Name of the open volume.
@@ -282,12 +286,20 @@ impl App {
     fn surroundings(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let title = self.title();
         let undo_redo = (self.history.can_undo(&self.settings), self.history.can_redo(&self.settings));
-        let (side, handles) = (self.side_open, !self.handles.hidden);
+        let (side, handles, compares) = (self.side_open, !self.handles.hidden, self.compare.on);
         menu::show(
             ui,
-            &mut menu::Menu { settings: &mut self.settings, title, undo_redo, side, handles, commands },
+            &mut menu::Menu {
+                settings: &mut self.settings,
+                title,
+                undo_redo,
+                side,
+                handles,
+                compares,
+                commands,
+            },
         );
-        let facts = self.viewport.facts(&self.settings);
+        let facts = self.viewport.facts(&self.compare.looks(&self.settings));
         status::show(ui, &facts, self.loader.progress(), &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
@@ -304,6 +316,7 @@ impl App {
                     defaults: &self.defaults,
                     volume: self.volume.as_ref(),
                     selected_light: &mut self.selected_light,
+                    compare: &mut self.compare,
                     balancing: self.balance.is_some(),
                     commands,
                 },
@@ -319,6 +332,7 @@ impl App {
             viewport: &mut self.viewport,
             handles: &mut self.handles,
             selected_light: &mut self.selected_light,
+            compare: &mut self.compare,
             support_radius: self.volume.as_ref().map(|volume| volume.scene.support_radius()),
         };
         let shown = egui::CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, stage));

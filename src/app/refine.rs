@@ -3,7 +3,7 @@
 //! Pure arithmetic. It predicts milliseconds from what earlier batches took and chooses the finest
 //! look that fits the frame budget; the viewport carries it out.
 
-use crate::model::{Kernel, Resolution, Settings};
+use crate::model::{Engine, Kernel, Resolution, Settings};
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
@@ -40,6 +40,10 @@ impl Look {
     /// The settings to be rendered for the wanted ones.
     pub(super) fn settings(self, wanted: &Settings) -> Settings {
         let mut settings = wanted.clone();
+        if self != Self::FULL {
+            // Nobody waits for every single splat while something moves.
+            settings.sampling.engine = Engine::Gather;
+        }
         if self.quick_eye {
             settings.sampling.kernel = Kernel::Prefiltered;
             // A preview may show a little wood grain.

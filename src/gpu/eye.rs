@@ -85,8 +85,12 @@ impl EyePass {
     }
 
     /// What the shaders know about the eye, for the whole picture from scattered sheets.
-    pub(super) fn uniform_buffer(&self, context: &Context) -> wgpu::Buffer {
-        let uniform = uniforms::Eye { dilation: scatter_dilation(&self.frame), ..self.uniform };
+    pub(super) fn uniform_buffer(&self, context: &Context, gradient_slabs: u32) -> wgpu::Buffer {
+        let uniform = uniforms::Eye {
+            dilation: scatter_dilation(&self.frame),
+            gradient_slabs: gradient_slabs as i32,
+            ..self.uniform
+        };
         context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
     }
 

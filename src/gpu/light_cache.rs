@@ -5,7 +5,8 @@ use super::light_volume::{LightVolume, bricks_holding};
 use super::{GpuError, Renderer};
 use crate::plan::{BrickSet, LightKey, Request};
 
-/// Light volumes that are kept beyond those of the current picture: undoing a drag finds them.
+/// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
+/// undoing a drag finds them, and two looks that are compared do not push out each other's.
 const SPARE_LIGHT_VOLUMES: usize = 2;
 
 impl Renderer {
@@ -50,7 +51,7 @@ impl Renderer {
         let clock = self.clock;
         self.lights.sort_by_key(|light| std::cmp::Reverse(light.last_used));
         let current = self.lights.iter().filter(|light| light.last_used == clock).count();
-        self.lights.truncate(current + SPARE_LIGHT_VOLUMES);
+        self.lights.truncate(current + SPARE_LIGHT_VOLUMES.max(current));
         Ok((keys, builds))
     }
 }

@@ -14,8 +14,8 @@ use super::tables::Tables;
 use super::volume::{GpuVolume, texture_3d};
 use super::{Context, GpuError, ShaderLibrary, prefilter};
 use crate::data::{Bricks, Volume};
-use crate::model::Settings;
-use crate::plan::{Request, eye_frame};
+use crate::model::{Settings, SheetOrder};
+use crate::plan::{Request, SliceOrder, eye_frame};
 
 /// Renders volumes on one device.
 #[derive(Debug)]
@@ -240,8 +240,14 @@ impl Renderer {
         }
         // With everything behind the eye there is no sheet: the gathering pass clears the picture.
         if settings.scatters() && frame.slab_count > 0 {
-            let firsts = (0..frame.slab_count).step_by(SLABS_PER_STEP as usize);
-            let end = |k: u32| frame.slab_count.min(k + SLABS_PER_STEP);
+            let count = match settings.sampling.order {
+                SheetOrder::ImageAligned => frame.slab_count,
+                SheetOrder::VolumeAligned | SheetOrder::EveryFootprint => {
+                    SliceOrder::new(&frame, gpu_volume.volume.dims()).count
+                }
+            };
+            let firsts = (0..count).step_by(SLABS_PER_STEP as usize);
+            let end = |k: u32| count.min(k + SLABS_PER_STEP);
             Ok(firsts.map(|k| Step::ScatterEye(k..end(k))).collect())
         } else {
             Ok(vec![Step::Eye(0..size[1])])

@@ -4,23 +4,27 @@ use std::ops::Range;
 
 use super::eye::EyePass;
 use super::light_volume::LightVolume;
-use super::scatter_splat::{Scatterer, stretch_at, sums};
+use super::scatter_footprints::Footprints;
+use super::scatter_splat::{Scatterer, sums, widest_stretch};
 use super::scatter_voxels::ScatterVoxels;
 use super::tables::{Tables, view_entry};
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::data::BRICK_EDGE;
-use crate::model::Settings;
+use crate::model::{Settings, SheetOrder};
 use crate::plan::{BrickSet, SheetFrame};
 
 /// Slabs per submission: each is splatted and composited, which takes a software adapter some
 /// milliseconds.
-pub(super) const SLABS_PER_STEP: u32 = 4;
+pub(super) const SLABS_PER_STEP: u32 = 2;
 
 /// The eye's sheets, and what its rays have gathered so far.
 #[derive(Debug)]
 pub(super) struct EyeScatter {
     scatterer: Scatterer,
+    /// In place of sheets, if every footprint is composited.
+    footprints: Option<Footprints>,
+    /// Colour and opacity so far.
     rays: wgpu::Buffer,
     clamped: wgpu::Sampler,
     /// Slabs to either side between which gradients are differences.
@@ -37,12 +41,18 @@ impl EyeScatter {
         settings: &Settings,
         options: &RenderOptions,
     ) -> Result<Self, GpuError> {
-        let ahead = frame.gradient_steps().1;
         let sampling = &settings.sampling;
-        let kernel = (sampling.kernel, sampling.quadrature);
+        let order = sampling.order;
+        // Slices of voxels are a voxel apart.
+        let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().1 } else { 1 };
+        let kernel = (sampling.kernel, sampling.quadrature, order);
         let seen = splatted_bricks(frame, &tables.eye.occupied, options);
+        let scatterer = Scatterer::new(gpu, voxels, frame, kernel, &seen, 2 * ahead + 1)?;
+        let footprints =
+            (order == SheetOrder::EveryFootprint).then(|| Footprints::new(gpu, &scatterer)).transpose()?;
         Ok(Self {
-            scatterer: Scatterer::new(gpu, voxels, frame, kernel, &seen, 2 * ahead + 1)?,
+            scatterer,
+            footprints,
             // Four 32-bit floats per ray.
             rays: sums(gpu.context, "EyeScatter::rays", 4, frame.size)?,
             clamped: gpu.context.sampler("EyeScatter::clamped", wgpu::AddressMode::ClampToEdge),
@@ -65,8 +75,28 @@ impl EyeScatter {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline("scatter_eye.wgsl", &eye.scatter_constants())?;
-        let uniform = eye.uniform_buffer(context);
+        let uniform = eye.uniform_buffer(context, self.ahead);
+        let is_last = slabs.end == self.scatterer.sheet_count();
+        if let Some(footprints) = &self.footprints {
+            let lit = (eye, attenuation);
+            let target = (&self.rays, &self.clamped);
+            for k in slabs {
+                footprints.draw(
+                    gpu,
+                    &self.scatterer,
+                    voxels,
+                    (counter, &uniform, &tables.eye.buffer),
+                    lit,
+                    target,
+                    k,
+                    encoder,
+                )?;
+            }
+            return if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) };
+        }
+        let mut constants = eye.scatter_constants();
+        constants.extend_from_slice(&self.scatterer.constants()[3..]);
+        let pipeline = shaders.pipeline("scatter_eye.wgsl", &constants)?;
         let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("EyeScatter::bind_group"),
             layout: &pipeline.get_bind_group_layout(0),
@@ -74,7 +104,6 @@ impl EyeScatter {
                 entry(0, uniform.as_entire_binding()),
                 entry(1, tables.eye.buffer.as_entire_binding()),
                 view_entry(2, &tables.eye_distances),
-                view_entry(3, picture),
             ],
         });
         let of_lights = eye.light_bind_group(gpu, &pipeline, attenuation);
@@ -87,9 +116,8 @@ impl EyeScatter {
                 }
             }
             // Nothing to composite, and nothing to make room for.
-            let touched = k == 0
-                || self.scatterer.is_filled(k)
-                || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
+            let touched =
+                self.scatterer.is_filled(k) || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
             if !touched {
                 continue;
             }
@@ -115,6 +143,38 @@ impl EyeScatter {
             let [width, height] = self.scatterer.frame.size;
             pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
         }
+        if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) }
+    }
+
+    /// Writes the picture.
+    fn resolve(
+        &self,
+        gpu: Gpu<'_>,
+        picture: &wgpu::TextureView,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline("scatter_resolve.wgsl", &[])?;
+        let uniform = self.scatterer.uniform_buffer(context, 0, 1.0);
+        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("EyeScatter::picture"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[entry(0, self.rays.as_entire_binding()), view_entry(1, picture)],
+        });
+        let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("EyeScatter::frame"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[entry(0, uniform.as_entire_binding())],
+        });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("EyeScatter::resolve"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &own, &[]);
+        pass.set_bind_group(1, &shared, &[]);
+        let [width, height] = self.scatterer.frame.size;
+        pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
         Ok(())
     }
 
@@ -130,7 +190,7 @@ pub(super) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: 
     if !options.leaping {
         return BrickSet::full(occupied.dims);
     }
-    let widest = stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0));
+    let widest = widest_stretch(frame);
     // A kernel's radius, at most √2 of it along a slanted axis, and a gradient's step of one pixel or voxel.
     let reach = (2.0 * std::f64::consts::SQRT_2 + 1.5) * widest + frame.slab / frame.voxel_edge;
     occupied.dilated((reach / BRICK_EDGE as f64).ceil() as usize)
@@ -139,6 +199,6 @@ pub(super) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: 
 /// Bricks beyond an occupied one whose samples a stretched kernel lets see it: brick ranges look three
 /// voxels beyond their brick.
 pub(super) fn scatter_dilation(frame: &SheetFrame) -> i32 {
-    let widest = stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0));
+    let widest = widest_stretch(frame);
     ((2.0 * std::f64::consts::SQRT_2 * widest - 3.0).max(0.0) / BRICK_EDGE as f64).ceil() as i32
 }

@@ -12,7 +12,7 @@ use super::scatter_voxels::ScatterVoxels;
 use super::tables::{Tables, view_entry};
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
-use crate::model::{Light, Shadows};
+use crate::model::{Light, Shadows, SheetOrder};
 use crate::plan::LightView;
 
 /// The sheets of one view of a light, and what was splatted back into the grid.
@@ -39,7 +39,7 @@ impl LightScatter {
         options: &RenderOptions,
     ) -> Result<Self, GpuError> {
         let seen = splatted_bricks(&view.frame, &tables.lighting.occupied, options);
-        let kernel = (shadows.kernel, shadows.quadrature);
+        let kernel = (shadows.kernel, shadows.quadrature, SheetOrder::ImageAligned);
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
         Ok(Self {
             scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, &seen, 1)?.towards_grid(

@@ -3,21 +3,16 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::footprint_table::{RADIUS, footprint_table};
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::listed_bricks;
 use super::scatter_voxels::ScatterVoxels;
+use super::sheet_lists::{slab_lists, slice_lists};
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
 use super::{Context, GpuError};
-use crate::data::BRICK_EDGE;
-use crate::model::{Kernel, Quadrature};
-use crate::plan::{BrickSet, SheetFrame};
-
-/// Entries of the footprint tables, as in `common/footprint.wgsl`.
-const FOOTPRINT_SIZE: usize = 512;
-
-/// Where kernels end, in voxels.
-const RADIUS: f64 = 2.0;
+use crate::model::{Kernel, Quadrature, SheetOrder};
+use crate::plan::{BrickSet, SheetFrame, SliceOrder};
 
 /// A stack of sheets that voxels are splatted into.
 #[derive(Debug)]
@@ -25,11 +20,15 @@ pub(super) struct Scatterer {
     /// Rays and slabs.
     pub frame: SheetFrame,
     /// Kernel and quadrature, as override constants.
-    constants: [(&'static str, f64); 3],
+    constants: [(&'static str, f64); 4],
+    /// Slices of voxels, if sheets are along the volume.
+    slices: Option<SliceOrder>,
     /// What does not change from slab to slab.
     uniform: uniforms::Scatter,
     /// Half a kernel's extents in (w·i, w·j, z), where it is not stretched.
     half: DVec3,
+    /// How many times wider kernels are where they are widest.
+    widest: f64,
     /// Bricks, slab by slab …
     bricks: wgpu::Buffer,
     /// … of which those of slab k are `starts[k] .. starts[k + 1]`.
@@ -45,41 +44,54 @@ impl Scatterer {
         gpu: Gpu<'_>,
         voxels: &ScatterVoxels,
         frame: &SheetFrame,
-        (kernel, quadrature): (Kernel, Quadrature),
+        (kernel, quadrature, order): (Kernel, Quadrature, SheetOrder),
         seen: &BrickSet,
         layers: u32,
     ) -> Result<Self, GpuError> {
         let Gpu { context, volume, .. } = gpu;
         let sheets_from_index = sheets_from_index(frame);
-        let half = half_extents(frame, &sheets_from_index, kernel);
-        let widest = stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0));
-        let (starts, listed) =
-            slab_lists(frame, &sheets_from_index, voxels.among(seen), half.z * widest.max(1.0));
+        let dims = volume.volume.dims();
+        let slices = (order != SheetOrder::ImageAligned).then(|| SliceOrder::new(frame, dims));
+        let tabled = if slices.is_some() { round(kernel) } else { kernel };
+        let half = half_extents(frame, &sheets_from_index, tabled);
+        let widest = widest_stretch(frame);
+        let (starts, listed) = match &slices {
+            None => slab_lists(frame, &sheets_from_index, voxels.among(seen), half.z * widest),
+            Some(slices) => slice_lists(slices, voxels.among(seen)),
+        };
+        let axis = slices
+            .map_or([0.0; 3], |slices| std::array::from_fn(|axis| f32::from(u8::from(axis == slices.axis))));
         let [x, y, z] = rows(&sheets_from_index);
         let uniform = uniforms::Scatter {
             frame: uniforms::SheetFrame::new(frame),
             sheets_from_index_x: x,
             sheets_from_index_y: y,
             sheets_from_index_z: z,
-            dims: volume.volume.dims().map(|n| n as f32),
+            dims: dims.map(|n| n as f32),
             bricks: volume.bricks.dims.map(|n| n as i32),
             layers,
             voxel_step: 1.0,
-            light_dims: volume.volume.dims().map(|n| n as u32),
+            light_dims: dims.map(|n| n as u32),
+            sheet_count: starts.len() as u32 - 1,
+            first_slice: slices.map_or(0.0, |slices| slices.first as f32),
+            slice_step: slices.map_or(0.0, |slices| slices.step as f32),
+            axis,
             ..bytemuck::Zeroable::zeroed()
         };
         let [kernel_code, sigma] = kernel_constants(kernel);
         Ok(Self {
             frame: frame.clone(),
-            constants: [kernel_code, sigma, quadrature_constant(quadrature)],
+            constants: [kernel_code, sigma, quadrature_constant(quadrature), order_constant(order)],
+            slices,
             uniform,
             half,
+            widest,
             bricks: context.buffer("Scatterer::bricks", &listed, wgpu::BufferUsages::STORAGE),
             starts,
             sheets: sums(context, "Scatterer::sheets", layers, frame.size)?,
             footprints: context.buffer(
                 "Scatterer::footprints",
-                &footprint_table(kernel),
+                &footprint_table(tabled),
                 wgpu::BufferUsages::STORAGE,
             ),
         })
@@ -105,15 +117,40 @@ impl Scatterer {
         &self.constants
     }
 
+    /// Sheets of the stack.
+    pub(super) fn sheet_count(&self) -> u32 {
+        self.starts.len() as u32 - 1
+    }
+
+    /// Bricks, sheet by sheet.
+    pub(super) fn bricks(&self) -> &wgpu::Buffer {
+        &self.bricks
+    }
+
+    /// Footprint tables.
+    pub(super) fn footprints(&self) -> &wgpu::Buffer {
+        &self.footprints
+    }
+
+    /// How many times wider kernels are where they are widest.
+    pub(super) fn widest(&self) -> f64 {
+        self.widest
+    }
+
     /// Whether anything is splatted into slab `k`.
     pub(super) fn is_filled(&self, k: u32) -> bool {
-        k < self.frame.slab_count && self.starts[k as usize] < self.starts[k as usize + 1]
+        k < self.sheet_count() && self.starts[k as usize] < self.starts[k as usize + 1]
     }
 
     /// What shaders know about slab `k`, for kernels that are nowhere narrower than `least_stretch`
     /// voxels per voxel.
     pub(super) fn uniform(&self, k: u32, least_stretch: f64) -> uniforms::Scatter {
-        let stretch = stretch_at(&self.frame, f64::from(k)).max(least_stretch);
+        // A slice of voxels has no depth of its own.
+        let stretch = if self.slices.is_some() {
+            self.widest
+        } else {
+            stretch_at(&self.frame, f64::from(k)).max(least_stretch)
+        };
         let pitch = self.frame.pitch_at(self.frame.depth_of(f64::from(k))) / self.frame.voxel_edge;
         let starts = &self.starts[k as usize..=k as usize + 1];
         uniforms::Scatter {
@@ -170,7 +207,7 @@ impl Scatterer {
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[
                 entry(0, self.bricks.as_entire_binding()),
-                entry(1, voxels.buffer.as_entire_binding()),
+                entry(6, voxels.buffer.as_entire_binding()),
                 entry(2, counter.as_entire_binding()),
             ],
         });
@@ -223,6 +260,29 @@ pub(super) fn stretch_at(frame: &SheetFrame, k: f64) -> f64 {
     (frame.pitch_at(frame.depth_of(k)) / frame.voxel_edge).max(1.0)
 }
 
+/// The most that kernels of a frame are stretched.
+pub(super) fn widest_stretch(frame: &SheetFrame) -> f64 {
+    stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0))
+}
+
+/// The round kernel that stands for one: that of the same variance, ⅓ of the other two.
+fn round(kernel: Kernel) -> Kernel {
+    match kernel {
+        Kernel::Gaussian { .. } => kernel,
+        Kernel::BSpline | Kernel::Prefiltered => Kernel::Gaussian { sigma: (1.0f64 / 3.0).sqrt() },
+    }
+}
+
+/// `ORDER` of `common/scatter.wgsl`.
+fn order_constant(order: SheetOrder) -> (&'static str, f64) {
+    let code = match order {
+        SheetOrder::ImageAligned => 0.0,
+        SheetOrder::VolumeAligned => 1.0,
+        SheetOrder::EveryFootprint => 2.0,
+    };
+    ("ORDER", code)
+}
+
 /// Index space to (w·i, w·j, z), where w = 1 + z · `inverse_distance`: the inverse of the frame's rays,
 /// point = origin + w·i · right + w·j · down + z · forward.
 fn sheets_from_index(frame: &SheetFrame) -> DAffine3 {
@@ -253,88 +313,4 @@ fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: Kernel
         .into_iter()
         .fold(1.0, f64::max);
     RADIUS * DVec3::new(rows.x_axis.length(), rows.y_axis.length(), depth * deepest)
-}
-
-/// For every slab the bricks whose voxels reach it, with where their voxels begin; lists start at the
-/// first array's entries.
-fn slab_lists(
-    frame: &SheetFrame,
-    sheets_from_index: &DAffine3,
-    bricks: impl Iterator<Item = ([usize; 3], u32)>,
-    half_depth: f64,
-) -> (Vec<u32>, Vec<[u32; 2]>) {
-    let count = frame.slab_count as usize;
-    let mut lists = vec![Vec::new(); count];
-    let last = (BRICK_EDGE - 1) as f64;
-    for (brick, first_word) in bricks {
-        let corner = DVec3::from(brick.map(|c| (c * BRICK_EDGE) as f64));
-        let depths = (0..8).map(|side| {
-            let step = DVec3::new(f64::from(side & 1), f64::from(side >> 1 & 1), f64::from(side >> 2));
-            sheets_from_index.transform_point3(corner + step * last).z
-        });
-        let (near, far) =
-            depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
-        let slab = |depth: f64| (depth - frame.first_depth) / frame.slab;
-        let first = slab(near - half_depth).floor().max(0.0) as usize;
-        let end = (slab(far + half_depth).floor() + 1.0).clamp(0.0, count as f64) as usize;
-        let packed = [listed_bricks::packed(brick), first_word];
-        for list in lists.iter_mut().take(end).skip(first) {
-            list.push(packed);
-        }
-    }
-    let mut starts = vec![0];
-    let mut all: Vec<[u32; 2]> = Vec::new();
-    for list in lists {
-        all.extend(list);
-        starts.push(all.len() as u32);
-    }
-    // A binding cannot be empty.
-    if all.is_empty() {
-        all.push([0; 2]);
-    }
-    (starts, all)
-}
-
-/// `common/footprint.wgsl`: the Gaussian by the square of the distance across the ray, and its integral
-/// along the ray, both of a kernel of radius two voxels; zeros for other kernels.
-fn footprint_table(kernel: Kernel) -> Vec<[f32; 2]> {
-    let Kernel::Gaussian { sigma } = kernel else { return vec![[0.0; 2]; FOOTPRINT_SIZE] };
-    let variance = sigma * sigma;
-    let across = |squared: f64| (-squared / (2.0 * variance)).exp() / (std::f64::consts::TAU * variance);
-    let along = |t: f64| (-t * t / (2.0 * variance)).exp() / (std::f64::consts::TAU * variance).sqrt();
-    let step = 2.0 * RADIUS / (FOOTPRINT_SIZE - 1) as f64;
-    let mut integral = 0.0;
-    (0..FOOTPRINT_SIZE)
-        .map(|at| {
-            let t = at as f64 * step - RADIUS;
-            if at > 0 {
-                // Simpson's rule: at a step of 1/128 voxel exact to 32 bits.
-                integral += step / 6.0 * (along(t - step) + 4.0 * along(t - step / 2.0) + along(t));
-            }
-            let squared = at as f64 / (FOOTPRINT_SIZE - 1) as f64 * RADIUS * RADIUS;
-            [across(squared) as f32, integral as f32]
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_pre_integrated_footprint_has_volume_one() {
-        for sigma in [0.4, 0.6] {
-            let table = footprint_table(Kernel::Gaussian { sigma });
-            // ∫ 2πr · across dr = ∫ π · across d(r²).
-            let step = RADIUS * RADIUS / (FOOTPRINT_SIZE - 1) as f64;
-            let disc: f64 =
-                table.iter().map(|[across, _]| std::f64::consts::PI * f64::from(*across) * step).sum::<f64>()
-                    - 0.5 * std::f64::consts::PI * step * f64::from(table[0][0]);
-            let cut = (-RADIUS * RADIUS / (2.0 * sigma * sigma)).exp();
-            assert!((disc - (1.0 - cut)).abs() < 1e-4, "σ {sigma}: {disc}");
-            // Beyond two voxels lies what a Gaussian of that width has there.
-            let length = f64::from(table[FOOTPRINT_SIZE - 1][1]);
-            assert!((0.9990..1.0).contains(&length), "σ {sigma}: {length}");
-        }
-    }
 }

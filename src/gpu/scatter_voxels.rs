@@ -17,6 +17,8 @@ pub(super) struct ScatterVoxels {
     pub buffer: wgpu::Buffer,
     /// For each brick of the volume the word where its voxels begin; `None` for empty ones.
     pub first_word: Vec<Option<u32>>,
+    /// The same for shaders; −1 for empty ones.
+    pub first_words: wgpu::Buffer,
 }
 
 impl ScatterVoxels {
@@ -48,7 +50,9 @@ impl ScatterVoxels {
         // A binding cannot be empty.
         all.resize(all.len().max(1), 0);
         let buffer = context.buffer("ScatterVoxels::buffer", &all, wgpu::BufferUsages::STORAGE);
-        Ok(Self { buffer, first_word })
+        let words: Vec<i32> = first_word.iter().map(|word| word.map_or(-1, |word| word as i32)).collect();
+        let first_words = context.buffer("ScatterVoxels::first_words", &words, wgpu::BufferUsages::STORAGE);
+        Ok(Self { buffer, first_word, first_words })
     }
 
     /// Bricks of a set that hold anything: coordinates and first word.
@@ -60,7 +64,7 @@ impl ScatterVoxels {
 
     /// Bytes of the list.
     pub(super) fn bytes(&self) -> u64 {
-        self.buffer.size()
+        self.buffer.size() + self.first_words.size()
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 26] = [
+pub const SHADERS: [(&str, &str); 29] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
@@ -21,6 +21,7 @@ pub const SHADERS: [(&str, &str); 26] = [
     ("common/space.wgsl", include_str!("../../shaders/common/space.wgsl")),
     ("common/table.wgsl", include_str!("../../shaders/common/table.wgsl")),
     ("common/volume.wgsl", include_str!("../../shaders/common/volume.wgsl")),
+    ("common/voxels.wgsl", include_str!("../../shaders/common/voxels.wgsl")),
     ("display.wgsl", include_str!("../../shaders/display.wgsl")),
     ("downsample.wgsl", include_str!("../../shaders/downsample.wgsl")),
     ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
@@ -29,8 +30,10 @@ pub const SHADERS: [(&str, &str); 26] = [
     ("light_raycast.wgsl", include_str!("../../shaders/light_raycast.wgsl")),
     ("prefilter.wgsl", include_str!("../../shaders/prefilter.wgsl")),
     ("scatter_eye.wgsl", include_str!("../../shaders/scatter_eye.wgsl")),
+    ("scatter_footprints.wgsl", include_str!("../../shaders/scatter_footprints.wgsl")),
     ("scatter_light.wgsl", include_str!("../../shaders/scatter_light.wgsl")),
     ("scatter_normalise.wgsl", include_str!("../../shaders/scatter_normalise.wgsl")),
+    ("scatter_resolve.wgsl", include_str!("../../shaders/scatter_resolve.wgsl")),
     ("scatter_reverse.wgsl", include_str!("../../shaders/scatter_reverse.wgsl")),
     ("scatter_splat.wgsl", include_str!("../../shaders/scatter_splat.wgsl")),
 ];

@@ -118,7 +118,24 @@ pub struct Scatter {
     pub light_dims: [u32; 3],
     pub cube_face: u32,
     pub first_pixel: [f32; 2],
-    pub pad0: [f32; 2],
+    pub sheet_count: u32,
+    pub first_slice: f32,
+    pub axis: [f32; 3],
+    pub slice_step: f32,
+}
+
+/// `scatter_footprints.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Phase {
+    pub u: u32,
+    pub v: u32,
+    pub brick_u: u32,
+    pub brick_v: u32,
+    pub stride: u32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
 }
 
 /// `common/march.wgsl`.

@@ -11,6 +11,7 @@ mod preset;
 mod sanitise;
 mod settings;
 mod transfer;
+mod variant;
 
 pub use camera::{Camera, Projection};
 pub use length::Length;
@@ -18,8 +19,9 @@ pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use settings::{
     Background, Deposit, Engine, Gradients, Kernel, LightingTransfer, Output, Quadrature, Resolution, SCHEMA,
-    Sampling, Settings, Shading, ShadowAlgorithm, Shadows, ToneMap,
+    Sampling, Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, ToneMap,
 };
 pub use transfer::{
     BakedTransfer, ControlPoint, Interpolation, LUT_SIZE, MAX_OPACITY, TransferFunction, linear_from_srgb,
 };
+pub use variant::Variant;

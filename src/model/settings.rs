@@ -279,6 +279,19 @@ pub enum Engine {
     Scatter,
 }
 
+/// What the scattering engine composites for the eye.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SheetOrder {
+    /// Sheets across the line of sight (the paper's references 17 and 18).
+    ImageAligned,
+    /// Sheets along the volume's axis that is nearest to the line of sight (its reference 26):
+    /// brightness pops when another axis becomes the nearest.
+    VolumeAligned,
+    /// Every footprint by itself, classified as a voxel (its reference 25): overlaps bleed.
+    EveryFootprint,
+}
+
 /// How the eye's sheets are sampled.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -294,6 +307,8 @@ pub struct Sampling {
     pub gradients: Gradients,
     /// How sheets are filled, those of lights too.
     pub engine: Engine,
+    /// What is composited where voxels are scattered, for comparison with earlier work.
+    pub order: SheetOrder,
 }
 
 impl Default for Sampling {
@@ -304,6 +319,7 @@ impl Default for Sampling {
             quadrature: Quadrature::One,
             gradients: Gradients::Volume,
             engine: Engine::Gather,
+            order: SheetOrder::ImageAligned,
         }
     }
 }

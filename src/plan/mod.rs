@@ -8,6 +8,7 @@ mod eye_frame;
 mod light_frame;
 mod occupancy;
 mod sheet_frame;
+mod slice_order;
 #[cfg(test)]
 mod tests;
 
@@ -15,6 +16,7 @@ pub use eye_frame::eye_frame;
 pub use light_frame::{LightView, MAX_KERNEL_PIXELS, SheetPosition, light_views};
 pub use occupancy::BrickSet;
 pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
+pub use slice_order::SliceOrder;
 
 use crate::model::{
     Background, Camera, Deposit, Engine, Hood, Interpolation, Kernel, Length, Light, LightKind, Output,
@@ -87,7 +89,7 @@ impl LightKey {
             opacity_unit,
             shading: _,
             shadows,
-            sampling: Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine },
+            sampling: Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine, order: _ },
             output: _,
         } = &request.settings;
         let light = lights.get(index)?.in_world(camera);
@@ -211,7 +213,7 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
     let Background { top: _, bottom: _ } = background;
     let (ToneMap::Neutral | ToneMap::Clip) = tone_map;
     let Camera { .. } = camera;
-    let Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine: _ } = sampling;
+    let Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine: _, order: _ } = sampling;
     let Shading { emission: _, ambient: _, diffuse: _, specular: _, shininess: _, surface_gradient: _ } =
         shading;
     let eye = eye_table

@@ -5,11 +5,12 @@ use crate::common::{Loaded, context, render};
 use crate::compare::{compare, flat32, wide};
 use crate::gpu_vs_reference::check_against;
 use crate::scenes::{self, isotropic, linear_extinction, straight};
-use crate::thresholds::{ENGINES, FOOTPRINT};
+use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{Renderer, SHADERS};
 use chiaroscuro::model::{
-    Camera, Deposit, Engine, Gradients, Kernel, Length, LightKind, Quadrature, Resolution, Settings,
+    Camera, ControlPoint, Deposit, Engine, Gradients, Interpolation, Kernel, Length, Light, LightKind,
+    LightLock, Quadrature, Resolution, Settings, SheetOrder, TransferFunction,
 };
 use glam::DVec3;
 
@@ -149,6 +150,81 @@ fn scattering_samples_no_density() {
             .expect("the shader is there");
         for texture in ["density_texture", "pyramid_texture"] {
             assert!(!source.contains(texture), "{name} has {texture}");
+        }
+    }
+}
+
+/// Mean brightness of a ball while the camera turns, and with it the light, which stands to its right:
+/// nothing but the grid's orientation changes.
+fn turned(order: SheetOrder) -> Vec<f64> {
+    let loaded = Loaded::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
+    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    let mut settings = Settings {
+        // A hard surface: sums of sheets that differ a little show different parts of it.
+        transfer: TransferFunction {
+            points: vec![point(0.0, 0.0), point(110.0, 0.0), point(150.0, 0.8), point(255.0, 0.8)],
+            interpolation: Interpolation::Opacity,
+        },
+        opacity_unit: Length::Voxels(1.0),
+        lights: vec![Light {
+            lock: LightLock::Camera,
+            casts_shadows: false,
+            ..scenes::light(LightKind::Parallel, [2.0, 0.3, 1.0])
+        }],
+        ..Settings::default()
+    };
+    settings.shading.ambient = 0.0;
+    settings.sampling.engine = Engine::Scatter;
+    settings.sampling.order = order;
+    (35..=55)
+        .map(|degree| {
+            settings.camera = straight(f64::from(degree), 0.0);
+            let picture = render(&mut renderer, &loaded, &settings, [64, 64]);
+            picture.light.iter().map(|texel| f64::from(texel[1])).sum::<f64>()
+        })
+        .collect()
+}
+
+/// No. 7: Sheets along the volume pop when the camera passes 45 degrees; image-aligned ones do not.
+#[test]
+fn volume_aligned_sheets_pop_and_image_aligned_ones_do_not() {
+    let largest_step = |order| {
+        let means = turned(order);
+        let mean = means.iter().sum::<f64>() / means.len() as f64;
+        let steps: Vec<f64> = means.windows(2).map(|pair| (pair[1] - pair[0]).abs() / mean).collect();
+        println!("{order:?}: {steps:.5?}");
+        steps.into_iter().fold(0.0, f64::max)
+    };
+    assert!(largest_step(SheetOrder::ImageAligned) <= ROTATION_STEP);
+    assert!(largest_step(SheetOrder::VolumeAligned) > POPPING * ROTATION_STEP);
+}
+
+/// No. 3 for the historical orders: a block along the view is as opaque as its chord; single footprints
+/// add up to the same optical depth.
+#[test]
+fn every_order_has_the_opacity_of_the_chord() {
+    let n = 24;
+    let loaded = Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (6..18).contains(c))));
+    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    for order in [SheetOrder::ImageAligned, SheetOrder::VolumeAligned, SheetOrder::EveryFootprint] {
+        for azimuth_deg in [-90.0, 0.0, 180.0] {
+            let mut settings = Settings {
+                transfer: linear_extinction(0.08),
+                opacity_unit: Length::Voxels(1.0),
+                camera: straight(azimuth_deg, 0.0),
+                ..Settings::default()
+            };
+            isotropic(&mut settings);
+            settings.camera.distance = 2.0;
+            settings.lights[0].casts_shadows = false;
+            settings.sampling.engine = Engine::Scatter;
+            settings.sampling.order = order;
+            let picture = render(&mut renderer, &loaded, &settings, [32, 32]);
+            let found = f64::from(picture.light[16 * 32 + 16][3]);
+            let expected = 1.0 - (-0.08f64 * 12.0).exp();
+            println!("{order:?} from {azimuth_deg}: {found:.5}, chord {expected:.5}");
+            assert!((found - expected).abs() <= ORDER_OPACITY, "{order:?}: {found} not {expected}");
         }
     }
 }

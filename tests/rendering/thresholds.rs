@@ -86,3 +86,9 @@ pub(crate) const ENGINES: Limit = Limit { max: f64::INFINITY, rmse: 2.5e-4 };
 /// Optical depth of a single voxel's footprint: what lies beyond two voxels along the ray (0.09 % of
 /// 0.22 at σ = 0.6), table and 8-bit steps.
 pub(crate) const FOOTPRINT: f64 = 3e-4;
+
+/// How many times more than [`ROTATION_STEP`] sheets along the volume must pop, for the test to see it.
+pub(crate) const POPPING: f64 = 10.0;
+
+/// Opacity of a chord by round footprints that are not normalised: their sums vary by 0.7 %.
+pub(crate) const ORDER_OPACITY: f64 = 4e-3;

@@ -54,5 +54,6 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     advanced(ui, "advanced camera", |ui| {
         let eye = &mut panels.settings.sampling;
         sampling::show(ui, &mut eye.kernel, &mut eye.slab, &mut eye.quadrature);
+        sampling::show_engine(ui, eye);
     });
 }

@@ -1,6 +1,7 @@
 //! The side panel. Panels see settings and read-only facts, never the renderer.
 
 mod camera;
+mod compare;
 pub(super) mod controls;
 mod data;
 mod lights;
@@ -11,6 +12,7 @@ mod shadows;
 use eframe::egui;
 
 use super::commands::Command;
+use super::compare::Compare;
 use super::volume_facts::VolumeFacts;
 use crate::model::Settings;
 
@@ -26,6 +28,8 @@ pub(super) struct Panels<'a> {
     pub volume: Option<&'a VolumeFacts>,
     /// The light whose handle is marked.
     pub selected_light: &'a mut usize,
+    /// Two looks in one picture.
+    pub compare: &'a mut Compare,
     /// A balance is being measured.
     pub balancing: bool,
     /// What the user asks for.
@@ -40,6 +44,7 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
         controls::section(ui, "Shadows", true, |ui| shadows::show(ui, panels));
         controls::section(ui, "Shading", false, |ui| shading::show(ui, panels));
         controls::section(ui, "Camera", false, |ui| camera::show(ui, panels));
+        controls::section(ui, "Compare", false, |ui| compare::show(ui, panels.compare, panels.settings));
         controls::section(ui, "Data", false, |ui| data::show(ui, panels));
     });
 }

@@ -1,9 +1,10 @@
-//! Kernel, slab and quadrature: the same rows for the light's and for the eye's pass.
+//! Kernel, slab and quadrature: the same rows for the light's and for the eye's pass; and what fills the
+//! sheets.
 
 use eframe::egui::Ui;
 
 use super::controls::{Number, choice};
-use crate::model::{Kernel, Quadrature};
+use crate::model::{Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
 
 /// σ where a Gaussian is chosen anew.
 const SIGMA: f64 = 0.6;
@@ -36,4 +37,49 @@ pub(super) fn show(ui: &mut Ui, kernel: &mut Kernel, slab: &mut f64, quadrature:
         (Quadrature::Two, "2 points", "Twice the work; for export and comparison"),
     ];
     choice(ui, "Quadrature", "Samples per slab along the ray", quadrature, &quadratures);
+}
+
+/// Shows what fills the sheets of both passes, and where the eye's normals come from.
+pub(super) fn show_engine(ui: &mut Ui, sampling: &mut Sampling) {
+    let engines = [
+        (Engine::Gather, "Gather", "Pixels gather what voxels would splat: the same sums, many times faster"),
+        (
+            Engine::Scatter,
+            "Scatter",
+            "Every voxel is splatted, as in the paper; for comparison and teaching. Has no effect on direct shadows",
+        ),
+    ];
+    choice(ui, "Sheets", "How sheets are filled, for the eye and for lights", &mut sampling.engine, &engines);
+    if sampling.engine == Engine::Scatter {
+        let orders = [
+            (SheetOrder::ImageAligned, "Image", "Sheets across the line of sight: nothing pops or bleeds"),
+            (
+                SheetOrder::VolumeAligned,
+                "Volume",
+                "Sheets along the grid's nearest axis (1990): brightness pops as the camera turns past 45°",
+            ),
+            (
+                SheetOrder::EveryFootprint,
+                "Splats",
+                "Every footprint by itself (1991): blurred, and colours bleed where footprints overlap",
+            ),
+        ];
+        choice(ui, "Order", "What is composited, for the eye", &mut sampling.order, &orders);
+    } else {
+        let gradients = [
+            (Gradients::Volume, "Volume", "Differences around the sample: the same from every side"),
+            (
+                Gradients::Sheets,
+                "Sheets",
+                "Differences between neighbouring sheets and pixels: as splatting has them",
+            ),
+        ];
+        choice(
+            ui,
+            "Normals",
+            "Where the surface's direction comes from",
+            &mut sampling.gradients,
+            &gradients,
+        );
+    }
 }

@@ -46,7 +46,7 @@ pub(in crate::app) struct Facts {
 
 impl Viewport {
     /// Figures about the renderer.
-    pub(in crate::app) fn facts(&self, settings: &Settings) -> Facts {
+    pub(in crate::app) fn facts(&self, looks: &(Settings, Option<Settings>)) -> Facts {
         let info = &self.context.info;
         let figures = self.painter.figures();
         Facts {
@@ -58,16 +58,21 @@ impl Viewport {
             light_rebuilds: figures.light_rebuilds,
             cached_light_volumes: figures.cached_light_volumes,
             gpu_mebibytes: figures.gpu_bytes as f64 / f64::from(1 << 20),
-            doing: self.doing(settings, figures.refining),
+            doing: self.doing(looks, figures.refining),
         }
     }
 
-    fn doing(&self, settings: &Settings, refining: Option<(Stage, f32)>) -> Doing {
+    /// How often light volumes were filled.
+    pub(in crate::app) fn light_rebuilds(&self) -> u64 {
+        self.painter.figures().light_rebuilds
+    }
+
+    fn doing(&self, looks: &(Settings, Option<Settings>), refining: Option<(Stage, f32)>) -> Doing {
         if self.lost {
             Doing::Lost
         } else if self.volume.is_none() {
             Doing::Nothing
-        } else if self.is_idle(settings) {
+        } else if self.is_idle(looks) {
             Doing::FullQuality
         } else if self.failed.is_some() && self.failed == self.wanted {
             Doing::Failed

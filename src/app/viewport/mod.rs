@@ -4,6 +4,7 @@
 //! renders them, on a device of its own. Whatever the GPU does, the window stays alive: long work
 //! never stands in the queue of its frames, and a driver that loses the one device keeps the other.
 
+mod difference;
 mod facts;
 mod painter;
 
@@ -31,8 +32,32 @@ struct Wanted {
     /// Counts the volumes, so that a picture of an earlier one is not taken for one of this.
     generation: u64,
     settings: Settings,
+    /// To be compared with.
+    other: Option<Settings>,
     /// Window pixels.
     size: [u32; 2],
+}
+
+/// What can be drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pictures {
+    /// The picture, or the left one of two.
+    pub left: Option<egui::TextureId>,
+    /// Where two looks are compared.
+    pub other: Option<Other>,
+}
+
+/// The second picture of a comparison.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Other {
+    /// The right one.
+    pub right: egui::TextureId,
+    /// What lies between them, amplified.
+    pub difference: egui::TextureId,
+    /// Root mean square of the difference, in steps of 8 bits.
+    pub rmse: f64,
+    /// The largest.
+    pub largest: u8,
 }
 
 /// What the painter works on.
@@ -52,7 +77,10 @@ pub(super) struct Viewport {
     wanted: Option<Wanted>,
     generation: u64,
     volume: Option<(Arc<Volume>, Arc<Bricks>)>,
-    texture: Option<Texture>,
+    /// The picture, or of a comparison left, right and their difference.
+    textures: [Option<Texture>; 3],
+    /// RMSE and largest difference.
+    differs: Option<(f64, u8)>,
     shown: Option<(Wanted, Look)>,
     /// What could not be rendered; the painter does not try it again.
     failed: Option<Wanted>,
@@ -78,7 +106,8 @@ impl Viewport {
             wanted: None,
             generation: 0,
             volume: None,
-            texture: None,
+            textures: [None, None, None],
+            differs: None,
             shown: None,
             failed: None,
             lost: false,
@@ -103,9 +132,20 @@ impl Viewport {
         self.volume.clone()
     }
 
-    /// The picture to be drawn.
-    pub(super) fn texture(&self) -> Option<egui::TextureId> {
-        self.texture.as_ref().map(|texture| texture.0.id())
+    /// The picture to be drawn, or several.
+    pub(super) fn pictures(&self) -> Pictures {
+        let [left, right, difference] =
+            self.textures.each_ref().map(|texture| texture.as_ref().map(|texture| texture.0.id()));
+        let other = right.zip(difference).zip(self.differs);
+        Pictures {
+            left,
+            other: other.map(|((right, difference), (rmse, largest))| Other {
+                right,
+                difference,
+                rmse,
+                largest,
+            }),
+        }
     }
 
     /// Whether the device is gone and nothing will be rendered any more.
@@ -113,11 +153,13 @@ impl Viewport {
         self.lost
     }
 
-    /// Whether the full-quality picture of exactly these settings is on screen.
-    pub(super) fn is_idle(&self, settings: &Settings) -> bool {
+    /// Whether the full-quality picture of exactly these settings is on screen, and that of those they
+    /// are compared with.
+    pub(super) fn is_idle(&self, (settings, other): &(Settings, Option<Settings>)) -> bool {
         self.shown.as_ref().is_some_and(|(shown, look)| {
             *look == Look::FULL
                 && shown.settings == *settings
+                && shown.other == *other
                 && self.wanted.as_ref().is_some_and(|wanted| wanted == shown)
         })
     }
@@ -127,18 +169,17 @@ impl Viewport {
     /// is quick enough is seen in the frame of the movement itself.
     pub(super) fn advance(
         &mut self,
-        settings: &Settings,
+        (settings, other): (Settings, Option<Settings>),
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<(), GpuError> {
         if self.lost || self.volume.is_none() {
             return Ok(());
         }
-        let is_same = |wanted: &Wanted| wanted.size == size && wanted.settings == *settings;
+        let wanted = Wanted { generation: self.generation, settings, other, size };
         let mut patience = Duration::ZERO;
-        if !self.wanted.as_ref().is_some_and(is_same) {
+        if self.wanted.as_ref() != Some(&wanted) {
             patience = if self.context.is_software() { SOFTWARE_PATIENCE } else { PATIENCE };
-            let wanted = Wanted { generation: self.generation, settings: settings.clone(), size };
             self.painter.set_wanted(wanted.clone());
             self.wanted = Some(wanted);
         }
@@ -157,18 +198,26 @@ impl Viewport {
 
     /// Puts a finished picture on screen.
     fn show(&mut self, frame: Frame, ctx: &egui::Context) {
-        let Frame { wanted, look, image } = frame;
+        let Frame { wanted, look, image, other } = frame;
         // Pixel for pixel where there are enough of them.
         let exact = image.size == wanted.size.map(|n| n as usize);
         let options = if exact { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
-        self.place(image, options, ctx);
+        self.place(0, image, options, ctx);
+        match other {
+            Some((right, difference)) => {
+                self.differs = Some((difference.rmse, difference.largest));
+                self.place(1, right, options, ctx);
+                self.place(2, difference.image, options, ctx);
+            }
+            None => self.differs = None,
+        }
         self.shown = Some((wanted, look));
     }
 
-    fn place(&mut self, image: ColorImage, options: TextureOptions, ctx: &egui::Context) {
-        match &mut self.texture {
+    fn place(&mut self, at: usize, image: ColorImage, options: TextureOptions, ctx: &egui::Context) {
+        match &mut self.textures[at] {
             Some(texture) => texture.0.set(image, options),
-            None => self.texture = Some(Texture(ctx.load_texture("picture", image, options))),
+            empty => *empty = Some(Texture(ctx.load_texture("picture", image, options))),
         }
     }
 }

@@ -11,10 +11,12 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
+use super::difference::Difference;
 use super::{Scene, Wanted};
 use crate::app::refine::{Look, Missing, Refine};
 use crate::app::work::panic_message;
 use crate::gpu::{Context, GpuError, Job, RenderOptions, Stage};
+use crate::model::Settings;
 use crate::plan::{LightKey, Request, plan};
 
 /// A change this long ago is over: time to refine.
@@ -29,6 +31,8 @@ pub(super) struct Frame {
     pub(super) wanted: Wanted,
     pub(super) look: Look,
     pub(super) image: ColorImage,
+    /// The picture that it is compared with, and what lies between them.
+    pub(super) other: Option<(ColorImage, Difference)>,
 }
 
 /// Figures about the work, for display.
@@ -150,6 +154,8 @@ struct Running {
     look: Look,
     /// Started while the user moved something.
     preview: bool,
+    /// Of a comparison: the left picture, when this is the job for the right one.
+    left: Option<ColorImage>,
     total_ms: f64,
     light_ms: f64,
     rebuilds_before: u64,
@@ -271,22 +277,34 @@ impl Easel {
         }
         let (Some(preview), Some(wanted)) = (self.due(), self.wanted.clone()) else { return Ok(()) };
         let Some(scene) = &mut self.scene else { return Ok(()) };
-        let request = |look: Look| Request {
-            volume: scene.volume.content_id(),
-            settings: look.settings(&wanted.settings),
-            size: look.size(wanted.size),
-            coarse: look.coarse,
-        };
-        let full = request(Look::FULL);
+        let full = request_of(scene, &wanted.settings, &wanted, Look::FULL);
         let missing = missing(self.settled.as_ref(), &full);
-        let look = if preview { self.refine.preview(wanted.size, missing) } else { Look::FULL };
+        // Two pictures have twice the pixels.
+        let [width, height] = wanted.size;
+        let pixels = if wanted.other.is_some() { [2 * width, height] } else { wanted.size };
+        let look = if preview { self.refine.preview(pixels, missing) } else { Look::FULL };
+        self.begin(wanted, look, preview, None)
+    }
+
+    /// Begins a picture; of a comparison the right one when the left one is there.
+    fn begin(
+        &mut self,
+        wanted: Wanted,
+        look: Look,
+        preview: bool,
+        left: Option<ColorImage>,
+    ) -> Result<(), GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let settings = wanted.other.as_ref().filter(|_| left.is_some()).unwrap_or(&wanted.settings);
+        let request = request_of(scene, settings, &wanted, look);
         let options =
             RenderOptions { light_parts: self.refine.light_parts(look), ..RenderOptions::default() };
         let rebuilds_before = scene.renderer.light_rebuilds().iter().sum();
-        let mut job = scene.renderer.begin(&scene.volume, &scene.bricks, request(look), &options)?;
+        let mut job = scene.renderer.begin(&scene.volume, &scene.bricks, request, &options)?;
         job.set_band(self.refine.rows(look, job.request().size));
+        let (total_ms, light_ms) = (0.0, 0.0);
         self.running =
-            Some(Running { job, wanted, look, preview, total_ms: 0.0, light_ms: 0.0, rebuilds_before });
+            Some(Running { job, wanted, look, preview, left, total_ms, light_ms, rebuilds_before });
         Ok(())
     }
 
@@ -318,7 +336,7 @@ impl Easel {
     /// Hands over the complete picture and learns from what it took.
     fn finish(&mut self) -> Result<(), GpuError> {
         let (Some(scene), Some(running)) = (&self.scene, self.running.take()) else { return Ok(()) };
-        let Running { job, wanted, look, preview: _, total_ms, light_ms, rebuilds_before } = running;
+        let Running { job, wanted, look, preview, left, total_ms, light_ms, rebuilds_before } = running;
         let start = Instant::now();
         let size = job.request().size;
         let bytes = scene.renderer.read_shown()?;
@@ -331,9 +349,19 @@ impl Easel {
         if light_rebuilds > rebuilds_before {
             self.refine.learn_build(look, light_ms / (light_rebuilds - rebuilds_before) as f64);
         }
-        if look == Look::FULL {
+        if left.is_none() && look == Look::FULL {
             self.settled = Some(job.request().clone());
         }
+        if left.is_none() && wanted.other.is_some() {
+            return self.begin(wanted, look, preview, Some(image));
+        }
+        let (image, other) = match left {
+            None => (image, None),
+            Some(left) => {
+                let difference = Difference::of(&left, &image);
+                (left, Some((image, difference)))
+            }
+        };
         self.shown = Some((wanted.clone(), look));
         let mut desk = self.shared.desk();
         let kind = if look == Look::FULL { &mut desk.figures.full_ms } else { &mut desk.figures.preview_ms };
@@ -342,7 +370,7 @@ impl Easel {
         desk.figures.cached_light_volumes = scene.renderer.cached_light_volumes();
         desk.figures.gpu_bytes = scene.renderer.gpu_bytes();
         desk.figures.refining = None;
-        desk.frame = Some(Frame { wanted, look, image });
+        desk.frame = Some(Frame { wanted, look, image, other });
         drop(desk);
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
@@ -353,6 +381,16 @@ impl Easel {
         self.shared.desk().error = Some(err);
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
+    }
+}
+
+/// What to ask of the renderer for one of the wanted looks.
+fn request_of(scene: &Scene, settings: &Settings, wanted: &Wanted, look: Look) -> Request {
+    Request {
+        volume: scene.volume.content_id(),
+        settings: look.settings(settings),
+        size: look.size(wanted.size),
+        coarse: look.coarse,
     }
 }
 

@@ -1,0 +1,124 @@
+//! Two looks in one picture: left and right of a divider, or what lies between them.
+
+use eframe::egui::{
+    self, Align2, Color32, CursorIcon, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2,
+};
+use eframe::egui::{WidgetInfo, pos2, vec2};
+
+use super::theme;
+use super::viewport::Pictures;
+use crate::model::{Settings, Variant};
+
+/// Points to either side of the divider in which it can be taken.
+const GRIP: f32 = 7.0;
+/// Radius of its handle.
+const HANDLE: f32 = 9.0;
+
+/// What is compared, and how.
+#[derive(Debug, Clone)]
+pub(super) struct Compare {
+    /// Whether two looks are shown.
+    pub on: bool,
+    /// Left of the divider …
+    pub left: Variant,
+    /// … and right of it.
+    pub right: Variant,
+    /// Show what lies between them instead.
+    pub difference: bool,
+    /// The divider's place, as a share of the width.
+    divider: f32,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        Self { on: false, left: Variant::Current, right: Variant::Off, difference: false, divider: 0.5 }
+    }
+}
+
+impl Compare {
+    /// What is to be rendered: the look, or the left and the right one.
+    pub(super) fn looks(&self, settings: &Settings) -> (Settings, Option<Settings>) {
+        if self.on {
+            (self.left.of(settings), Some(self.right.of(settings)))
+        } else {
+            (settings.clone(), None)
+        }
+    }
+
+    /// The picture, or two of them.
+    pub(super) fn shapes(&self, rect: Rect, pictures: &Pictures) -> Shape {
+        let whole = Rect::from_min_size(Pos2::ZERO, Vec2::splat(1.0));
+        let part = |texture, part: Rect| {
+            let place = |uv: Pos2| rect.min + uv.to_vec2() * rect.size();
+            let mut mesh = Mesh::with_texture(texture);
+            mesh.add_rect_with_uv(Rect::from_min_max(place(part.min), place(part.max)), part, Color32::WHITE);
+            Shape::from(mesh)
+        };
+        let Some(left) = pictures.left else { return Shape::Noop };
+        let Some(other) = pictures.other.filter(|_| self.on) else { return part(left, whole) };
+        if self.difference {
+            return part(other.difference, whole);
+        }
+        let (left_part, right_part) = whole.split_left_right_at_fraction(self.divider);
+        Shape::Vec(vec![part(left, left_part), part(other.right, right_part)])
+    }
+
+    /// The divider and what is known of the difference, over the picture.
+    pub(super) fn ui(&mut self, ui: &mut Ui, rect: Rect, pictures: &Pictures) {
+        if !self.on || rect.width() < 4.0 * GRIP {
+            return;
+        }
+        if !self.difference {
+            self.divide(ui, rect);
+        }
+        let label = |at: Pos2, align: Align2, text: &str| chip(ui, at, align, text);
+        let top = rect.top() + 8.0;
+        if self.difference {
+            let text = format!("{} − {}, eight times", self.left.label(), self.right.label());
+            label(pos2(rect.center().x, top), Align2::CENTER_TOP, &text);
+        } else {
+            label(pos2(rect.left() + 8.0, top), Align2::LEFT_TOP, self.left.label());
+            label(pos2(rect.right() - 8.0, top), Align2::RIGHT_TOP, self.right.label());
+        }
+        if let Some(other) = pictures.other {
+            let text = format!("RMSE {:.2} of 255, largest {}", other.rmse, other.largest);
+            label(pos2(rect.center().x, rect.bottom() - 8.0), Align2::CENTER_BOTTOM, &text);
+        }
+    }
+
+    /// The line that can be dragged.
+    fn divide(&mut self, ui: &mut Ui, rect: Rect) {
+        let x = rect.left() + self.divider * rect.width();
+        let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
+        let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Splitter, true, "Divider"));
+        if let Some(pointer) = response.interact_pointer_pos() {
+            self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+        }
+        let active = response.hovered() || response.dragged();
+        let ink = if active { theme::ACCENT } else { theme::GUIDE };
+        let x = rect.left() + self.divider * rect.width();
+        let painter = ui.painter();
+        painter.vline(x, rect.y_range(), Stroke::new(3.0, theme::OUTLINE));
+        painter.vline(x, rect.y_range(), Stroke::new(1.0, ink));
+        let middle = pos2(x, rect.center().y);
+        painter.circle(middle, HANDLE, theme::OUTLINE, Stroke::new(1.5, ink));
+        for side in [-1.0, 1.0] {
+            let tip = middle + vec2(side * 6.0, 0.0);
+            let base = middle + vec2(side * 2.5, 0.0);
+            let head = vec![tip, base + vec2(0.0, 3.5), base - vec2(0.0, 3.5)];
+            painter.add(Shape::convex_polygon(head, ink, Stroke::NONE));
+        }
+        response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+    }
+}
+
+/// A few words on a dark ground.
+fn chip(ui: &Ui, at: Pos2, align: Align2, text: &str) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter();
+    let galley = painter.layout_no_wrap(text.to_owned(), font, theme::EYE_CURVE);
+    let rect = align.anchor_size(at, galley.size() + vec2(12.0, 6.0));
+    painter.rect_filled(rect, 4.0, theme::OUTLINE.gamma_multiply(0.8));
+    painter.galley(rect.min + vec2(6.0, 3.0), galley, theme::EYE_CURVE);
+}
