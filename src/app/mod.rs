@@ -317,6 +317,7 @@ impl App {
                     volume: self.volume.as_ref(),
                     selected_light: &mut self.selected_light,
                     compare: &mut self.compare,
+                    dark_share: facts.dark_share,
                     balancing: self.balance.is_some(),
                     commands,
                 },

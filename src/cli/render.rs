@@ -7,7 +7,9 @@ use serde_json::json;
 
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line, warn_line};
-use crate::gpu::{Context, RenderOptions, Renderer, export_png, mean_luminance, write_atomically};
+use crate::gpu::{
+    Context, RenderOptions, Renderer, dark_share, export_png, mean_luminance, write_atomically,
+};
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -77,6 +79,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             "splats": renderer.splats()?,
             "peak_gpu_bytes": took.peak_gpu_bytes,
             "mean_luminance": mean_luminance(&picture),
+            "dark_share": dark_share(&picture.light),
             "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(&settings).unwrap_or_default())),
             "settings": settings,
         });

@@ -63,11 +63,42 @@ pub fn balance(
     Ok(if factor.is_finite() { factor.clamp(BALANCE_RANGE.0, BALANCE_RANGE.1) } else { 1.0 })
 }
 
+/// Linear luminance below which material counts as nearly black: a tenth of the way to white as
+/// displayed (25 of 255), where details can no longer be told apart beside bright parts.
+const NEARLY_BLACK: f64 = 0.01;
+
 /// Mean linear luminance (Rec. 709) of the pixels that show something; 0 when none does.
 pub fn mean_luminance(picture: &Picture) -> f64 {
-    let seen = picture.light.iter().filter(|texel| texel[3] > SEEN);
-    let (sum, count) = seen.fold((0.0, 0usize), |(sum, count), [r, g, b, _]| {
-        (sum + 0.2126 * f64::from(*r) + 0.7152 * f64::from(*g) + 0.0722 * f64::from(*b), count + 1)
-    });
+    mean(&picture.light, luminance)
+}
+
+/// The share of the pixels that show something in which that is nearly black; 0 when none shows any.
+pub fn dark_share(light: &[[f32; 4]]) -> f64 {
+    mean(light, |texel| f64::from(u8::from(luminance(texel) < NEARLY_BLACK * f64::from(texel[3]))))
+}
+
+/// The mean over the pixels that show something.
+fn mean(light: &[[f32; 4]], value: impl Fn(&[f32; 4]) -> f64) -> f64 {
+    let seen = light.iter().filter(|texel| texel[3] > SEEN);
+    let (sum, count) = seen.fold((0.0, 0usize), |(sum, count), texel| (sum + value(texel), count + 1));
     if count == 0 { 0.0 } else { sum / count as f64 }
+}
+
+fn luminance([r, g, b, _]: &[f32; 4]) -> f64 {
+    0.2126 * f64::from(*r) + 0.7152 * f64::from(*g) + 0.0722 * f64::from(*b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn darkness_is_the_share_of_what_is_seen() {
+        let texel = |grey: f32, alpha: f32| [grey * alpha, grey * alpha, grey * alpha, alpha];
+        // Lit, dark, dark but hardly there, lit haze, nothing.
+        let light = [texel(0.5, 1.0), texel(0.009, 0.9), texel(0.0, 0.4), texel(0.3, 0.6), [0.0; 4]];
+        assert!((dark_share(&light) - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!(dark_share(&[[0.0; 4]; 3]), 0.0);
+        assert_eq!(dark_share(&[texel(0.011, 0.9)]), 0.0, "it is the material's darkness, not its thinness");
+    }
 }

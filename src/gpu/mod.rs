@@ -39,7 +39,7 @@ mod warm_up;
 pub use context::{Context, device_descriptor};
 pub use error::GpuError;
 pub use export::{ExportError, export_png, write_atomically};
-pub use first_look::{balance, first_look, mean_luminance};
+pub use first_look::{balance, dark_share, first_look, mean_luminance};
 pub use job::{Job, Stage};
 pub use picture::{Picture, RenderOptions, Report};
 pub use readback::Attenuation;

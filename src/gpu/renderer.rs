@@ -124,6 +124,19 @@ impl Renderer {
         read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.shown)
     }
 
+    /// Reads back the light of what is shown now: linear, premultiplied RGBA before tone mapping, row by
+    /// row from the top left.
+    ///
+    /// # Errors
+    /// As [`Self::read_shown`].
+    pub fn read_light(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        let none = || GpuError::Refused("no picture was drawn".to_owned());
+        let bytes = read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.picture)?;
+        let float = |word: &[u8]| f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+        let texels = bytes.chunks_exact(16);
+        Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect())
+    }
+
     /// Makes a picture and waits for it.
     ///
     /// # Errors
@@ -138,13 +151,7 @@ impl Renderer {
     ) -> Result<Picture, GpuError> {
         self.draw(volume, bricks, settings, size, options)?;
         let start = Instant::now();
-        let target =
-            self.front.as_ref().ok_or_else(|| GpuError::Refused("no picture was drawn".to_owned()))?;
-        let bytes = read_texture(&self.context, &target.picture)?;
-        let float = |word: &[u8]| f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
-        let light =
-            bytes.chunks_exact(16).map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect();
-        let shown = self.read_shown()?;
+        let (light, shown) = (self.read_light()?, self.read_shown()?);
         self.report.readback_ms += milliseconds(start);
         Ok(Picture { size, light, shown })
     }

@@ -30,6 +30,8 @@ pub(super) struct Panels<'a> {
     pub selected_light: &'a mut usize,
     /// Two looks in one picture.
     pub compare: &'a mut Compare,
+    /// Share of what is seen that is nearly black.
+    pub dark_share: Option<f64>,
     /// A balance is being measured.
     pub balancing: bool,
     /// What the user asks for.

@@ -3,9 +3,13 @@
 use eframe::egui::{self, Ui};
 
 use super::super::commands::Command;
+use super::super::theme;
 use super::controls::{Number, advanced, choice, row, switch};
 use super::{Panels, sampling};
 use crate::model::{Deposit, Resolution, ShadowAlgorithm};
+
+/// From this share of black the meter warns: a third of the picture tells nothing any more.
+const MUCH_DARKNESS: f64 = 0.3;
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -34,6 +38,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     ui.add_enabled_ui(on, |ui| {
         live(ui, panels);
         balance(ui, panels);
+        darkness(ui, panels.dark_share);
         opacity(ui, panels);
         let resolutions = [
             (Resolution::Full, "Full", "One light voxel per voxel"),
@@ -98,6 +103,22 @@ fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {
         if panels.balancing {
             ui.spinner();
         }
+    });
+}
+
+/// How much of the picture is lost in the dark.
+fn darkness(ui: &mut Ui, share: Option<f64>) {
+    let tip = "Share of what is seen that is nearly black. Light opacity below 1 lets light pass thin parts, a \
+               narrow Gaussian or a light bias frees surfaces from their own shadow, an ambient offset lifts all";
+    row(ui, "Nearly black", tip, |ui| {
+        let Some(share) = share else {
+            return ui.weak("–");
+        };
+        let ink = if share > MUCH_DARKNESS { theme::ACCENT } else { theme::HISTOGRAM };
+        let bar = egui::ProgressBar::new(share as f32).fill(ink).desired_width(ui.available_width() - 12.0);
+        let text = format!("{:.0} %", share * 100.0);
+        let bar = ui.add(bar.desired_height(12.0).text(egui::RichText::new(text).small()));
+        bar.on_hover_text(tip)
     });
 }
 

@@ -38,6 +38,8 @@ pub(in crate::app) struct Facts {
     pub light_rebuilds: u64,
     /// Light volumes that are kept.
     pub cached_light_volumes: usize,
+    /// Share of what the last full-quality picture shows that is nearly black.
+    pub dark_share: Option<f64>,
     /// Mebibytes of textures.
     pub gpu_mebibytes: f64,
     /// What is going on.
@@ -57,6 +59,7 @@ impl Viewport {
             preview_ms: figures.preview_ms,
             light_rebuilds: figures.light_rebuilds,
             cached_light_volumes: figures.cached_light_volumes,
+            dark_share: figures.dark_share,
             gpu_mebibytes: figures.gpu_bytes as f64 / f64::from(1 << 20),
             doing: self.doing(looks, figures.refining),
         }

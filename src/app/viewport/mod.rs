@@ -5,6 +5,7 @@
 //! never stands in the queue of its frames, and a driver that loses the one device keeps the other.
 
 mod difference;
+mod easel;
 mod facts;
 mod painter;
 
