@@ -35,7 +35,7 @@ struct Backprojection {
 @group(0) @binding(2) var ring: texture_3d<f32>;
 // Clamps across a sheet, repeats from sheet to sheet.
 @group(0) @binding(3) var ring_sampler: sampler;
-@group(0) @binding(4) var attenuation: texture_storage_3d<STORAGE_FORMAT, write>;
+@group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
 // The first sheet that touches a voxel alone decides (the paper's mode without weight volume).
 override FIRST_TOUCH: bool = false;

@@ -25,7 +25,7 @@ struct Raycast {
 // Distance in bricks to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 @group(0) @binding(3) var<storage, read> bricks: array<u32>;
-@group(0) @binding(4) var attenuation: texture_storage_3d<STORAGE_FORMAT, write>;
+@group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
 fn light_extinction(density: f32) -> f32 {
     return classify(density).a;

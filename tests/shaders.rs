@@ -21,7 +21,8 @@ fn entry_shaders() -> Vec<&'static str> {
 
 /// A shader with its imports.
 fn joined(name: &str) -> String {
-    ShaderLibrary::source(name, TextureFormat::R16Float).expect("the shader and its imports are there")
+    ShaderLibrary::source(name, TextureFormat::R16Float, TextureFormat::R16Float)
+        .expect("the shader and its imports are there")
 }
 
 /// Parses and validates; no capability beyond what every adapter has is allowed.
@@ -55,7 +56,7 @@ fn every_shader_is_valid_for_both_storage_formats() {
     let mut failures = String::new();
     for name in entry_shaders() {
         for format in FORMATS {
-            let outcome = ShaderLibrary::source(name, format)
+            let outcome = ShaderLibrary::source(name, format, format)
                 .map_err(|err| err.to_string())
                 .and_then(|source| check(&source));
             if let Err(err) = outcome {
@@ -70,7 +71,7 @@ fn every_shader_is_valid_for_both_storage_formats() {
 #[test]
 fn storage_formats_reach_the_shader() {
     for (format, wgsl) in [(TextureFormat::R16Float, "r16float"), (TextureFormat::R32Float, "r32float")] {
-        let source = ShaderLibrary::source("light_march.wgsl", format).expect("the shader is there");
+        let source = ShaderLibrary::source("light_march.wgsl", format, format).expect("the shader is there");
         assert!(source.contains(&format!("texture_storage_3d<{wgsl}, write>")), "{format:?}");
         assert!(!source.contains("STORAGE_FORMAT"), "{format:?}");
     }
@@ -115,7 +116,7 @@ fn every_shader_file_is_embedded_and_used() {
 
 #[test]
 fn imports_of_missing_files_are_errors() {
-    let err = ShaderLibrary::source("common/missing.wgsl", TextureFormat::R16Float)
+    let err = ShaderLibrary::source("common/missing.wgsl", TextureFormat::R16Float, TextureFormat::R16Float)
         .expect_err("there is no such file");
     assert!(err.to_string().contains("common/missing.wgsl"), "{err}");
     for (name, text) in SHADERS {

@@ -20,6 +20,8 @@ pub struct Context {
     pub info: wgpu::AdapterInfo,
     /// Format of attenuation volumes, sheets and pyramid: 16-bit floats where they can be stored.
     pub storage_format: wgpu::TextureFormat,
+    /// Whether light volumes can have one byte per voxel.
+    pub byte_volumes: bool,
     /// Whether 16-bit normalised textures are available for density.
     pub unorm16: bool,
     /// The first complaint that nobody caught, kept until it is taken.
@@ -97,6 +99,7 @@ impl Context {
                 ),
                 help: ADAPTER_HELP,
             })?;
+        let byte_volumes = usable(wgpu::TextureFormat::R8Unorm);
         let complaint = Arc::new(Mutex::new(None));
         let keep = |complaint: &Arc<Mutex<Option<GpuError>>>, err: GpuError| {
             log::error!("{err}");
@@ -120,7 +123,7 @@ impl Context {
         });
         let unorm16 = features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
         let (adapter, info) = (adapter.clone(), adapter.get_info());
-        Ok(Self { adapter, device, queue, info, storage_format, unorm16, complaint })
+        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaint })
     }
 
     /// The same device with 32-bit sheets, pyramid and light volumes, where it can filter them: for

@@ -106,7 +106,11 @@ pub(super) fn backproject(
         && (view.kernel_edge / view.frame.slab - 1.0).abs() < 1e-9
         && shadows.quadrature == Quadrature::One
         && shadows.kernel != Kernel::Prefiltered;
-    let pipeline = shaders.pipeline("light_backproject.wgsl", &constants(shadows, !four_taps))?;
+    let pipeline = shaders.pipeline_into(
+        "light_backproject.wgsl",
+        &constants(shadows, !four_taps),
+        light.texture.format(),
+    )?;
     let [x, y, z] = rows(&light_from_index(&volume.scene, view));
     let uniform = uniforms::Backprojection {
         frame: uniforms::SheetFrame::new(&view.frame),

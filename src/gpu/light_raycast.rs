@@ -35,7 +35,11 @@ pub(super) fn raycast(
         return Ok(());
     }
     let Gpu { context, shaders, volume, nothing: _ } = gpu;
-    let pipeline = shaders.pipeline("light_raycast.wgsl", &constants(&settings.shadows))?;
+    let pipeline = shaders.pipeline_into(
+        "light_raycast.wgsl",
+        &constants(&settings.shadows),
+        target.texture.format(),
+    )?;
     let uniform = uniforms::Raycast {
         light: pack_light(light, Some(target), true, settings),
         space: uniforms::Space::new(&volume.scene),

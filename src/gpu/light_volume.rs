@@ -2,6 +2,7 @@
 
 use super::volume::{GpuVolume, brick_dims, texture_3d};
 use super::{Context, GpuError};
+use crate::model::Precision;
 use crate::plan::{BrickSet, LightKey, LightView};
 
 /// One light's attenuation volume, complete or being filled.
@@ -38,10 +39,15 @@ impl LightVolume {
     ) -> Result<Self, GpuError> {
         let divisor = key.resolution().divisor();
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
+        let format = match key.precision() {
+            // An adapter that cannot store bytes keeps what it can.
+            Precision::Byte if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
+            Precision::Byte | Precision::Half => context.storage_format,
+        };
         let texture = context.texture(&texture_3d(
             "LightVolume::attenuation",
             dims,
-            context.storage_format,
+            format,
             wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::STORAGE_BINDING
                 | wgpu::TextureUsages::COPY_SRC

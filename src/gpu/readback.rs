@@ -91,6 +91,7 @@ pub(super) fn read_floats(context: &Context, texture: &wgpu::Texture) -> Result<
         wgpu::TextureFormat::R16Float => {
             bytes.chunks_exact(2).map(|pair| half::f16::from_le_bytes([pair[0], pair[1]]).to_f32()).collect()
         }
+        wgpu::TextureFormat::R8Unorm => bytes.into_iter().map(|byte| f32::from(byte) / 255.0).collect(),
         _ => bytes
             .chunks_exact(4)
             .map(|word| f32::from_le_bytes([word[0], word[1], word[2], word[3]]))

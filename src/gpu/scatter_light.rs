@@ -150,7 +150,7 @@ impl LightScatter {
             return Ok(());
         }
         let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline("scatter_normalise.wgsl", &[])?;
+        let pipeline = shaders.pipeline_into("scatter_normalise.wgsl", &[], target.texture.format())?;
         let list = listed_bricks::upload(context, bricks);
         let mut uniform = self.scatterer.uniform(0, 1.0);
         uniform.count = bricks.len() as u32;

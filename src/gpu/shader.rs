@@ -60,18 +60,24 @@ impl ShaderLibrary {
         Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }
     }
 
-    /// A shader with everything that it imports, for storage textures of `format`.
+    /// A shader with everything that it imports, for storage textures of `format`, and light volumes of
+    /// `attenuation`.
     ///
     /// # Errors
     /// When a file is not there.
-    pub fn source(name: &str, format: wgpu::TextureFormat) -> Result<String, GpuError> {
+    pub fn source(
+        name: &str,
+        format: wgpu::TextureFormat,
+        attenuation: wgpu::TextureFormat,
+    ) -> Result<String, GpuError> {
         let mut joined = String::new();
         join(name, &mut Vec::new(), &mut joined)?;
-        let format = match format {
+        let wgsl = |format| match format {
             wgpu::TextureFormat::R32Float => "r32float",
+            wgpu::TextureFormat::R8Unorm => "r8unorm",
             _ => "r16float",
         };
-        Ok(joined.replace("STORAGE_FORMAT", format))
+        Ok(joined.replace("STORAGE_FORMAT", wgsl(format)).replace("ATTENUATION_FORMAT", wgsl(attenuation)))
     }
 
     /// The pipeline of a shader with these override constants, made on first use.
@@ -79,13 +85,26 @@ impl ShaderLibrary {
     /// # Errors
     /// When the shader is not there or the driver refuses it.
     pub fn pipeline(&self, name: &str, constants: &[(&str, f64)]) -> Result<wgpu::ComputePipeline, GpuError> {
-        let key = format!("{name} {constants:?}");
+        self.pipeline_into(name, constants, self.context.storage_format)
+    }
+
+    /// The same for a shader that writes a light volume of some format.
+    ///
+    /// # Errors
+    /// As [`Self::pipeline`].
+    pub fn pipeline_into(
+        &self,
+        name: &str,
+        constants: &[(&str, f64)],
+        attenuation: wgpu::TextureFormat,
+    ) -> Result<wgpu::ComputePipeline, GpuError> {
+        let key = format!("{name} {constants:?} {attenuation:?}");
         let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines().get(&key) {
             return Ok(pipeline.clone());
         }
         // Not locked meanwhile: a window must not wait for the variants that another thread makes.
-        let mut source = Self::source(name, self.context.storage_format)?;
+        let mut source = Self::source(name, self.context.storage_format, attenuation)?;
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
         }

@@ -18,8 +18,8 @@ pub use length::Length;
 pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use settings::{
-    Background, Deposit, Engine, Gradients, Kernel, LightingTransfer, Output, Quadrature, Resolution, SCHEMA,
-    Sampling, Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, ToneMap,
+    Background, Deposit, Engine, Gradients, Kernel, LightingTransfer, Output, Precision, Quadrature,
+    Resolution, SCHEMA, Sampling, Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, ToneMap,
 };
 pub use transfer::{
     BakedTransfer, ControlPoint, Interpolation, LUT_SIZE, MAX_OPACITY, TransferFunction, linear_from_srgb,

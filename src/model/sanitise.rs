@@ -92,6 +92,7 @@ impl Settings {
             slab,
             quadrature: _,
             resolution: _,
+            precision: _,
         } = &mut self.shadows;
         number(strength, 0.0, 1.0, default.shadows.strength);
         number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);

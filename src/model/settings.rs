@@ -201,6 +201,16 @@ impl Resolution {
     }
 }
 
+/// How the values of a light volume are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// 16-bit floats: 11 bits at full light, and as many in the dark.
+    Half,
+    /// A byte per voxel, as the paper has it: half the memory, 256 steps.
+    Byte,
+}
+
 /// How light is attenuated on its way, and the cures for darkness (P §4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -230,6 +240,8 @@ pub struct Shadows {
     pub quadrature: Quadrature,
     /// Resolution of the light volumes.
     pub resolution: Resolution,
+    /// How they are stored.
+    pub precision: Precision,
 }
 
 impl Default for Shadows {
@@ -247,6 +259,7 @@ impl Default for Shadows {
             slab: 1.0,
             quadrature: Quadrature::One,
             resolution: Resolution::Full,
+            precision: Precision::Half,
         }
     }
 }

@@ -20,7 +20,8 @@ pub use slice_order::SliceOrder;
 
 use crate::model::{
     Background, Camera, Deposit, Engine, Hood, Interpolation, Kernel, Length, Light, LightKind, Output,
-    Quadrature, Resolution, Sampling, Settings, Shading, ShadowAlgorithm, Shadows, ToneMap, TransferFunction,
+    Precision, Quadrature, Resolution, Sampling, Settings, Shading, ShadowAlgorithm, Shadows, ToneMap,
+    TransferFunction,
 };
 
 /// A picture to be made: of which volume, how, and how large.
@@ -55,6 +56,7 @@ pub struct LightKey {
     slab: f64,
     quadrature: Quadrature,
     resolution: Resolution,
+    precision: Precision,
 }
 
 /// Everything that the opacities met by light are made from: no colours.
@@ -76,6 +78,11 @@ impl LightKey {
     /// Resolution of the light volume.
     pub fn resolution(&self) -> Resolution {
         self.resolution
+    }
+
+    /// How its values are stored.
+    pub fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// The key of light `index` of a request; `None` when it needs no attenuation volume.
@@ -119,6 +126,7 @@ impl LightKey {
             slab,
             quadrature,
             resolution,
+            precision,
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
         let TransferFunction { points, interpolation } =
@@ -147,6 +155,7 @@ impl LightKey {
             slab: *slab,
             quadrature: *quadrature,
             resolution: *resolution,
+            precision: *precision,
         })
     }
 }

@@ -95,6 +95,7 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.slab", "0.5", Effect::AllLights),
         ("shadows.quadrature", "two", Effect::AllLights),
         ("shadows.resolution", "half", Effect::AllLights),
+        ("shadows.precision", "byte", Effect::AllLights),
         ("sampling.kernel", "prefiltered", Effect::Eye),
         ("sampling.slab", "0.5", Effect::Eye),
         ("sampling.quadrature", "two", Effect::Eye),

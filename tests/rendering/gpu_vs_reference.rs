@@ -4,11 +4,11 @@
 use crate::common::{Loaded, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
-use crate::thresholds::{LITERAL, SAME_WEIGHTS};
+use crate::thresholds::{BYTES, LITERAL, SAME_WEIGHTS};
 use chiaroscuro::gpu::{Renderer, stored_density};
 use chiaroscuro::model::{
-    Camera, Deposit, Gradients, Kernel, LightKind, LightLock, Projection, Quadrature, Resolution, Settings,
-    ShadowAlgorithm,
+    Camera, Deposit, Gradients, Kernel, LightKind, LightLock, Precision, Projection, Quadrature, Resolution,
+    Settings, ShadowAlgorithm,
 };
 use chiaroscuro::reference::{Options, Reference, Rounding, Weights};
 use glam::DVec3;
@@ -258,4 +258,27 @@ fn gradients_from_neighbouring_sheets() {
     settings.camera.projection = Projection::Orthographic;
     settings.camera.distance = 1.2;
     check("gradients from sheets, near", DVec3::ONE, &settings);
+}
+
+/// A byte per voxel: 256 steps, which filtering smooths.
+#[test]
+fn light_volumes_of_bytes() {
+    let loaded = Loaded::new(scenes::creature(48, DVec3::ONE));
+    let context = context();
+    assert!(context.byte_volumes, "this adapter cannot show it");
+    let mut renderer = Renderer::new(&context).expect("a renderer");
+    let mut settings = scenes::look();
+    let fine = attenuation(&mut renderer, &loaded, &settings, 0);
+    let picture = render(&mut renderer, &loaded, &settings, SIZE);
+    let before = renderer.gpu_bytes();
+    settings.shadows.precision = Precision::Byte;
+    let bytes = attenuation(&mut renderer, &loaded, &settings, 0);
+    assert!(bytes.iter().all(|value| (value * 255.0).fract().abs() < 1e-3), "steps of 1/255");
+    compare("bytes: light volume", &wide(&bytes), &wide(&fine), BYTES).unwrap_or_else(|err| panic!("{err}"));
+    let found = render(&mut renderer, &loaded, &settings, SIZE);
+    compare("bytes: picture", &flat32(&found.light), &flat32(&picture.light), BYTES)
+        .unwrap_or_else(|err| panic!("{err}"));
+    let voxels = loaded.volume.voxel_count() as u64;
+    let added = renderer.gpu_bytes() - before;
+    assert_eq!(added, voxels, "the earlier volume is kept, and this one has a byte per voxel");
 }

@@ -47,7 +47,8 @@ fn disagree(from: &str, to: &str, fault: Fault) -> bool {
 
 /// A mutation must change the shader that it is meant for: a text that is not there proves nothing.
 fn in_shader(shader: &str, from: &str) {
-    let source = ShaderLibrary::source(shader, wgpu::TextureFormat::R16Float).expect("the shader is there");
+    let source = ShaderLibrary::source(shader, wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float)
+        .expect("the shader is there");
     assert!(source.contains(from), "{shader} no longer contains {from:?}");
 }
 

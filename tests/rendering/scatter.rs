@@ -146,8 +146,12 @@ fn scattering_samples_no_density() {
     for name in ["scatter_splat", "scatter_eye", "scatter_light", "scatter_reverse", "scatter_normalise"] {
         let name = format!("{name}.wgsl");
         assert!(SHADERS.iter().any(|(known, _)| *known == name), "{name}");
-        let source = chiaroscuro::gpu::ShaderLibrary::source(&name, wgpu::TextureFormat::R16Float)
-            .expect("the shader is there");
+        let source = chiaroscuro::gpu::ShaderLibrary::source(
+            &name,
+            wgpu::TextureFormat::R16Float,
+            wgpu::TextureFormat::R16Float,
+        )
+        .expect("the shader is there");
         for texture in ["density_texture", "pyramid_texture"] {
             assert!(!source.contains(texture), "{name} has {texture}");
         }

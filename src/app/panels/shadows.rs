@@ -6,7 +6,7 @@ use super::super::commands::Command;
 use super::super::theme;
 use super::controls::{Number, advanced, choice, row, switch};
 use super::{Panels, sampling};
-use crate::model::{Deposit, Resolution, ShadowAlgorithm};
+use crate::model::{Deposit, Precision, Resolution, ShadowAlgorithm};
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
 const MUCH_DARKNESS: f64 = 0.3;
@@ -57,6 +57,11 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
                 (Deposit::SlabMean, "Mean", "The mean over the slab: hardly depends on its thickness"),
                 (Deposit::Front, "Front", "What arrives in front of the slab: a little brighter; the paper's equation"),
             ];
+            let precisions = [
+                (Precision::Half, "16 bits", "Even in the dark, and under gain"),
+                (Precision::Byte, "8 bits", "Half the memory; shows steps where gain lifts dark parts"),
+            ];
+            choice(ui, "Storage", "How light volumes are kept", &mut shadows.precision, &precisions);
             choice(ui, "Deposit", "Which light a sheet leaves in its voxels", &mut shadows.deposit, &deposits);
         });
     });
