@@ -470,6 +470,8 @@ fn failures_leave_an_older_result_as_it_was() {
         ("render builtin:sphere:16 -o out.png --set shadows.strenght=1", 2),
         ("light-volume builtin:sphere:16 -o out.png --light 99", 2),
         ("light-volume builtin:sphere:16 -o out.png --shadows off", 2),
+        ("light-volume builtin:sphere:16 -o out.png --slice z:16", 2),
+        ("light-volume builtin:sphere:16 -o out.png --slice w:1", 2),
     ] {
         folder.fail(args, code);
         assert_eq!(folder.read("out.png"), older, "`{args}` changed the file that was there");
@@ -772,4 +774,15 @@ fn the_table_of_the_paper_has_its_three_variants() {
     assert!(light(1) > 0.0 && light(2) > 0.0, "{cases:?}");
     let ratio = &result["ratios"]["light_volume_raycast_over_splat"];
     assert_eq!(keys(ratio), ["measured", "paper"]);
+}
+
+#[test]
+fn a_slice_of_light_is_a_picture_in_false_colours() {
+    let folder = Folder::new();
+    folder.succeed("light-volume builtin:sphere:16 -o slice.png --slice y:4 --set shadows.resolution=half");
+    let slice = image::open(folder.path("slice.png")).expect("a picture").to_rgb8();
+    assert_eq!(slice.dimensions(), (8, 8));
+    let luma = |pixel: &image::Rgb<u8>| pixel.0.iter().map(|&c| u32::from(c)).sum::<u32>();
+    let (dark, bright) = slice.pixels().map(luma).fold((u32::MAX, 0), |(a, b), l| (a.min(l), b.max(l)));
+    assert!(dark < 300 && bright > 500, "a ball has a lit and a dark side: {dark} … {bright}");
 }

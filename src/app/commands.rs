@@ -39,6 +39,8 @@ pub(super) enum Command {
     ToggleHandles,
     /// Show two looks in one picture, or one again.
     ToggleCompare,
+    /// Show a slice of a light volume.
+    ShowLightVolume,
     /// Show keys and mouse.
     ShowHelp,
     /// Show what this is and what it runs on.
@@ -84,6 +86,7 @@ impl Command {
             Self::ToggleSide => "Side panel",
             Self::ToggleHandles => "Light handles",
             Self::ToggleCompare => "Compare two looks",
+            Self::ShowLightVolume => "Light volume…",
             Self::ShowHelp => "Keys and mouse",
             Self::ShowAbout => "About Chiaroscuro",
         }

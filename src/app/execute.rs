@@ -10,7 +10,7 @@ use super::history::History;
 use super::loader::{Opened, Outcome};
 use super::volume_facts::VolumeFacts;
 use super::work::Work;
-use super::{App, export, panels};
+use super::{App, export, light_slice, panels};
 use crate::gpu::{GpuError, Renderer};
 use crate::model::auto;
 
@@ -46,6 +46,7 @@ impl App {
             Command::ToggleSide => self.side_open ^= true,
             Command::ToggleHandles => self.handles.hidden ^= true,
             Command::ToggleCompare => self.compare.on ^= true,
+            Command::ShowLightVolume => self.light_slice.open = true,
             Command::ShowHelp => self.help.keys = true,
             Command::ShowAbout => self.help.about = true,
         }
@@ -86,6 +87,17 @@ impl App {
         if let Some((purpose, path)) = self.files.ui(ctx) {
             self.chosen(purpose, &path, ctx);
         }
+        let scene = light_slice::Scene {
+            settings: &self.settings,
+            volume: self.viewport.volume(),
+            context: self.viewport.context(),
+            at_rest: self.is_idle(),
+        };
+        match self.light_slice.ui(ctx, &scene) {
+            Ok(false) => {}
+            Ok(true) => self.files.ask(Purpose::ExportLight, frame, ctx),
+            Err(err) => self.messages.error("the light volume could not be shown", err),
+        }
         match self.export.ui(ctx, self.viewport_size()) {
             None => {}
             Some(export::Request::Choose) => self.files.ask(Purpose::ExportPicture, frame, ctx),
@@ -103,6 +115,13 @@ impl App {
             Purpose::OpenVolume => self.open(&path.display().to_string(), ctx),
             Purpose::ExportPicture => self.export.set_path(path),
             Purpose::SaveSettings => self.save_settings(path),
+            Purpose::ExportLight => {
+                let Some((volume, _)) = self.viewport.volume() else { return };
+                match self.light_slice.export(path, &volume) {
+                    Ok(()) => self.messages.note(format!("Exported {}", path.display())),
+                    Err(err) => self.messages.error("the light volume was not exported", err),
+                }
+            }
             Purpose::LoadSettings => self.load_settings(path),
         }
     }

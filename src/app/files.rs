@@ -19,6 +19,8 @@ pub(super) enum Purpose {
     SaveSettings,
     /// Where to export a picture.
     ExportPicture,
+    /// Where to export a light volume, or a slice of it.
+    ExportLight,
 }
 
 impl Purpose {
@@ -28,6 +30,7 @@ impl Purpose {
             Self::LoadSettings => "Load settings",
             Self::SaveSettings => "Save settings",
             Self::ExportPicture => "Export picture",
+            Self::ExportLight => "Export light volume",
         }
     }
 
@@ -36,6 +39,7 @@ impl Purpose {
             Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
             Self::LoadSettings | Self::SaveSettings => "a .json file",
             Self::ExportPicture => "a .png file",
+            Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
         }
     }
 }
@@ -84,6 +88,10 @@ impl Files {
             }
             Purpose::ExportPicture => {
                 Box::pin(dialog.add_filter("PNG picture", &["png"]).set_file_name("picture.png").save_file())
+            }
+            Purpose::ExportLight => {
+                let dialog = dialog.add_filter("Light volume", &["nrrd"]).add_filter("Slice", &["png"]);
+                Box::pin(dialog.set_file_name("light.nrrd").save_file())
             }
         };
         let task = move || pollster::block_on(pending).map(|file| file.path().to_owned());
@@ -141,6 +149,7 @@ impl Files {
                     Purpose::LoadSettings => "Load",
                     Purpose::SaveSettings => "Save",
                     Purpose::ExportPicture => "Use",
+                    Purpose::ExportLight => "Export",
                 };
                 accepted |= ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
                 cancelled = ui.button("Cancel").clicked();

@@ -108,6 +108,7 @@ fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let room = menu.settings.lights.len() < MAX_LIGHTS;
     item(ui, menu, Command::AddLight, room);
     item(ui, menu, Command::Balance, true);
+    item(ui, menu, Command::ShowLightVolume, true);
     ui.separator();
     for light in &mut menu.settings.lights {
         ui.checkbox(&mut light.on, &light.name);

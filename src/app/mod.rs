@@ -12,6 +12,7 @@ mod files;
 mod help;
 mod history;
 mod light_handles;
+mod light_slice;
 mod loader;
 mod menu;
 mod messages;
@@ -39,6 +40,7 @@ use self::files::Files;
 use self::help::Help;
 use self::history::History;
 use self::light_handles::LightHandles;
+use self::light_slice::LightSlice;
 use self::loader::Loader;
 use self::messages::Messages;
 use self::status_file::StatusFile;
@@ -162,6 +164,7 @@ pub struct App {
     history: History,
     handles: LightHandles,
     compare: Compare,
+    light_slice: LightSlice,
     editor: TransferEditor,
     selected_light: usize,
     side_open: bool,
@@ -209,6 +212,7 @@ impl App {
             history: History::default(),
             handles: LightHandles::default(),
             compare: Compare::default(),
+            light_slice: LightSlice::default(),
             editor: TransferEditor::default(),
             selected_light: 0,
             side_open: true,

@@ -6,8 +6,7 @@ use clap::Args;
 
 use super::scene::SceneArgs;
 use super::{CliError, print_line};
-use crate::data::Volume;
-use crate::gpu::{Attenuation, Context, RenderOptions, Renderer, write_atomically};
+use crate::gpu::{Context, RenderOptions, Renderer, export_slice, light_volume_nrrd, write_atomically};
 use crate::plan::Request;
 
 /// Arguments of `light-volume`.
@@ -15,12 +14,26 @@ use crate::plan::Request;
 pub(super) struct LightVolumeArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// NRRD file to write: float32, 0 (dark) to 1 (fully lit)
-    #[arg(short, long, value_name = "OUT.nrrd")]
+    /// File to write: NRRD (float32, 0 dark to 1 fully lit), or with --slice a PNG in false colours
+    #[arg(short, long, value_name = "OUT.nrrd|OUT.png")]
     output: PathBuf,
+    /// One slice of it, for instance z:40 (counted in voxels of the light volume)
+    #[arg(long, value_name = "AXIS:INDEX", value_parser = parse_slice)]
+    slice: Option<(usize, usize)>,
     /// Which light, counted from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     light: usize,
+}
+
+/// Index axes, as users name them.
+const AXES: [char; 3] = ['x', 'y', 'z'];
+
+/// `z:40`
+fn parse_slice(text: &str) -> Result<(usize, usize), String> {
+    let parsed = text.split_once(':').and_then(|(axis, index)| {
+        Some((AXES.iter().position(|name| axis == name.to_string())?, index.parse().ok()?))
+    });
+    parsed.ok_or_else(|| format!("expected x, y or z and a number, as in z:40, found {text:?}"))
 }
 
 /// Fills and writes one attenuation volume.
@@ -40,52 +53,18 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
             args.light
         ))
     })?;
-    write_atomically(&args.output, &nrrd(&loaded.volume, &attenuation))?;
+    match args.slice {
+        None => write_atomically(&args.output, &light_volume_nrrd(&loaded.volume, &attenuation))?,
+        Some((axis, index)) => {
+            let slice = attenuation.slice(axis, index).ok_or_else(|| {
+                CliError::Usage(format!(
+                    "--slice: there is no slice {index}: the light volume has {} along {} (command line, --slice)",
+                    attenuation.dims[axis], AXES[axis]
+                ))
+            })?;
+            export_slice(&slice, &args.output)?;
+        }
+    }
     print_line(&format!("{}", args.output.display()));
     Ok(())
-}
-
-/// The attenuation volume as an attached NRRD, in the place of the data (right-anterior-superior).
-fn nrrd(volume: &Volume, attenuation: &Attenuation) -> Vec<u8> {
-    let world = volume.world_from_index();
-    let step = attenuation.divisor as f64;
-    let vector = |v: glam::DVec3| format!("({},{},{})", v.x, v.y, v.z);
-    let origin = world.transform_point3(glam::DVec3::splat(step / 2.0 - 0.5));
-    let [nx, ny, nz] = attenuation.dims;
-    let header = format!(
-        "NRRD0005\ncontent: light attenuation\ntype: float\ndimension: 3\nspace: right-anterior-superior\n\
-         sizes: {nx} {ny} {nz}\nspace directions: {} {} {}\nspace origin: {}\n\
-         endian: little\nencoding: raw\n\n",
-        vector(world.matrix3.x_axis * step),
-        vector(world.matrix3.y_axis * step),
-        vector(world.matrix3.z_axis * step),
-        vector(origin),
-    );
-    let mut bytes = header.into_bytes();
-    bytes.extend(attenuation.values.iter().flat_map(|value| value.to_le_bytes()));
-    bytes
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::data::load::{LoadControl, LoadOptions, load};
-    use crate::data::synthetic::builtin;
-
-    #[test]
-    fn the_nrrd_can_be_read_back_in_its_place() {
-        let volume = builtin("box", Some(16)).unwrap();
-        let attenuation =
-            Attenuation { dims: [8; 3], divisor: 2, values: (0..512).map(|i| i as f32 / 512.0).collect() };
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("light.nrrd");
-        std::fs::write(&path, nrrd(&volume, &attenuation)).unwrap();
-        let back = load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap();
-        assert_eq!(back.dims(), [8; 3]);
-        assert_eq!(back.spacing_mm(), volume.spacing_mm() * 2.0);
-        assert!((back.value(1, 0, 0) - 1.0 / 512.0).abs() < 1e-9);
-        // The box around the voxels is the same.
-        let corner = |volume: &Volume| volume.world_from_index().transform_point3(glam::DVec3::splat(-0.5));
-        assert!((corner(&back) - corner(&volume)).length() < 1e-9);
-    }
 }

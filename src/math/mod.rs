@@ -4,7 +4,9 @@
 //! gives it in scene space. All of this is f64; the GPU gets f32 at the very end.
 
 mod bounds;
+mod false_color;
 mod scene;
 
 pub use bounds::Bounds;
+pub use false_color::false_color;
 pub use scene::SceneSpace;
