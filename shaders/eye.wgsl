@@ -5,6 +5,7 @@
 #import "common/table.wgsl"
 #import "common/shadow_ray.wgsl"
 #import "common/shade.wgsl"
+#import "common/gradient.wgsl"
 
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
 // For rays to lights: the lighting transfer function, and the distance in bricks to the nearest that
@@ -36,19 +37,6 @@ fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towar
     let reach = towards.distance - s.bias;
     return shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth)
         * hood_share(light, towards.direction);
-}
-
-// Central differences of the reconstructed density at ± one voxel (of the pyramid's level), per
-// scene unit.
-fn gradient(p: vec3f, level: f32) -> vec3f {
-    let l = select(0.0, level, STRETCH);
-    let h = exp2(l);
-    let difference = vec3f(
-        pyramid(p + vec3f(h, 0.0, 0.0), l) - pyramid(p - vec3f(h, 0.0, 0.0), l),
-        pyramid(p + vec3f(0.0, h, 0.0), l) - pyramid(p - vec3f(0.0, h, 0.0), l),
-        pyramid(p + vec3f(0.0, 0.0, h), l) - pyramid(p - vec3f(0.0, 0.0, h), l),
-    ) / (2.0 * h);
-    return gradient_to_scene(eye.space, difference);
 }
 
 // The sheet's value at a pixel and slab; nothing lies before the first slab or behind the last.
@@ -116,7 +104,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         if (SHEET_GRADIENTS) {
             slope = gradient_between_sheets(vec2f(pixel), f32(k));
         } else {
-            slope = gradient(p, stretch_level(eye.frame, depth));
+            let level = select(0.0, stretch_level(eye.frame, depth), STRETCH);
+            slope = gradient_to_scene(eye.space, index_gradient(p, level));
         }
         let rgb = shade(p, slope, material.rgb);
         let passed = exp(-material.a * eye.frame.slab * ray.obliquity);

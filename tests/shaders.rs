@@ -315,6 +315,8 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 gradient_slabs,
                 dilation,
                 pad0,
+                collapsed_lookup,
+                pad1,
                 lights
             }),
         ),
@@ -345,6 +347,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         ("scatter_footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
+        ("light_collapse.wgsl", layout!(Collapse { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         ("display.wgsl", layout!(Display { top, bottom, transparent, clip, pad0, pad1 })),
         ("prefilter.wgsl", layout!(Slices { first, end, pad0, pad1 })),
         ("downsample.wgsl", layout!(Slices { first, end, pad0, pad1 })),
@@ -538,8 +541,13 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     for text in [format!("brick * {BRICK_EDGE}u + local"), format!("group.x % 2u * {half}u")] {
         assert!(listed.contains(&text), "common/listed_bricks.wgsl must have {text}");
     }
-    let over_bricks =
-        ["light_backproject.wgsl", "light_raycast.wgsl", "scatter_normalise.wgsl", "scatter_splat.wgsl"];
+    let over_bricks = [
+        "light_backproject.wgsl",
+        "light_collapse.wgsl",
+        "light_raycast.wgsl",
+        "scatter_normalise.wgsl",
+        "scatter_splat.wgsl",
+    ];
     for name in over_bricks {
         let text = format!("@workgroup_size({BRICK_EDGE}, {BRICK_EDGE}, {half})");
         assert!(file(name).contains(&text), "{name} must have {text}");
@@ -553,6 +561,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("downsample.wgsl", [8, 4, 4]),
         ("eye.wgsl", [8, 8, 1]),
         ("light_backproject.wgsl", [8, 8, 4]),
+        ("light_collapse.wgsl", [8, 8, 4]),
         ("light_march.wgsl", [8, 8, 1]),
         ("light_raycast.wgsl", [8, 8, 4]),
         ("prefilter.wgsl", [8, 4, 4]),

@@ -26,6 +26,9 @@ struct Eye {
     // Bricks beyond an occupied one that a stretched kernel can see.
     dilation: i32,
     pad0: i32,
+    // Index space to texture coordinates of the volume into which lights have been collapsed.
+    collapsed_lookup: vec3f,
+    pad1: f32,
     lights: array<Light, MAX_LIGHTS>,
 }
 
@@ -45,6 +48,8 @@ struct Eye {
 override LIGHTS: u32 = 1u;
 // How many of them have one, or would have.
 override SHADOWED: u32 = 1u;
+// The diffuse light of those that have one is in the first volume, as colours (P §4).
+override COLLAPSED: bool = false;
 
 // What its light volume says of a light at an index-space point.
 fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> f32 {
@@ -62,20 +67,24 @@ fn add(a: Lit, b: Lit) -> Lit {
     return Lit(a.diffuse + b.diffuse, a.specular + b.specular);
 }
 
-// The light from a sample at p (index space) with a gradient in scene space.
-fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
+// A sample at p (index space) with a gradient in scene space.
+fn surface_at(p: vec3f, slope: vec3f) -> Surface {
     let steepness = length(slope);
     let s = eye.shading;
     let steep2 = steepness * steepness;
     let position = place_of(eye.space, p);
     let away = eye.eye.xyz - position * eye.eye.w;
-    let surface = Surface(
+    return Surface(
         position,
         p,
         -slope / max(steepness, 1e-9),
         steep2 / (steep2 + s.surface_gradient * s.surface_gradient),
         away / max(length(away), 1e-9),
     );
+}
+
+// The light of all lights that material attenuates.
+fn lit_through_material(surface: Surface) -> Lit {
     var lit = Lit(vec3f(0.0), vec3f(0.0));
     if (SHADOWED > 0u) { lit = add(lit, lit_by(0u, attenuation_0, surface)); }
     if (SHADOWED > 1u) { lit = add(lit, lit_by(1u, attenuation_1, surface)); }
@@ -85,6 +94,19 @@ fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
     if (SHADOWED > 5u) { lit = add(lit, lit_by(5u, attenuation_5, surface)); }
     if (SHADOWED > 6u) { lit = add(lit, lit_by(6u, attenuation_6, surface)); }
     if (SHADOWED > 7u) { lit = add(lit, lit_by(7u, attenuation_7, surface)); }
+    return lit;
+}
+
+// The light from a sample at p (index space) with a gradient in scene space.
+fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
+    let s = eye.shading;
+    let surface = surface_at(p, slope);
+    var lit: Lit;
+    if (COLLAPSED) {
+        lit = Lit(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.collapsed_lookup, 0.0).rgb, vec3f(0.0));
+    } else {
+        lit = lit_through_material(surface);
+    }
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
         let light = eye.lights[i];
         lit = add(lit, reflect_light(s, light, surface, to_light(light, surface.position).direction, 1.0));

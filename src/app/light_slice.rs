@@ -12,7 +12,7 @@ use crate::gpu::{
     write_atomically,
 };
 use crate::math::false_color;
-use crate::model::Settings;
+use crate::model::{LightStorage, Settings};
 use crate::plan::{LightKey, Request};
 
 /// Longest edge of the slice on screen, in points.
@@ -135,7 +135,7 @@ impl LightSlice {
         if !is_there(self.light) {
             self.light = (0..scene.settings.lights.len()).find(|&index| is_there(index)).unwrap_or(0);
         }
-        let request = Request {
+        let mut request = Request {
             volume: volume.content_id(),
             settings: scene.settings.clone(),
             size: [16, 16],
@@ -154,6 +154,8 @@ impl LightSlice {
         let light = self.light;
         let task = move || {
             let mut renderer = Renderer::new(&context.sibling()?)?;
+            // Collapsed, it would be gone.
+            request.settings.shadows.storage = LightStorage::PerLight;
             let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
             renderer.draw(&volume, &bricks, &request.settings, request.size, &options)?;
             Ok(renderer.attenuation(&request, light)?.map(|attenuation| (key, attenuation)))

@@ -321,7 +321,7 @@ impl App {
                     volume: self.volume.as_ref(),
                     selected_light: &mut self.selected_light,
                     compare: &mut self.compare,
-                    dark_share: facts.dark_share,
+                    facts: &facts,
                     balancing: self.balance.is_some(),
                     commands,
                 },

@@ -7,6 +7,7 @@ use clap::Args;
 use super::scene::SceneArgs;
 use super::{CliError, print_line};
 use crate::gpu::{Context, RenderOptions, Renderer, export_slice, light_volume_nrrd, write_atomically};
+use crate::model::LightStorage;
 use crate::plan::Request;
 
 /// Arguments of `light-volume`.
@@ -41,7 +42,9 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let loaded = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&Context::headless()?)?;
-    let settings = look.settings(&mut renderer, &loaded)?;
+    let mut settings = look.settings(&mut renderer, &loaded)?;
+    // Collapsed with others, it would be gone.
+    settings.shadows.storage = LightStorage::PerLight;
     let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
     let size = [16, 16];
     renderer.draw(&loaded.volume, &loaded.bricks, &settings, size, &options)?;

@@ -1,6 +1,7 @@
 //! The eye pass: from density and attenuation to linear light.
 
 use super::kernel::{kernel_constants, quadrature_constant};
+use super::light_collapse::CollapsedLight;
 use super::light_volume::LightVolume;
 use super::scatter_eye::scatter_dilation;
 use super::tables::{Tables, dilation, view_entry};
@@ -23,12 +24,14 @@ pub(super) struct EyePass {
 }
 
 impl EyePass {
-    /// Sets up the pass. `lights` gives, for each light of the settings, its attenuation volume.
+    /// Sets up the pass. `lights` gives, for each light of the settings, its attenuation volume, unless
+    /// they are collapsed.
     pub(super) fn new(
         scene: &SceneSpace,
         settings: &Settings,
         size: [u32; 2],
         lights: &[Option<&LightVolume>],
+        collapsed: Option<&CollapsedLight>,
         options: &RenderOptions,
     ) -> Self {
         let frame = eye_frame(&settings.camera, scene, size, settings.sampling.slab);
@@ -38,7 +41,8 @@ impl EyePass {
             .iter()
             .map(|light| light.in_world(&settings.camera))
             .zip(lights.iter().copied().chain(std::iter::repeat(None)))
-            .filter(|(light, _)| light.on)
+            // The diffuse light of those that cast shadows is in one volume.
+            .filter(|(light, _)| light.on && !(collapsed.is_some() && light.needs_volume()))
             .take(MAX_LIGHTS)
             .collect();
         let is_shadowed =
@@ -50,7 +54,10 @@ impl EyePass {
             *slot = pack_light(light, *volume, is_shadowed(light, *volume), settings);
         }
         let stretch = frame.max_stretch_level() > 0.0;
-        let constants = constants(&settings.sampling, &settings.shadows, stretch, (on.len(), shadowed));
+        let mut constants = constants(&settings.sampling, &settings.shadows, stretch, (on.len(), shadowed));
+        if collapsed.is_some() {
+            constants.push(("COLLAPSED", 1.0));
+        }
         let (eye, w) = match settings.camera.projection {
             Projection::Perspective => (settings.camera.eye(), 1.0),
             Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
@@ -69,6 +76,8 @@ impl EyePass {
             gradient_slabs: gradient_slabs as i32,
             dilation: dilation(frame.max_stretch_level()),
             pad0: 0,
+            collapsed_lookup: collapsed.map_or([0.0; 3], |light| light.lookup()),
+            pad1: 0.0,
             lights: packed,
         };
         Self { frame, uniform, constants }
@@ -94,9 +103,18 @@ impl EyePass {
         context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
     }
 
-    /// The variant of `scatter_eye.wgsl`: the number of lights.
+    /// What shaders know about the eye and the lights.
+    pub(super) fn uniform(&self) -> uniforms::Eye {
+        self.uniform
+    }
+
+    /// The variant of shaders that only shade: the number of lights.
     pub(super) fn scatter_constants(&self) -> Vec<(&'static str, f64)> {
-        self.constants.iter().filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED")).copied().collect()
+        self.constants
+            .iter()
+            .filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED" | "COLLAPSED"))
+            .copied()
+            .collect()
     }
 
     /// Bind group 2: the light volumes.
@@ -104,9 +122,9 @@ impl EyePass {
         &self,
         gpu: Gpu<'_>,
         pipeline: &wgpu::ComputePipeline,
-        attenuation: &[&LightVolume],
+        attenuation: &[&wgpu::TextureView],
     ) -> wgpu::BindGroup {
-        let view = |slot: usize| attenuation.get(slot).map_or(gpu.nothing, |light| &light.view);
+        let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.nothing);
         let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
         gpu.context.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("Eye::lights"),
@@ -121,7 +139,7 @@ impl EyePass {
         &self,
         gpu: Gpu<'_>,
         tables: &Tables,
-        attenuation: &[&LightVolume],
+        attenuation: &[&wgpu::TextureView],
         picture: &wgpu::TextureView,
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
@@ -209,7 +227,11 @@ pub(super) fn pack_light(
     }
 }
 
-fn pack_shading(settings: &Settings, scene: &SceneSpace, options: &RenderOptions) -> uniforms::Shading {
+pub(super) fn pack_shading(
+    settings: &Settings,
+    scene: &SceneSpace,
+    options: &RenderOptions,
+) -> uniforms::Shading {
     let (shading, shadows) = (&settings.shading, &settings.shadows);
     let unit = settings.opacity_unit.in_scene(scene).max(1e-9);
     uniforms::Shading {

@@ -77,6 +77,8 @@ pub(super) enum Step {
     /// Index of the light build, and which of its bricks.
     Raycast(usize, Range<usize>),
     Eye(Range<u32>),
+    /// Bricks of the volume into which all lights collapse: which of them.
+    Collapse(Range<usize>),
     /// Slabs of the eye's scattered sheets.
     ScatterEye(Range<u32>),
     Display,
@@ -90,6 +92,7 @@ impl Step {
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) => Stage::LightBackproject,
             Self::Raycast(..) => Stage::LightRaycast,
+            Self::Collapse(_) => Stage::LightBackproject,
             Self::Eye(_) | Self::ScatterEye(_) => Stage::Eye,
             Self::Display => Stage::Display,
         }
@@ -190,6 +193,8 @@ pub struct Job {
     /// Key of every light's volume in this picture; `None` for lights without.
     pub(super) keys: Vec<Option<LightKey>>,
     pub(super) builds: Vec<LightBuild>,
+    /// Whether the picture takes all of it from one volume of colours.
+    pub(super) collapsed: bool,
     /// Set up when the first rows of the picture are drawn.
     pub(super) eye: Option<EyePass>,
     /// Its sheets, if voxels are scattered.

@@ -1,6 +1,7 @@
 //! Which light volumes a picture needs, which of them are there, and which are forgotten.
 
 use super::job::LightBuild;
+use super::light_collapse::{CollapsedKey, CollapsedLight};
 use super::light_volume::{LightVolume, bricks_holding};
 use super::{GpuError, Renderer};
 use crate::plan::{BrickSet, LightKey, Request};
@@ -9,9 +10,65 @@ use crate::plan::{BrickSet, LightKey, Request};
 /// undoing a drag finds them, and two looks that are compared do not push out each other's.
 const SPARE_LIGHT_VOLUMES: usize = 2;
 
+/// The light of a picture: where it is, and what must be done before.
+#[derive(Debug, Default)]
+pub(super) struct PlacedLights {
+    /// Key of every light's volume; `None` for lights without.
+    pub keys: Vec<Option<LightKey>>,
+    /// Volumes to be filled.
+    pub builds: Vec<LightBuild>,
+    /// Whether the picture takes the light of all from one volume of colours.
+    pub collapsed: bool,
+    /// Bricks of that volume, if they must be filled first.
+    pub to_collapse: Option<usize>,
+}
+
 impl Renderer {
+    /// Finds or makes the light of a request: volumes for each light, or one for all.
+    pub(super) fn place_all_light(&mut self, request: &Request) -> Result<PlacedLights, GpuError> {
+        self.collapsed = self.collapsed.take().filter(|collapsed| collapsed.complete);
+        // A preview moves one light: the volumes of the others serve it again and again.
+        if !request.settings.collapses_lights() || request.coarse.is_some() {
+            let (keys, builds) = self.place_lights(request)?;
+            return Ok(PlacedLights { keys, builds, ..PlacedLights::default() });
+        }
+        let Some(volume) = &self.volume else { return Err(GpuError::Refused("no volume".to_owned())) };
+        let all =
+            (0..request.settings.lights.len()).filter_map(|light| LightKey::of(request, light)).collect();
+        let key = CollapsedKey::new(all, &request.settings, &volume.scene, &self.options);
+        let needed = self.needed_bricks(request.settings.shadows.resolution.divisor())?;
+        let usable = |known: &CollapsedLight| known.key == key && needed.is_within(&known.filled);
+        if self.collapsed.as_ref().is_some_and(usable) {
+            return Ok(PlacedLights { collapsed: true, ..PlacedLights::default() });
+        }
+        self.collapsed = None;
+        let (keys, builds) = self.place_lights(request)?;
+        let first = keys.iter().flatten().next();
+        let like = self.lights.iter().find(|light| Some(&light.key) == first);
+        let like = like.ok_or_else(|| GpuError::Refused("no light casts shadows".to_owned()))?;
+        let to_collapse = Some(like.filled.positions().count());
+        self.collapsed = Some(CollapsedLight::new(&self.context, key, like)?);
+        Ok(PlacedLights { keys, builds, collapsed: true, to_collapse })
+    }
+
+    /// Bricks of a light volume in which the picture can look.
+    fn needed_bricks(&self, divisor: usize) -> Result<BrickSet, GpuError> {
+        let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else {
+            return Err(GpuError::Refused("no volume".to_owned()));
+        };
+        if self.options.fill_everything {
+            return Ok(bricks_holding(volume, &BrickSet::full(volume.bricks.dims), divisor));
+        }
+        Ok(bricks_holding(volume, &tables.lit, divisor))
+    }
+
+    /// Forgets the light volumes of a picture, which have been collapsed.
+    pub(super) fn forget_collapsed(&mut self, keys: &[Option<LightKey>]) {
+        self.lights.retain(|light| !keys.iter().flatten().any(|key| *key == light.key));
+    }
+
     /// Finds or makes the light volumes of a request and forgets the oldest of the others.
-    pub(super) fn place_lights(
+    fn place_lights(
         &mut self,
         request: &Request,
     ) -> Result<(Vec<Option<LightKey>>, Vec<LightBuild>), GpuError> {

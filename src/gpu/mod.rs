@@ -16,6 +16,7 @@ mod job;
 mod kernel;
 mod light_backproject;
 mod light_cache;
+mod light_collapse;
 mod light_march;
 mod light_raycast;
 mod light_volume;

@@ -5,6 +5,8 @@ use std::time::Instant;
 
 use super::display::Target;
 use super::job::{Job, Stage, Step};
+use super::light_cache::PlacedLights;
+use super::light_collapse::{self, CollapsedLight};
 use super::light_volume::LightVolume;
 use super::picture::{Picture, RenderOptions, Report};
 use super::readback::{read_texture, read_word};
@@ -26,6 +28,8 @@ pub struct Renderer {
     pub(super) uploaded: bool,
     pub(super) tables: Option<Tables>,
     pub(super) lights: Vec<LightVolume>,
+    /// The diffuse light of all of them in one.
+    pub(super) collapsed: Option<CollapsedLight>,
     /// What is shown, and a spare one to draw into.
     front: Option<Target>,
     pub(super) back: Option<Target>,
@@ -66,6 +70,7 @@ impl Renderer {
             uploaded: false,
             tables: None,
             lights: Vec::new(),
+            collapsed: None,
             front: None,
             back: None,
             voxels: None,
@@ -97,9 +102,15 @@ impl Renderer {
     /// Bytes of our textures on the GPU now.
     pub fn gpu_bytes(&self) -> u64 {
         let targets = self.front.iter().chain(&self.back).map(Target::bytes).sum::<u64>();
-        let lights = self.lights.iter().map(LightVolume::bytes).sum::<u64>();
+        let lights = self.light_bytes();
         let voxels = self.voxels.as_ref().map_or(0, ScatterVoxels::bytes);
         targets + lights + voxels + self.volume.as_ref().map_or(0, GpuVolume::bytes)
+    }
+
+    /// Bytes of light volumes, of which pictures look up those of their lights, or one for all.
+    pub fn light_bytes(&self) -> u64 {
+        let collapsed = self.collapsed.as_ref().map_or(0, CollapsedLight::bytes);
+        collapsed + self.lights.iter().map(LightVolume::bytes).sum::<u64>()
     }
 
     /// How many footprints the last picture has splatted; 0 of one that gathers. Waits for it.
@@ -208,9 +219,15 @@ impl Renderer {
             tables => *tables = Some(Tables::new(&self.context, gpu_volume, &request.settings)?),
         }
         self.report.bricks_ms = milliseconds(start);
-        let (keys, builds) = self.place_lights(&request)?;
+        let PlacedLights { keys, builds, collapsed, to_collapse } = self.place_all_light(&request)?;
         for (at, build) in builds.iter().enumerate() {
             steps.extend(build.steps(at, options.light_parts.max(1)));
+        }
+        if let Some(bricks) = to_collapse {
+            // One step at least, which completes a volume without bricks.
+            let firsts = (0..bricks.max(1)).step_by(light_collapse::BRICKS_PER_STEP);
+            let end = |first: usize| bricks.min(first + light_collapse::BRICKS_PER_STEP);
+            steps.extend(firsts.map(|first| Step::Collapse(first..end(first))));
         }
         if self.back.as_ref().is_none_or(|target| target.size != request.size) {
             self.back = None;
@@ -225,6 +242,7 @@ impl Renderer {
             transparent: options.transparent,
             keys,
             builds,
+            collapsed,
             eye: None,
             scatter: None,
             steps: steps.into(),
@@ -314,6 +332,7 @@ impl Renderer {
             self.uploaded = false;
             self.tables = None;
             self.voxels = None;
+            self.collapsed = None;
             self.lights.clear();
         }
         Ok(())

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use super::eye::EyePass;
-use super::light_volume::LightVolume;
 use super::scatter_footprints::Footprints;
 use super::scatter_splat::{Scatterer, sums, widest_stretch};
 use super::scatter_voxels::ScatterVoxels;
@@ -69,7 +68,7 @@ impl EyeScatter {
         counter: &wgpu::Buffer,
         eye: &EyePass,
         tables: &Tables,
-        attenuation: &[&LightVolume],
+        attenuation: &[&wgpu::TextureView],
         picture: &wgpu::TextureView,
         slabs: Range<u32>,
         encoder: &mut wgpu::CommandEncoder,

@@ -2,7 +2,6 @@
 //! touch a pixel.
 
 use super::eye::EyePass;
-use super::light_volume::LightVolume;
 use super::scatter_splat::Scatterer;
 use super::scatter_voxels::ScatterVoxels;
 use super::uniforms::Phase;
@@ -62,7 +61,7 @@ impl Footprints {
         scatterer: &Scatterer,
         voxels: &ScatterVoxels,
         (counter, eye_uniform, table): (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer),
-        (eye, attenuation): (&EyePass, &[&LightVolume]),
+        (eye, attenuation): (&EyePass, &[&wgpu::TextureView]),
         (rays, clamped): (&wgpu::Buffer, &wgpu::Sampler),
         k: u32,
         encoder: &mut wgpu::CommandEncoder,

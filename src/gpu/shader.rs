@@ -6,9 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 29] = [
+pub const SHADERS: [(&str, &str); 31] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
+    ("common/gradient.wgsl", include_str!("../../shaders/common/gradient.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
     ("common/lights.wgsl", include_str!("../../shaders/common/lights.wgsl")),
     ("common/listed_bricks.wgsl", include_str!("../../shaders/common/listed_bricks.wgsl")),
@@ -26,6 +27,7 @@ pub const SHADERS: [(&str, &str); 29] = [
     ("downsample.wgsl", include_str!("../../shaders/downsample.wgsl")),
     ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
     ("light_backproject.wgsl", include_str!("../../shaders/light_backproject.wgsl")),
+    ("light_collapse.wgsl", include_str!("../../shaders/light_collapse.wgsl")),
     ("light_march.wgsl", include_str!("../../shaders/light_march.wgsl")),
     ("light_raycast.wgsl", include_str!("../../shaders/light_raycast.wgsl")),
     ("prefilter.wgsl", include_str!("../../shaders/prefilter.wgsl")),

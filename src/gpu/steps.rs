@@ -9,6 +9,7 @@ use super::light_backproject::{Schedule, backproject};
 use super::light_march::{Sheets, march};
 use super::light_raycast::raycast;
 use super::light_volume::LightVolume;
+use super::listed_bricks::packed;
 use super::scatter_eye::EyeScatter;
 use super::scatter_light::LightScatter;
 use super::scatter_voxels::ScatterVoxels;
@@ -45,6 +46,7 @@ impl Renderer {
             Step::March(light) => self.encode_march(job, light, encoder),
             Step::Backproject(light) => self.encode_backproject(job, light, encoder),
             Step::Raycast(build, bricks) => self.encode_raycast(job, *build, bricks, encoder),
+            Step::Collapse(bricks) => self.encode_collapse(job, bricks, encoder),
             Step::Eye(_) | Step::ScatterEye(_) => self.encode_eye(job, step, encoder),
             Step::Display => {
                 let target = self.back.as_ref().ok_or_else(out_of_date)?;
@@ -171,6 +173,37 @@ impl Renderer {
         Ok(())
     }
 
+    /// The volume of every light of a job.
+    fn light_volumes(&self, job: &Job) -> Vec<Option<&LightVolume>> {
+        let find =
+            |key: &Option<_>| key.as_ref().and_then(|key| self.lights.iter().find(|light| light.key == *key));
+        job.keys.iter().map(find).collect()
+    }
+
+    fn encode_collapse(
+        &mut self,
+        job: &Job,
+        bricks: &Range<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let found = self.light_volumes(job);
+        let attenuation: Vec<_> = found.iter().flatten().map(|light| &light.view).collect();
+        let (gpu, _) = self.gpu()?;
+        let target = self.collapsed.as_ref().ok_or_else(out_of_date)?;
+        let (settings, size) = (&job.request.settings, job.request.size);
+        let pass = EyePass::new(&gpu.volume.scene, settings, size, &found, None, &self.options);
+        let list: Vec<u32> = target.filled.positions().map(packed).collect();
+        target.fill(gpu, &pass, &attenuation, &list[bricks.clone()], encoder)?;
+        let is_last = bricks.end == list.len();
+        if is_last {
+            if let Some(collapsed) = &mut self.collapsed {
+                collapsed.complete = true;
+            }
+            self.forget_collapsed(&job.keys);
+        }
+        Ok(())
+    }
+
     fn encode_eye(
         &mut self,
         job: &mut Job,
@@ -178,14 +211,14 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let settings = &job.request.settings;
-        let find =
-            |key: &Option<_>| key.as_ref().and_then(|key| self.lights.iter().find(|light| light.key == *key));
-        let found: Vec<Option<&LightVolume>> = job.keys.iter().map(find).collect();
-        let attenuation: Vec<&LightVolume> = found.iter().copied().flatten().collect();
+        let collapsed = self.collapsed.as_ref().filter(|_| job.collapsed);
+        let found = if collapsed.is_some() { Vec::new() } else { self.light_volumes(job) };
+        let mut attenuation: Vec<_> = found.iter().flatten().map(|light| &light.view).collect();
+        attenuation.extend(collapsed.map(|light| &light.view));
         let target = self.back.as_ref().ok_or_else(out_of_date)?;
         let (gpu, tables) = self.gpu()?;
         let eye = job.eye.get_or_insert_with(|| {
-            EyePass::new(&gpu.volume.scene, settings, target.size, &found, &self.options)
+            EyePass::new(&gpu.volume.scene, settings, target.size, &found, collapsed, &self.options)
         });
         let slabs = eye.slab_count();
         let mut peak = 0;

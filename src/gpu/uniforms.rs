@@ -188,6 +188,18 @@ pub struct Raycast {
     pub leaping: u32,
 }
 
+/// `light_collapse.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Collapse {
+    pub dims: [u32; 3],
+    pub bricks: u32,
+    pub voxel_step: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
+}
+
 /// `common/space.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -267,6 +279,8 @@ pub struct Eye {
     pub gradient_slabs: i32,
     pub dilation: i32,
     pub pad0: i32,
+    pub collapsed_lookup: [f32; 3],
+    pub pad1: f32,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 

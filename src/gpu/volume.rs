@@ -163,6 +163,24 @@ impl GpuVolume {
         2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7
     }
 
+    /// Bind group 1 of passes that look at the pyramid alone.
+    pub(super) fn pyramid_bind_group(
+        &self,
+        context: &Context,
+        pipeline: &wgpu::ComputePipeline,
+    ) -> wgpu::BindGroup {
+        let grid = context.buffer("Volume::grid", &[self.grid(0)], wgpu::BufferUsages::UNIFORM);
+        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Volume::pyramid_bind_group"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[
+                entry(0, grid.as_entire_binding()),
+                entry(2, wgpu::BindingResource::TextureView(&self.pyramid_view)),
+                entry(3, wgpu::BindingResource::Sampler(&self.clamped)),
+            ],
+        })
+    }
+
     /// Bind group 1 of the passes that sample density.
     pub(super) fn bind_group(
         &self,

@@ -8,8 +8,10 @@ mod camera;
 mod length;
 mod light;
 mod preset;
+mod sampling;
 mod sanitise;
 mod settings;
+mod shadows;
 mod transfer;
 mod variant;
 
@@ -17,10 +19,9 @@ pub use camera::{Camera, Projection};
 pub use length::Length;
 pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
-pub use settings::{
-    Background, Deposit, Engine, Gradients, Kernel, LightingTransfer, Output, Precision, Quadrature,
-    Resolution, SCHEMA, Sampling, Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, ToneMap,
-};
+pub use sampling::{Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
+pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
+pub use shadows::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm, Shadows};
 pub use transfer::{
     BakedTransfer, ControlPoint, Interpolation, LUT_SIZE, MAX_OPACITY, TransferFunction, linear_from_srgb,
 };

@@ -93,6 +93,7 @@ impl Settings {
             quadrature: _,
             resolution: _,
             precision: _,
+            storage: _,
         } = &mut self.shadows;
         number(strength, 0.0, 1.0, default.shadows.strength);
         number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);

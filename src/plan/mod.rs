@@ -127,6 +127,7 @@ impl LightKey {
             quadrature,
             resolution,
             precision,
+            storage: _,
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
         let TransferFunction { points, interpolation } =

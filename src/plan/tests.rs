@@ -96,6 +96,7 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.quadrature", "two", Effect::AllLights),
         ("shadows.resolution", "half", Effect::AllLights),
         ("shadows.precision", "byte", Effect::AllLights),
+        ("shadows.storage", "collapsed", Effect::Eye),
         ("sampling.kernel", "prefiltered", Effect::Eye),
         ("sampling.slab", "0.5", Effect::Eye),
         ("sampling.quadrature", "two", Effect::Eye),

@@ -6,6 +6,7 @@
 
 mod caching;
 mod closed_form;
+mod collapse;
 mod common;
 mod compare;
 mod gpu_vs_reference;

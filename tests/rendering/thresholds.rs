@@ -96,3 +96,7 @@ pub(crate) const ORDER_OPACITY: f64 = 4e-3;
 /// Light volumes of bytes against 16-bit floats: half a step of 1/255, whose mean square is 1/12 of a
 /// step's, and the floats' own half step.
 pub(crate) const BYTES: Limit = Limit { max: 0.55 / 255.0 + 5e-4, rmse: 0.32 / 255.0 };
+
+/// Collapsed lights against the sum of all, evenly lit: 16-bit colours, and cures for darkness that are
+/// applied before the look-up instead of behind it (the cut at full light is no straight line).
+pub(crate) const COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };

@@ -13,6 +13,7 @@ use eframe::egui;
 
 use super::commands::Command;
 use super::compare::Compare;
+use super::viewport::Facts;
 use super::volume_facts::VolumeFacts;
 use crate::model::Settings;
 
@@ -30,8 +31,8 @@ pub(super) struct Panels<'a> {
     pub selected_light: &'a mut usize,
     /// Two looks in one picture.
     pub compare: &'a mut Compare,
-    /// Share of what is seen that is nearly black.
-    pub dark_share: Option<f64>,
+    /// What is known of the renderer's work.
+    pub facts: &'a Facts,
     /// A balance is being measured.
     pub balancing: bool,
     /// What the user asks for.

@@ -6,7 +6,7 @@ use super::super::commands::Command;
 use super::super::theme;
 use super::controls::{Number, advanced, choice, row, switch};
 use super::{Panels, sampling};
-use crate::model::{Deposit, Precision, Resolution, ShadowAlgorithm};
+use crate::model::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm};
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
 const MUCH_DARKNESS: f64 = 0.3;
@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     ui.add_enabled_ui(on, |ui| {
         live(ui, panels);
         balance(ui, panels);
-        darkness(ui, panels.dark_share);
+        darkness(ui, panels.facts.dark_share);
         opacity(ui, panels);
         let resolutions = [
             (Resolution::Full, "Full", "One light voxel per voxel"),
@@ -48,6 +48,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         let tip = "Resolution of the light volumes; they are refilled when it changes";
         choice(ui, "Resolution", tip, &mut panels.settings.shadows.resolution, &resolutions);
         advanced(ui, "advanced shadows", |ui| {
+            let collapses = panels.settings.collapses_lights();
             let shadows = &mut panels.settings.shadows;
             let tip = "Each voxel takes only the light of the first sheet that touches it: crisper and brighter, \
                        with faint steps";
@@ -61,7 +62,19 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
                 (Precision::Half, "16 bits", "Even in the dark, and under gain"),
                 (Precision::Byte, "8 bits", "Half the memory; shows steps where gain lifts dark parts"),
             ];
-            choice(ui, "Storage", "How light volumes are kept", &mut shadows.precision, &precisions);
+            choice(ui, "Precision", "How light volumes are kept", &mut shadows.precision, &precisions);
+            let storages = [
+                (LightStorage::Auto, "Auto", "One for all from five lights on, where nothing shines"),
+                (LightStorage::PerLight, "Each", "A volume for each light: highlights, and colours that change at once"),
+                (
+                    LightStorage::Collapsed,
+                    "One",
+                    "The diffuse light of all in one volume: quick pictures under many lights, without their highlights",
+                ),
+            ];
+            choice(ui, "Volumes", "A light volume for each light, or one for all", &mut shadows.storage, &storages);
+            let kind = if collapses { "one for all lights" } else { "one for each light" };
+            ui.weak(format!("Light volumes: {:.1} MiB, {kind}", panels.facts.light_mebibytes));
             choice(ui, "Deposit", "Which light a sheet leaves in its voxels", &mut shadows.deposit, &deposits);
         });
     });

@@ -259,6 +259,7 @@ impl Easel {
         *kind = Some(total_ms);
         desk.figures.light_rebuilds = light_rebuilds;
         desk.figures.cached_light_volumes = scene.renderer.cached_light_volumes();
+        desk.figures.light_bytes = scene.renderer.light_bytes();
         desk.figures.gpu_bytes = scene.renderer.gpu_bytes();
         desk.figures.refining = None;
         desk.frame = Some(Frame { wanted, look, image, other });

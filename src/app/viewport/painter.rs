@@ -34,6 +34,7 @@ pub(super) struct Figures {
     pub(super) light_rebuilds: u64,
     pub(super) cached_light_volumes: usize,
     pub(super) gpu_bytes: u64,
+    pub(super) light_bytes: u64,
     /// Share of what the last full-quality picture shows that is nearly black.
     pub(super) dark_share: Option<f64>,
     /// A refinement under way: what is done now, and the share that is done.

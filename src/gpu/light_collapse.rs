@@ -1,0 +1,147 @@
+//! Collapses the light volumes of several lights into one of diffuse light.
+
+use super::eye::{EyePass, pack_light, pack_shading};
+use super::light_volume::LightVolume;
+use super::listed_bricks;
+use super::tables::view_entry;
+use super::uniforms;
+use super::volume::{Gpu, entry, texture_3d};
+use super::{Context, GpuError, RenderOptions};
+use crate::math::SceneSpace;
+use crate::model::Settings;
+use crate::plan::{BrickSet, LightKey};
+
+/// Bricks per submission: 2048 × 512 voxels take a software adapter some 0.1 s.
+pub(super) const BRICKS_PER_STEP: usize = 2048;
+
+/// Everything that a collapsed volume is made from: light volumes, and the bytes of lights and
+/// shading as the shaders know them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CollapsedKey {
+    lights: Vec<LightKey>,
+    shading: Vec<u8>,
+}
+
+impl CollapsedKey {
+    /// The key for the light volumes of some settings.
+    pub(super) fn new(
+        lights: Vec<LightKey>,
+        settings: &Settings,
+        scene: &SceneSpace,
+        options: &RenderOptions,
+    ) -> Self {
+        // What the picture does with the light afterwards does not count.
+        let shading = uniforms::Shading {
+            emission: 0.0,
+            ambient: 0.0,
+            diffuse: 0.0,
+            specular: 0.0,
+            shininess: 0.0,
+            ..pack_shading(settings, scene, options)
+        };
+        let mut bytes = bytemuck::bytes_of(&shading).to_vec();
+        for light in settings.lights.iter().filter(|light| light.needs_volume()) {
+            let packed = pack_light(&light.in_world(&settings.camera), None, true, settings);
+            bytes.extend_from_slice(bytemuck::bytes_of(&packed));
+        }
+        Self { lights, shading: bytes }
+    }
+}
+
+/// The diffuse light of all lights that cast shadows.
+#[derive(Debug)]
+pub(super) struct CollapsedLight {
+    /// What it is made from.
+    pub key: CollapsedKey,
+    dims: [usize; 3],
+    divisor: usize,
+    /// Linear RGB.
+    pub view: wgpu::TextureView,
+    /// Bricks that hold values.
+    pub filled: BrickSet,
+    /// Whether all of them are there.
+    pub complete: bool,
+}
+
+impl CollapsedLight {
+    /// Makes the texture for light volumes like this one; nothing is filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(super) fn new(context: &Context, key: CollapsedKey, like: &LightVolume) -> Result<Self, GpuError> {
+        let texture = context.texture(&texture_3d(
+            "CollapsedLight::texture",
+            like.dims,
+            wgpu::TextureFormat::Rgba16Float,
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        ))?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self {
+            key,
+            dims: like.dims,
+            divisor: like.divisor,
+            view,
+            filled: like.filled.clone(),
+            complete: false,
+        })
+    }
+
+    /// Index space to texture coordinates: (p + ½) × lookup.
+    pub(super) fn lookup(&self) -> [f32; 3] {
+        self.dims.map(|n| 1.0 / (n * self.divisor) as f32)
+    }
+
+    /// Bytes of its texture.
+    pub(super) fn bytes(&self) -> u64 {
+        8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
+    }
+
+    /// Fills the listed bricks from the light volumes that `pass` shades with.
+    pub(super) fn fill(
+        &self,
+        gpu: Gpu<'_>,
+        pass: &EyePass,
+        attenuation: &[&wgpu::TextureView],
+        bricks: &[u32],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if bricks.is_empty() {
+            return Ok(());
+        }
+        let Gpu { context, shaders, volume, .. } = gpu;
+        let pipeline = shaders.pipeline("light_collapse.wgsl", &pass.scatter_constants())?;
+        let eye = context.buffer("Collapse::eye", &[pass.uniform()], wgpu::BufferUsages::UNIFORM);
+        let uniform = uniforms::Collapse {
+            dims: self.dims.map(|n| n as u32),
+            bricks: bricks.len() as u32,
+            voxel_step: self.divisor as f32,
+            pad0: 0.0,
+            pad1: 0.0,
+            pad2: 0.0,
+        };
+        let uniform = context.buffer("Collapse::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
+        let list = listed_bricks::upload(context, bricks);
+        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("Collapse::bind_group"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                entry(0, eye.as_entire_binding()),
+                entry(1, uniform.as_entire_binding()),
+                entry(3, list.as_entire_binding()),
+                view_entry(4, &self.view),
+            ],
+        });
+        let of_volume = volume.pyramid_bind_group(context, &pipeline);
+        let of_lights = pass.light_bind_group(gpu, &pipeline, attenuation);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("Collapse::pass"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &own, &[]);
+        pass.set_bind_group(1, &of_volume, &[]);
+        pass.set_bind_group(2, &of_lights, &[]);
+        listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+        Ok(())
+    }
+}
