@@ -8,7 +8,9 @@ use crate::thresholds::{
     ORDER_FRONT, ORDER_MEAN, RAY_BEER_LAMBERT, ROTATION_RANGE, ROTATION_STEP, SLAB_MEAN_CHANGE, UNITY,
 };
 use chiaroscuro::gpu::{Picture, Renderer, mean_luminance};
-use chiaroscuro::model::{Camera, Deposit, Hood, Length, LightKind, Quadrature, Settings, ShadowAlgorithm};
+use chiaroscuro::model::{
+    Camera, Deposit, Engine, Hood, Length, LightKind, Quadrature, Settings, ShadowAlgorithm,
+};
 use glam::DVec3;
 
 /// Variance of the cubic B-spline, in voxels².
@@ -18,7 +20,7 @@ fn renderer() -> Renderer {
     Renderer::new(&context().with_full_precision()).expect("a renderer")
 }
 
-fn base(per_voxel: f64) -> Settings {
+fn base(engine: Engine, per_voxel: f64) -> Settings {
     let mut settings = Settings {
         transfer: linear_extinction(per_voxel),
         opacity_unit: Length::Voxels(1.0),
@@ -27,7 +29,40 @@ fn base(per_voxel: f64) -> Settings {
         ..Settings::default()
     };
     isotropic(&mut settings);
+    settings.sampling.engine = engine;
     settings
+}
+
+/// Makes a test of each check, for each of the engines.
+macro_rules! with_both_engines {
+    ($($check:ident)+) => {
+        mod gathered {
+            $(#[test]
+            fn $check() {
+                super::$check(chiaroscuro::model::Engine::Gather);
+            })+
+        }
+        mod scattered {
+            $(#[test]
+            fn $check() {
+                super::$check(chiaroscuro::model::Engine::Scatter);
+            })+
+        }
+    };
+}
+
+with_both_engines! {
+    kernels_are_a_partition_of_unity
+    beer_lambert_in_a_homogeneous_block
+    opacity_of_a_chord
+    headlight_gives_one_half
+    shadow_of_a_ball
+    turning_does_not_change_brightness
+    thinner_slabs_converge
+    a_far_point_light_is_parallel
+    a_hood_is_a_cone_with_a_soft_rim
+    oblique_rays_have_longer_paths
+    extremes_stay_finite
 }
 
 /// Mean of the picture's alpha over its middle.
@@ -47,13 +82,12 @@ fn middle_red(picture: &Picture) -> f64 {
 
 /// No. 1: A constant stays constant under the kernel, wherever it is sampled: the ratio of successive
 /// sheets of a light gives the density back.
-#[test]
-fn kernels_are_a_partition_of_unity() {
+fn kernels_are_a_partition_of_unity(engine: Engine) {
     let per_slab = 1.0;
     let n = 32;
     let loaded = Loaded::new(scenes::block(n, |v| v != [0, 0, 0]));
     for light in [[0.31, -0.62, 0.77], [-0.9, 0.2, 0.13]] {
-        let mut settings = base(per_slab);
+        let mut settings = base(engine, per_slab);
         settings.lights[0].position = light;
         // Sheets that deposit what arrives: successive ratios are e^−τ of one slab.
         settings.shadows.deposit = Deposit::Front;
@@ -83,15 +117,14 @@ fn kernels_are_a_partition_of_unity() {
 
 /// No. 2: Light falls off exponentially in homogeneous material, times what the kernel does to an
 /// exponential: e^(μ²σ²/2) from the reverse splat, sinh(μΔs/2)/(μΔs/2) from the slab.
-#[test]
-fn beer_lambert_in_a_homogeneous_block() {
+fn beer_lambert_in_a_homogeneous_block(engine: Engine) {
     let n = 48;
     let face = 8;
     let loaded =
         Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
     for (per_voxel, slab, tolerance) in BEER_LAMBERT {
         for (quadrature, power) in [(Quadrature::One, 1), (Quadrature::Two, 2)] {
-            let mut settings = base(per_voxel);
+            let mut settings = base(engine, per_voxel);
             settings.shadows.slab = slab;
             settings.shadows.quadrature = quadrature;
             let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
@@ -124,7 +157,7 @@ fn beer_lambert_by_rays() {
     let loaded =
         Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
     for per_voxel in [0.1, 0.3, 0.7] {
-        let mut settings = base(per_voxel);
+        let mut settings = base(Engine::Gather, per_voxel);
         settings.shadows.algorithm = ShadowAlgorithm::Raycast;
         settings.shadows.slab = 0.5;
         let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
@@ -142,8 +175,7 @@ fn beer_lambert_by_rays() {
 }
 
 /// No. 3: What a ray sees of homogeneous material is 1 − e^(−μ·chord), whatever the slab.
-#[test]
-fn opacity_of_a_chord() {
+fn opacity_of_a_chord(engine: Engine) {
     let n = 48;
     let block = Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (12..36).contains(c))));
     let ball = Loaded::new(scenes::ball(n, DVec3::splat(23.5), 14.0));
@@ -152,7 +184,7 @@ fn opacity_of_a_chord() {
         for (slab, quadrature) in
             [(0.25, Quadrature::One), (0.5, Quadrature::One), (1.0, Quadrature::One), (2.0, Quadrature::Two)]
         {
-            let mut settings = base(0.05);
+            let mut settings = base(engine, 0.05);
             settings.sampling.slab = slab;
             settings.sampling.quadrature = quadrature;
             let picture = render(&mut renderer(), loaded, &settings, [96, 96]);
@@ -170,12 +202,12 @@ fn opacity_of_a_chord() {
     }
 }
 
-fn headlight(deposit: Deposit, slab: f64) -> f64 {
+fn headlight(engine: Engine, deposit: Deposit, slab: f64) -> f64 {
     let n = 40;
     let loaded =
         Loaded::new(scenes::block(n, |[x, y, z]| (6..26).contains(&y) && x > 2 && z > 2 && x < 37 && z < 37));
     // From −y, as the eye of `straight(-90, 0)`.
-    let mut settings = base(0.7);
+    let mut settings = base(engine, 0.7);
     settings.lights[0].position = [0.0, -1.0, 0.0];
     settings.shadows.deposit = deposit;
     settings.shadows.slab = slab;
@@ -185,9 +217,8 @@ fn headlight(deposit: Deposit, slab: f64) -> f64 {
 
 /// No. 4: Light from the eye's direction, material that scatters evenly, optically thick:
 /// C = ∫ T·T dτ = ½, whatever the density.
-#[test]
-fn headlight_gives_one_half() {
-    let errors = |deposit| [1.0, 0.5, 0.25].map(|slab| headlight(deposit, slab) - 0.5);
+fn headlight_gives_one_half(engine: Engine) {
+    let errors = |deposit| [1.0, 0.5, 0.25].map(|slab| headlight(engine, deposit, slab) - 0.5);
     let mean = errors(Deposit::SlabMean);
     let front = errors(Deposit::Front);
     println!("headlight: slab mean {mean:.4?}, front {front:.4?}");
@@ -203,14 +234,13 @@ fn headlight_gives_one_half() {
 }
 
 /// No. 5: Behind a ball of radius r the light is e^(−2μ√(r² − b²)) at distance b from its axis.
-#[test]
-fn shadow_of_a_ball() {
+fn shadow_of_a_ball(engine: Engine) {
     let n = 60;
     let radius = 10.0;
     let centre = DVec3::new(29.5, 29.5, 40.0);
     let loaded = Loaded::new(scenes::ball(n, centre, radius));
     let per_voxel = 0.1;
-    let settings = base(per_voxel);
+    let settings = base(engine, per_voxel);
     let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
     let plane = 15;
     let (mut found, mut expected) = (Vec::new(), Vec::new());
@@ -230,10 +260,9 @@ fn shadow_of_a_ball() {
 }
 
 /// No. 7: A ball looks the same from everywhere: no popping while the camera or the light turns.
-#[test]
-fn turning_does_not_change_brightness() {
+fn turning_does_not_change_brightness(engine: Engine) {
     let loaded = Loaded::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
-    let mut settings = base(0.25);
+    let mut settings = base(engine, 0.25);
     settings.shading.ambient = 1.0;
     settings.lights.clear();
     let mut renderer = renderer();
@@ -278,12 +307,11 @@ fn steady(what: &str, means: &[f64]) {
 }
 
 /// No. 8: Thinner light slabs converge: first order with the literal deposit, second with the mean.
-#[test]
-fn thinner_slabs_converge() {
+fn thinner_slabs_converge(engine: Engine) {
     let loaded = Loaded::new(scenes::ball(40, DVec3::splat(19.5), 13.0));
     for (deposit, order) in [(Deposit::Front, ORDER_FRONT), (Deposit::SlabMean, ORDER_MEAN)] {
         let volume = |slab: f64| {
-            let mut settings = base(0.3);
+            let mut settings = base(engine, 0.3);
             // Along the grid: what is left is the slabs' error alone.
             settings.lights[0].position = [0.0, 0.0, 1.0];
             settings.shadows.deposit = deposit;
@@ -299,10 +327,10 @@ fn thinner_slabs_converge() {
 }
 
 /// No. 15: A point light a hundred volumes away is a parallel light.
-#[test]
-fn a_far_point_light_is_parallel() {
+fn a_far_point_light_is_parallel(engine: Engine) {
     let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
     let mut settings = scenes::look();
+    settings.sampling.engine = engine;
     let direction = DVec3::new(0.5, -0.6, 0.8).normalize_or_zero();
     let mut volume = |kind| {
         settings.lights = vec![scenes::light(kind, (direction * 200.0).into())];
@@ -314,13 +342,12 @@ fn a_far_point_light_is_parallel() {
 }
 
 /// No. 15: A hood lets nothing out beyond its rim, everything within, and fades smoothly between.
-#[test]
-fn a_hood_is_a_cone_with_a_soft_rim() {
+fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
     let n = 40;
     // One voxel, that the volume is not empty; the light passes the rest unhindered.
     let loaded = Loaded::new(scenes::block(n, |voxel| voxel == [0; 3]));
     for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast] {
-        let mut settings = base(1.0);
+        let mut settings = base(engine, 1.0);
         settings.shadows.algorithm = algorithm;
         settings.lights = vec![scenes::light(LightKind::Perspective, [0.0, 0.0, 4.0])];
         settings.lights[0].hood = Hood { on: true, half_angle_deg: 11.0, rim_deg: 4.0 };
@@ -350,13 +377,12 @@ fn a_hood_is_a_cone_with_a_soft_rim() {
 }
 
 /// No. 18: Path lengths are those of the oblique rays: a point light at 1.5 N, and a perspective eye.
-#[test]
-fn oblique_rays_have_longer_paths() {
+fn oblique_rays_have_longer_paths(engine: Engine) {
     let n = 48;
     let (low, high) = (8, 40);
     let loaded = Loaded::new(scenes::block(n, |v| v.iter().all(|c| (low..high).contains(c))));
     let per_voxel = 0.02;
-    let mut settings = base(per_voxel);
+    let mut settings = base(engine, per_voxel);
     settings.shadows.slab = 0.5;
     // 1.5 N above the middle is 3 scene units: in index space 72 voxels from the centre.
     settings.lights = vec![scenes::light(LightKind::Perspective, [0.0, 0.0, 3.0])];
@@ -400,8 +426,7 @@ fn oblique_rays_have_longer_paths() {
 }
 
 /// No. 17: Noise, emptiness and solidity give numbers, and nothing is exactly the background.
-#[test]
-fn extremes_stay_finite() {
+fn extremes_stay_finite(engine: Engine) {
     let noise: Vec<u8> = (0..32usize.pow(3)).map(|i| (i.wrapping_mul(2654435761) >> 13) as u8).collect();
     let noise = chiaroscuro::data::Volume::with_spacing(
         "noise",
@@ -414,6 +439,7 @@ fn extremes_stay_finite() {
     let mut renderer = renderer();
     for opacity in [0.0, 0.5, 1.0] {
         let mut settings = scenes::look();
+        settings.sampling.engine = engine;
         for point in &mut settings.transfer.points {
             point.opacity = opacity;
         }
