@@ -1,7 +1,7 @@
 //! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Camera, Kernel, LightKind, Settings};
+use chiaroscuro::model::{Camera, Engine, Kernel, LightKind, Settings};
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
@@ -27,8 +27,15 @@ fn look() -> Settings {
 
 /// Light volume and picture of a damaged GPU path against a damaged reference.
 fn disagree(from: &str, to: &str, fault: Fault) -> bool {
-    let settings = look();
-    let loaded = Loaded::new(scenes::creature(40, DVec3::ONE));
+    disagree_with(Engine::Gather, from, to, fault)
+}
+
+/// The same with one of the engines.
+fn disagree_with(engine: Engine, from: &str, to: &str, fault: Fault) -> bool {
+    let mut settings = look();
+    settings.sampling.engine = engine;
+    let n = if engine == Engine::Scatter { 28 } else { 40 };
+    let loaded = Loaded::new(scenes::creature(n, DVec3::ONE));
     let context = context();
     let shaders = ShaderLibrary::with_mutation(&context, from, to);
     let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
@@ -98,6 +105,60 @@ gpu_mutation!(
     "eye.wgsl",
     "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 2.5)",
     "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 3.0)"
+);
+
+#[test]
+fn undamaged_sides_agree_when_scattered() {
+    assert!(!disagree_with(Engine::Scatter, "\u{0}", "", Fault::None));
+}
+
+macro_rules! scatter_mutation {
+    ($name:ident, $shader:literal, $from:literal, $to:literal) => {
+        #[test]
+        fn $name() {
+            in_shader($shader, $from);
+            let noticed = disagree_with(Engine::Scatter, $from, $to, Fault::None);
+            assert!(noticed, "the comparison does not notice");
+        }
+    };
+}
+
+scatter_mutation!(
+    scattered_kernel_five_percent_wider,
+    "scatter_splat.wgsl",
+    "/ (scatter.stretch * scatter.stretch);\n    if (squared >= 4.0) {\n        return 0.0;\n    }\n    let reach",
+    "/ (1.1025 * scatter.stretch * scatter.stretch);\n    if (squared >= 4.0) {\n        return 0.0;\n    }\n    let reach"
+);
+scatter_mutation!(
+    scattered_transmittance_behind_the_slab,
+    "scatter_light.wgsl",
+    "select(t * slab_mean(tau), t, DEPOSIT_FRONT)",
+    "t * exp(-tau)"
+);
+scatter_mutation!(scattered_weights_not_divided, "scatter_normalise.wgsl", "/ f32(max(weight, 1))", "/ UNIT");
+scatter_mutation!(
+    scattered_without_obliquity_for_the_eye,
+    "scatter_eye.wgsl",
+    "met.thickness * ray.obliquity",
+    "met.thickness"
+);
+scatter_mutation!(
+    scattered_without_obliquity_for_the_light,
+    "scatter_light.wgsl",
+    "march.frame.slab * ray.obliquity",
+    "march.frame.slab"
+);
+scatter_mutation!(
+    scattered_voxels_shifted_by_half,
+    "scatter_splat.wgsl",
+    "let centre = vec3f(voxel);",
+    "let centre = vec3f(voxel) + vec3f(0.5, 0.0, 0.0);"
+);
+scatter_mutation!(
+    scattered_gradient_flipped,
+    "scatter_eye.wgsl",
+    "/ (2.0 * f32(slabs) * met.thickness)",
+    "/ (-2.0 * f32(slabs) * met.thickness)"
 );
 
 macro_rules! reference_mutation {
