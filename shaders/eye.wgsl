@@ -2,7 +2,7 @@
 // density, classifies the sum, shades it with the attenuated light and composites.
 //
 // The result is linear, premultiplied and not yet tone-mapped.
-#import "common/table.wgsl"
+#import "common/classify.wgsl"
 #import "common/shadow_ray.wgsl"
 #import "common/shade.wgsl"
 #import "common/gradient.wgsl"
@@ -89,7 +89,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             if (k > inside.y) {
                 break;
             }
-            material = classify(slab_density(eye.frame, ray, f32(k)));
+            material = slab_material(eye.frame, ray, f32(k));
             if (material.a > 0.0) {
                 break;
             }

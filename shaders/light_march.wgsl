@@ -3,7 +3,7 @@
 //
 // Sheets go to a ring of layers; the back-projection reads them before they are overwritten. Only
 // what it will read is stored: the rest of the ring holds leftovers.
-#import "common/table.wgsl"
+#import "common/classify.wgsl"
 #import "common/bricks.wgsl"
 #import "common/march.wgsl"
 
@@ -41,7 +41,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
         if (k >= end) {
             break;
         }
-        let extinction = classify(slab_density(march.frame, ray, f32(k))).a;
+        let extinction = slab_material(march.frame, ray, f32(k)).a;
         let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
         textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(deposited(t, tau)));
         t *= exp(-tau);

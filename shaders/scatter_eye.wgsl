@@ -21,6 +21,21 @@ fn sheet(pixel: vec2i, k: i32) -> f32 {
     return f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(k))])) / UNIT;
 }
 
+// The sheet's material: what its density means, or the sum of what its voxels mean.
+fn material_of(pixel: vec2i, k: i32) -> vec4f {
+    if (SPLAT != SPLAT_MATERIAL) {
+        return classify(sheet(pixel, k));
+    }
+    let at = sheet_index(vec2u(pixel), u32(k));
+    let sums = vec4f(
+        f32(atomicLoad(&sheets[channel_index(at, 1u)])),
+        f32(atomicLoad(&sheets[channel_index(at, 2u)])),
+        f32(atomicLoad(&sheets[channel_index(at, 3u)])),
+        f32(atomicLoad(&sheets[channel_index(at, 4u)])),
+    ) / UNIT;
+    return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit);
+}
+
 fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
     let last = vec2i(eye.frame.size) - 1;
     let low = max(pixel - eye.gradient_pixels, vec2i(0));
@@ -47,7 +62,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ray = ray_of(eye.frame, vec2f(id.xy));
     let met = crossing_of(ray, f32(k));
     let p = ray.origin + ray.direction * met.depth;
-    let material = classify(sheet(pixel, k));
+    let material = material_of(pixel, k);
     let brick = brick_with_material(p);
     // In front of a perspective eye.
     let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
@@ -61,6 +76,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     // Nobody looks back that far again: room for a sheet to come.
     if (k >= eye.gradient_slabs) {
-        atomicStore(&sheets[sheet_index(id.xy, scatter.k - u32(eye.gradient_slabs))], 0);
+        let past = sheet_index(id.xy, scatter.k - u32(eye.gradient_slabs));
+        atomicStore(&sheets[past], 0);
+        for (var channel = 1u; channel < 5u && SPLAT == SPLAT_MATERIAL; channel += 1u) {
+            atomicStore(&sheets[channel_index(past, channel)], 0);
+        }
     }
 }

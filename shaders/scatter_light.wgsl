@@ -13,7 +13,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let pixel = id.y * march.frame.size.x + id.x;
-    let density = f32(atomicExchange(&sheets[sheet_index(id.xy, scatter.k)], 0)) / UNIT;
+    let sum = f32(atomicExchange(&sheets[sheet_index(id.xy, scatter.k)], 0)) / UNIT;
     let t = select(transmittance[pixel], unattenuated(vec2f(id.xy)), scatter.k == 0u);
     let ray = ray_of(march.frame, vec2f(id.xy));
     let brick = brick_with_material(ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k)));
@@ -21,7 +21,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (t > march.dark && brick.x >= 0) {
         // Sums are complete only where something attenuates light at all.
         if (i32(textureLoad(distances, brick, 0).g) <= DILATION) {
-            tau = classify(density).a * march.extinction_scale * march.frame.slab * ray.obliquity;
+            let extinction = select(classify(sum).a, sum * scatter.extinction_unit, SPLAT == SPLAT_EXTINCTION);
+            tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
         }
     }
     textureStore(ring, vec3u(id.xy, scatter.k % march.layers), vec4f(deposited(t, tau)));

@@ -1,5 +1,6 @@
 // Forward splatting (P §3.5, eq. 9): one thread per voxel adds density × footprint to the sheet of a
 // slab. Voxels come from lists; no texture is sampled.
+#import "common/table.wgsl"
 #import "common/footprint.wgsl"
 #import "common/listed_bricks.wgsl"
 #import "common/voxels.wgsl"
@@ -22,20 +23,23 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     let centre = vec3f(voxel);
-    let at = locate(centre);
+    let seen = locate(centre);
     let depth = depth_of(scatter.frame, f32(scatter.k));
     if (ORDER == ORDER_IMAGE_ALIGNED) {
-        if (abs(at.z - depth) >= scatter.half.z + 0.5 * scatter.frame.slab) {
+        if (abs(seen.z - depth) >= scatter.half.z + 0.5 * scatter.frame.slab) {
             return;
         }
     } else if (dot(scatter.axis, centre) != slice_of(f32(scatter.k))) {
         return;
     }
-    let box = pixels_under(at);
+    let box = pixels_under(seen);
     if (any(box.first > box.last)) {
         return;
     }
     atomicAdd(&splats, 1u);
+    let material = classify(density);
+    let extinction = material.a / scatter.extinction_unit;
+    let value = select(density, extinction, SPLAT == SPLAT_EXTINCTION);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {
             let pixel = vec2f(i, j);
@@ -44,11 +48,19 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
             if (ORDER == ORDER_IMAGE_ALIGNED) {
                 weight = footprint(centre, ray, depth, false);
             } else {
-                weight = whole_footprint(centre, ray, stretch_of(at.z)) / crossing_of(ray, 0.0).thickness;
+                weight = whole_footprint(centre, ray, stretch_of(seen.z)) / crossing_of(ray, 0.0).thickness;
             }
-            let share = i32(round(density * weight * UNIT));
+            let at = sheet_index(vec2u(pixel), scatter.k);
+            let share = i32(round(value * weight * UNIT));
             if (share != 0) {
-                atomicAdd(&sheets[sheet_index(vec2u(pixel), scatter.k)], share);
+                atomicAdd(&sheets[at], share);
+            }
+            if (SPLAT == SPLAT_MATERIAL && extinction * weight > 0.0) {
+                let sums = vec4i(round(vec4f(material.rgb, 1.0) * (extinction * weight * UNIT)));
+                atomicAdd(&sheets[channel_index(at, 1u)], sums.r);
+                atomicAdd(&sheets[channel_index(at, 2u)], sums.g);
+                atomicAdd(&sheets[channel_index(at, 3u)], sums.b);
+                atomicAdd(&sheets[channel_index(at, 4u)], sums.a);
             }
         }
     }

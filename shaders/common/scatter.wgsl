@@ -38,7 +38,20 @@ struct Scatter {
     // … along this axis of index space.
     axis: vec3f,
     slice_step: f32,
+    // The largest extinction that there is: sums of extinctions are in units of it.
+    extinction_unit: f32,
+    pad0: f32,
+    pad1: f32,
+    pad2: f32,
 }
+
+// What is splatted: densities; extinctions of voxels, for lights; or densities and, for the eye, colours
+// and extinctions of voxels.
+const SPLAT_DENSITY = 0u;
+const SPLAT_EXTINCTION = 1u;
+const SPLAT_MATERIAL = 2u;
+
+override SPLAT: u32 = 0u;
 
 // What the sheets are, src/model/settings.rs: across the line of sight, slices of voxels, or single
 // footprints.
@@ -57,6 +70,11 @@ const UNIT = 16777216.0;
 
 fn sheet_index(pixel: vec2u, k: u32) -> u32 {
     return (k % scatter.layers * scatter.frame.size.y + pixel.y) * scatter.frame.size.x + pixel.x;
+}
+
+// A further sum of the same pixel: of SPLAT_MATERIAL 1 … 4.
+fn channel_index(first: u32, channel: u32) -> u32 {
+    return first + channel * scatter.layers * scatter.frame.size.x * scatter.frame.size.y;
 }
 
 // The slice of voxels that is sheet k.

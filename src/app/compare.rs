@@ -64,7 +64,7 @@ impl Compare {
     }
 
     /// The divider and what is known of the difference, over the picture.
-    pub(super) fn ui(&mut self, ui: &mut Ui, rect: Rect, pictures: &Pictures) {
+    pub(super) fn ui(&mut self, ui: &Ui, rect: Rect, pictures: &Pictures) {
         if !self.on || rect.width() < 4.0 * GRIP {
             return;
         }
@@ -87,7 +87,7 @@ impl Compare {
     }
 
     /// The line that can be dragged.
-    fn divide(&mut self, ui: &mut Ui, rect: Rect) {
+    fn divide(&mut self, ui: &Ui, rect: Rect) {
         let x = rect.left() + self.divider * rect.width();
         let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
         let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::drag());

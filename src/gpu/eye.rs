@@ -1,8 +1,8 @@
 //! The eye pass: from density and attenuation to linear light.
 
-use super::kernel::{kernel_constants, quadrature_constant};
+use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
 use super::light_collapse::CollapsedLight;
-use super::light_volume::LightVolume;
+use super::light_volume::{LightVolume, light_bind_group};
 use super::scatter_eye::scatter_dilation;
 use super::tables::{Tables, dilation, view_entry};
 use super::uniforms;
@@ -76,7 +76,7 @@ impl EyePass {
             gradient_slabs: gradient_slabs as i32,
             dilation: dilation(frame.max_stretch_level()),
             pad0: 0,
-            collapsed_lookup: collapsed.map_or([0.0; 3], |light| light.lookup()),
+            collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
             pad1: 0.0,
             lights: packed,
         };
@@ -117,22 +117,6 @@ impl EyePass {
             .collect()
     }
 
-    /// Bind group 2: the light volumes.
-    pub(super) fn light_bind_group(
-        &self,
-        gpu: Gpu<'_>,
-        pipeline: &wgpu::ComputePipeline,
-        attenuation: &[&wgpu::TextureView],
-    ) -> wgpu::BindGroup {
-        let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.nothing);
-        let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
-        gpu.context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Eye::lights"),
-            layout: &pipeline.get_bind_group_layout(2),
-            entries: &views,
-        })
-    }
-
     /// Draws some rows of the picture. `attenuation` holds the volumes of the shadowed lights, in
     /// the order in which the settings list those lights.
     pub(super) fn draw(
@@ -161,7 +145,7 @@ impl EyePass {
             ],
         });
         let of_volume = volume.bind_group(context, &pipeline, dilation(self.frame.max_stretch_level()));
-        let of_lights = self.light_bind_group(gpu, &pipeline, attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("Eye::pass"),
             timestamp_writes: None,
@@ -187,6 +171,7 @@ pub(super) fn constants(
     let mut constants = kernel_constants(sampling.kernel).to_vec();
     constants.push(quadrature_constant(sampling.quadrature));
     constants.push(("STRETCH", flag(stretch)));
+    constants.push(classification_constant(sampling.classification));
     constants.push(("SHEET_GRADIENTS", flag(sampling.gradients == Gradients::Sheets)));
     constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
     if shadows.algorithm == ShadowAlgorithm::Direct {

@@ -72,11 +72,11 @@ impl Renderer {
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let table = &tables.lighting.buffer;
-        let lamp = (&lamp, &settings.shadows);
+        let lamp = (&lamp, settings);
         if settings.scatters() {
             let (voxels, counter) = self.scattering()?;
             let target = self.lights.first().ok_or_else(|| GpuError::Refused("no light".to_owned()))?;
-            let of_light = (&settings.shadows, target);
+            let of_light = (settings, target);
             let options = RenderOptions::default();
             let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, &options)?;
             scatter.march(gpu, voxels, counter, table, lamp, geometry, &sheets, 0..count, &mut encoder)?;

@@ -90,9 +90,8 @@ impl Step {
             Self::Upload(_) => Stage::Upload,
             Self::Pyramid(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
-            Self::Backproject(..) => Stage::LightBackproject,
+            Self::Backproject(..) | Self::Collapse(_) => Stage::LightBackproject,
             Self::Raycast(..) => Stage::LightRaycast,
-            Self::Collapse(_) => Stage::LightBackproject,
             Self::Eye(_) | Self::ScatterEye(_) => Stage::Eye,
             Self::Display => Stage::Display,
         }

@@ -1,7 +1,7 @@
-//! How a kernel is said to a shader: override constants of `common/kernel.wgsl` and
-//! `common/volume.wgsl`.
+//! How a kernel is said to a shader: override constants of `common/kernel.wgsl`,
+//! `common/volume.wgsl` and `common/classify.wgsl`.
 
-use crate::model::{Kernel, Quadrature};
+use crate::model::{Classification, Kernel, Quadrature};
 
 /// `KERNEL` and `SIGMA`.
 pub(super) fn kernel_constants(kernel: Kernel) -> [(&'static str, f64); 2] {
@@ -16,4 +16,9 @@ pub(super) fn kernel_constants(kernel: Kernel) -> [(&'static str, f64); 2] {
 /// `QUADRATURE`.
 pub(super) fn quadrature_constant(quadrature: Quadrature) -> (&'static str, f64) {
     ("QUADRATURE", quadrature.offsets().len() as f64)
+}
+
+/// `PRECLASSIFY`.
+pub(super) fn classification_constant(classification: Classification) -> (&'static str, f64) {
+    ("PRECLASSIFY", f64::from(u8::from(classification == Classification::Pre)))
 }

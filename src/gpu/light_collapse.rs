@@ -1,7 +1,7 @@
 //! Collapses the light volumes of several lights into one of diffuse light.
 
 use super::eye::{EyePass, pack_light, pack_shading};
-use super::light_volume::LightVolume;
+use super::light_volume::{LightVolume, light_bind_group};
 use super::listed_bricks;
 use super::tables::view_entry;
 use super::uniforms;
@@ -132,7 +132,7 @@ impl CollapsedLight {
             ],
         });
         let of_volume = volume.pyramid_bind_group(context, &pipeline);
-        let of_lights = pass.light_bind_group(gpu, &pipeline, attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("Collapse::pass"),
             timestamp_writes: None,

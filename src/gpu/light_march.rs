@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use super::kernel::{kernel_constants, quadrature_constant};
+use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
 use super::tables::{dilation, upload_bricks, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry, texture_3d};
 use super::{Context, GpuError, RenderOptions};
-use crate::model::{Deposit, Light, Shadows};
+use crate::model::{Deposit, Light, Settings};
 use crate::plan::{BrickSet, LightView};
 
 /// The sheets of one view of a light: a ring of layers through which the slabs stream.
@@ -107,13 +107,15 @@ impl Sheets {
 }
 
 /// The variant of the shader for a kernel and deposit, for pixels wider than voxels or not.
-pub(super) fn constants(shadows: &Shadows, stretch: bool) -> [(&'static str, f64); 5] {
+pub(super) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f64); 6] {
+    let shadows = &settings.shadows;
     let [kernel, sigma] = kernel_constants(shadows.kernel);
     let flag = |on: bool| f64::from(u8::from(on));
     [
         kernel,
         sigma,
         quadrature_constant(shadows.quadrature),
+        classification_constant(settings.sampling.classification),
         ("STRETCH", flag(stretch)),
         ("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)),
     ]
@@ -153,7 +155,7 @@ pub(super) fn march_uniform(
 pub(super) fn march(
     gpu: Gpu<'_>,
     table: &wgpu::Buffer,
-    (light, shadows): (&Light, &Shadows),
+    (light, settings): (&Light, &Settings),
     view: &LightView,
     sheets: &Sheets,
     (slabs, part): ((u32, u32), (u32, u32)),
@@ -165,7 +167,7 @@ pub(super) fn march(
         return Ok(());
     }
     let stretch = view.frame.max_stretch_level();
-    let pipeline = shaders.pipeline("light_march.wgsl", &constants(shadows, stretch > 0.0))?;
+    let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, stretch > 0.0))?;
     let uniform = march_uniform(light, view, sheets, slabs, rows.clone());
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let own = sheets.march_bind_group(context, &pipeline, &uniform, table);

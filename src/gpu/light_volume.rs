@@ -1,8 +1,9 @@
 //! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
 
-use super::volume::{GpuVolume, brick_dims, texture_3d};
+use super::tables::view_entry;
+use super::volume::{Gpu, GpuVolume, brick_dims, texture_3d};
 use super::{Context, GpuError};
-use crate::model::Precision;
+use crate::model::{MAX_LIGHTS, Precision};
 use crate::plan::{BrickSet, LightKey, LightView};
 
 /// One light's attenuation volume, complete or being filled.
@@ -62,6 +63,21 @@ impl LightVolume {
         let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
         texel * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
+}
+
+/// Bind group 2 of the passes that shade: the light volumes, in the order of their lights.
+pub(super) fn light_bind_group(
+    gpu: Gpu<'_>,
+    pipeline: &wgpu::ComputePipeline,
+    attenuation: &[&wgpu::TextureView],
+) -> wgpu::BindGroup {
+    let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.nothing);
+    let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
+    gpu.context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("LightVolume::bind_group"),
+        layout: &pipeline.get_bind_group_layout(2),
+        entries: &views,
+    })
 }
 
 /// The bricks of a light volume that hold the given bricks of the data.

@@ -3,14 +3,15 @@
 use std::ops::Range;
 
 use super::eye::EyePass;
+use super::light_volume::light_bind_group;
 use super::scatter_footprints::Footprints;
-use super::scatter_splat::{Scatterer, sums, widest_stretch};
+use super::scatter_splat::{Scatterer, Splat, sums, widest_stretch};
 use super::scatter_voxels::ScatterVoxels;
 use super::tables::{Tables, view_entry};
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::data::BRICK_EDGE;
-use crate::model::{Settings, SheetOrder};
+use crate::model::{Classification, Settings, SheetOrder};
 use crate::plan::{BrickSet, SheetFrame};
 
 /// Slabs per submission: each is splatted and composited, which takes a software adapter some
@@ -46,7 +47,12 @@ impl EyeScatter {
         let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().1 } else { 1 };
         let kernel = (sampling.kernel, sampling.quadrature, order);
         let seen = splatted_bricks(frame, &tables.eye.occupied, options);
-        let scatterer = Scatterer::new(gpu, voxels, frame, kernel, &seen, 2 * ahead + 1)?;
+        let what = match sampling.classification {
+            Classification::Post => Splat::Density,
+            Classification::Pre => Splat::Material,
+        };
+        let what = (what, &tables.eye);
+        let scatterer = Scatterer::new(gpu, voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
         let footprints =
             (order == SheetOrder::EveryFootprint).then(|| Footprints::new(gpu, &scatterer)).transpose()?;
         Ok(Self {
@@ -105,7 +111,7 @@ impl EyeScatter {
                 view_entry(2, &tables.eye_distances),
             ],
         });
-        let of_lights = eye.light_bind_group(gpu, &pipeline, attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         for k in slabs {
             // The slabs ahead are there when their neighbours need them.
             let from = if k == 0 { 0 } else { k + self.ahead };

@@ -2,6 +2,7 @@
 //! touch a pixel.
 
 use super::eye::EyePass;
+use super::light_volume::light_bind_group;
 use super::scatter_splat::Scatterer;
 use super::scatter_voxels::ScatterVoxels;
 use super::uniforms::Phase;
@@ -97,7 +98,7 @@ impl Footprints {
                 entry(4, wgpu::BindingResource::Sampler(clamped)),
             ],
         });
-        let of_lights = eye.light_bind_group(gpu, &pipeline, attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("Footprints::draw"),
             timestamp_writes: None,

@@ -7,12 +7,12 @@ use super::light_march::{Sheets, constants as march_constants, march_uniform};
 use super::light_volume::LightVolume;
 use super::listed_bricks;
 use super::scatter_eye::{scatter_dilation, splatted_bricks};
-use super::scatter_splat::{Scatterer, sums};
+use super::scatter_splat::{Scatterer, Splat, sums};
 use super::scatter_voxels::ScatterVoxels;
 use super::tables::{Tables, view_entry};
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
-use crate::model::{Light, Shadows, SheetOrder};
+use crate::model::{Classification, Light, Settings, SheetOrder};
 use crate::plan::LightView;
 
 /// The sheets of one view of a light, and what was splatted back into the grid.
@@ -35,14 +35,20 @@ impl LightScatter {
         voxels: &ScatterVoxels,
         tables: &Tables,
         view: &LightView,
-        (shadows, target): (&Shadows, &LightVolume),
+        (settings, target): (&Settings, &LightVolume),
         options: &RenderOptions,
     ) -> Result<Self, GpuError> {
         let seen = splatted_bricks(&view.frame, &tables.lighting.occupied, options);
+        let shadows = &settings.shadows;
+        let what = match settings.sampling.classification {
+            Classification::Post => Splat::Density,
+            Classification::Pre => Splat::Extinction,
+        };
+        let what = (what, &tables.lighting);
         let kernel = (shadows.kernel, shadows.quadrature, SheetOrder::ImageAligned);
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
         Ok(Self {
-            scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, &seen, 1)?.towards_grid(
+            scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, what, &seen, 1)?.towards_grid(
                 view.first_pixel.as_vec2().into(),
                 view.cube_face,
                 (target.dims, target.divisor),
@@ -62,15 +68,16 @@ impl LightScatter {
         voxels: &ScatterVoxels,
         counter: &wgpu::Buffer,
         table: &wgpu::Buffer,
-        (lamp, shadows): (&Light, &Shadows),
+        (lamp, settings): (&Light, &Settings),
         view: &LightView,
         sheets: &Sheets,
         slabs: Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
-        let [.., deposit] = march_constants(shadows, false);
-        let constants = [deposit, ("DILATION", f64::from(self.dilation))];
+        let [.., deposit] = march_constants(settings, false);
+        let splat = self.scatterer.constants()[4];
+        let constants = [deposit, splat, ("DILATION", f64::from(self.dilation))];
         let pipeline = shaders.pipeline("scatter_light.wgsl", &constants)?;
         let rows = 0..view.frame.size[1];
         let uniform = march_uniform(lamp, view, sheets, (slabs.start, slabs.end), rows);

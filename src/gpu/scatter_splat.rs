@@ -8,6 +8,7 @@ use super::kernel::{kernel_constants, quadrature_constant};
 use super::listed_bricks;
 use super::scatter_voxels::ScatterVoxels;
 use super::sheet_lists::{slab_lists, slice_lists};
+use super::tables::Table;
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
 use super::{Context, GpuError};
@@ -20,7 +21,7 @@ pub(super) struct Scatterer {
     /// Rays and slabs.
     pub frame: SheetFrame,
     /// Kernel and quadrature, as override constants.
-    constants: [(&'static str, f64); 4],
+    constants: [(&'static str, f64); 5],
     /// Slices of voxels, if sheets are along the volume.
     slices: Option<SliceOrder>,
     /// What does not change from slab to slab.
@@ -36,6 +37,37 @@ pub(super) struct Scatterer {
     /// Sums, as integers.
     pub sheets: wgpu::Buffer,
     footprints: wgpu::Buffer,
+    table: wgpu::Buffer,
+}
+
+/// What of a voxel is splatted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Splat {
+    /// Its density.
+    Density,
+    /// Its extinction, for lights.
+    Extinction,
+    /// Its density, colour and extinction, for the eye.
+    Material,
+}
+
+impl Splat {
+    /// `SPLAT` of `common/scatter.wgsl`.
+    fn code(self) -> f64 {
+        match self {
+            Self::Density => 0.0,
+            Self::Extinction => 1.0,
+            Self::Material => 2.0,
+        }
+    }
+
+    /// Sums per pixel.
+    fn sums(self) -> u32 {
+        match self {
+            Self::Density | Self::Extinction => 1,
+            Self::Material => 5,
+        }
+    }
 }
 
 impl Scatterer {
@@ -45,6 +77,7 @@ impl Scatterer {
         voxels: &ScatterVoxels,
         frame: &SheetFrame,
         (kernel, quadrature, order): (Kernel, Quadrature, SheetOrder),
+        (what, table): (Splat, &Table),
         seen: &BrickSet,
         layers: u32,
     ) -> Result<Self, GpuError> {
@@ -76,19 +109,27 @@ impl Scatterer {
             first_slice: slices.map_or(0.0, |slices| slices.first as f32),
             slice_step: slices.map_or(0.0, |slices| slices.step as f32),
             axis,
+            extinction_unit: table.largest_extinction().max(1e-9),
             ..bytemuck::Zeroable::zeroed()
         };
         let [kernel_code, sigma] = kernel_constants(kernel);
         Ok(Self {
             frame: frame.clone(),
-            constants: [kernel_code, sigma, quadrature_constant(quadrature), order_constant(order)],
+            constants: [
+                kernel_code,
+                sigma,
+                quadrature_constant(quadrature),
+                order_constant(order),
+                ("SPLAT", what.code()),
+            ],
             slices,
             uniform,
             half,
             widest,
             bricks: context.buffer("Scatterer::bricks", &listed, wgpu::BufferUsages::STORAGE),
             starts,
-            sheets: sums(context, "Scatterer::sheets", layers, frame.size)?,
+            sheets: sums(context, "Scatterer::sheets", layers * what.sums(), frame.size)?,
+            table: table.buffer.clone(),
             footprints: context.buffer(
                 "Scatterer::footprints",
                 &footprint_table(tabled),
@@ -207,6 +248,7 @@ impl Scatterer {
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[
                 entry(0, self.bricks.as_entire_binding()),
+                entry(1, self.table.as_entire_binding()),
                 entry(6, voxels.buffer.as_entire_binding()),
                 entry(2, counter.as_entire_binding()),
             ],

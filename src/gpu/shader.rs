@@ -6,8 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 31] = [
+pub const SHADERS: [(&str, &str); 32] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
+    ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
     ("common/gradient.wgsl", include_str!("../../shaders/common/gradient.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),

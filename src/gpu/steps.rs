@@ -91,7 +91,7 @@ impl Renderer {
             sheets.dark = self.options.dark;
             peak = self.gpu_bytes() + sheets.bytes();
             if build.scatters {
-                let of_light = (&settings.shadows, light);
+                let of_light = (settings, light);
                 let (voxels, _) = self.scattering()?;
                 let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, &self.options)?;
                 peak += scatter.bytes();
@@ -103,7 +103,7 @@ impl Renderer {
         let Some((sheets, _)) = &build.current else { return Ok(()) };
         let slabs = *begin..(*begin + chunk).min(geometry.frame.slab_count);
         let table = &tables.lighting.buffer;
-        let lamp = (&build.lamp, &settings.shadows);
+        let lamp = (&build.lamp, settings);
         if let Some(scatter) = &build.scatter {
             let (voxels, counter) = self.scattering()?;
             scatter.march(gpu, voxels, counter, table, lamp, geometry, sheets, slabs, encoder)?;
@@ -155,7 +155,7 @@ impl Renderer {
 
     fn encode_raycast(
         &mut self,
-        job: &mut Job,
+        job: &Job,
         build: usize,
         bricks: &Range<usize>,
         encoder: &mut wgpu::CommandEncoder,

@@ -22,6 +22,11 @@ impl Table {
         let occupied = BrickSet::new(volume.bricks.dims, volume.bricks.occupancy(baked.visibility()));
         Self { baked, buffer, occupied }
     }
+
+    /// The largest extinction of any density, per scene unit.
+    pub(super) fn largest_extinction(&self) -> f32 {
+        self.baked.entries.iter().map(|[.., extinction]| *extinction).fold(0.0, f32::max)
+    }
 }
 
 /// Both transfer functions of the settings.

@@ -122,6 +122,10 @@ pub struct Scatter {
     pub first_slice: f32,
     pub axis: [f32; 3],
     pub slice_step: f32,
+    pub extinction_unit: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
 }
 
 /// `scatter_footprints.wgsl`.

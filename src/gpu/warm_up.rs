@@ -2,7 +2,7 @@
 //! a driver tens of milliseconds, which a window must not wait for.
 
 use super::{GpuError, ShaderLibrary, eye, light_backproject, light_march};
-use crate::model::{Kernel, Sampling, Shadows};
+use crate::model::{Kernel, Sampling, Settings, Shadows};
 
 /// Lights of a first look, and how many of them cast shadows.
 const FIRST_LIGHTS: (usize, usize) = (2, 1);
@@ -25,8 +25,9 @@ impl ShaderLibrary {
                     &eye::constants(&sampling, &Shadows::default(), flag, (lights, shadowed)),
                 )?;
                 let shadows = Shadows { kernel, ..Shadows::default() };
-                self.pipeline("light_march.wgsl", &light_march::constants(&shadows, flag))?;
                 self.pipeline("light_backproject.wgsl", &light_backproject::constants(&shadows, flag))?;
+                let settings = Settings { shadows, ..Settings::default() };
+                self.pipeline("light_march.wgsl", &light_march::constants(&settings, flag))?;
             }
         }
         Ok(())

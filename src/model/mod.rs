@@ -19,7 +19,7 @@ pub use camera::{Camera, Projection};
 pub use length::Length;
 pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
-pub use sampling::{Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
+pub use sampling::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
 pub use shadows::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm, Shadows};
 pub use transfer::{

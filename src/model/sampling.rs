@@ -62,6 +62,17 @@ pub enum Engine {
     Scatter,
 }
 
+/// When the transfer function is applied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Classification {
+    /// To the sheets: sharp edges, however coarse the voxels (P §3.5).
+    Post,
+    /// To the voxels, whose colours and extinctions are then spread: as blurred as the kernel. Rays to
+    /// lights classify afterwards all the same.
+    Pre,
+}
+
 /// What the scattering engine composites for the eye.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -88,6 +99,8 @@ pub struct Sampling {
     /// Where normals come from; scattered sheets are all that there is of the volume, so there
     /// they come from sheets.
     pub gradients: Gradients,
+    /// When the transfer functions are applied, to the sheets of lights too.
+    pub classification: Classification,
     /// How sheets are filled, those of lights too.
     pub engine: Engine,
     /// What is composited where voxels are scattered, for comparison with earlier work.
@@ -101,6 +114,7 @@ impl Default for Sampling {
             slab: 1.0,
             quadrature: Quadrature::One,
             gradients: Gradients::Volume,
+            classification: Classification::Post,
             engine: Engine::Gather,
             order: SheetOrder::ImageAligned,
         }

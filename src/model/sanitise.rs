@@ -102,8 +102,15 @@ impl Settings {
         number(balance, 0.01, 100.0, default.shadows.balance);
         number(slab, 0.25, 2.0, default.shadows.slab);
         kernel(light_kernel);
-        let Sampling { kernel: eye_kernel, slab, quadrature: _, gradients: _, engine: _, order: _ } =
-            &mut self.sampling;
+        let Sampling {
+            kernel: eye_kernel,
+            slab,
+            quadrature: _,
+            gradients: _,
+            classification: _,
+            engine: _,
+            order: _,
+        } = &mut self.sampling;
         number(slab, 0.25, 2.0, default.sampling.slab);
         kernel(eye_kernel);
         let Output { background: Background { top, bottom }, tone_map: _ } = &mut self.output;

@@ -19,9 +19,9 @@ pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use slice_order::SliceOrder;
 
 use crate::model::{
-    Background, Camera, Deposit, Engine, Hood, Interpolation, Kernel, Length, Light, LightKind, Output,
-    Precision, Quadrature, Resolution, Sampling, Settings, Shading, ShadowAlgorithm, Shadows, ToneMap,
-    TransferFunction,
+    Background, Camera, Classification, Deposit, Engine, Hood, Interpolation, Kernel, Length, Light,
+    LightKind, Output, Precision, Quadrature, Resolution, Sampling, Settings, Shading, ShadowAlgorithm,
+    Shadows, ToneMap, TransferFunction,
 };
 
 /// A picture to be made: of which volume, how, and how large.
@@ -48,6 +48,7 @@ pub struct LightKey {
     hood_deg: Option<[f64; 2]>,
     density_scale: f64,
     algorithm: ShadowAlgorithm,
+    classification: Classification,
     engine: Engine,
     opacity: OpacityKey,
     first_touch: bool,
@@ -96,7 +97,8 @@ impl LightKey {
             opacity_unit,
             shading: _,
             shadows,
-            sampling: Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine, order: _ },
+            sampling:
+                Sampling { kernel: _, slab: _, quadrature: _, gradients: _, classification, engine, order: _ },
             output: _,
         } = &request.settings;
         let light = lights.get(index)?.in_world(camera);
@@ -143,6 +145,11 @@ impl LightKey {
             density_scale: *density_scale,
             algorithm: *algorithm,
             // Rays need no sheets.
+            classification: if *algorithm == ShadowAlgorithm::Splat {
+                *classification
+            } else {
+                Classification::Post
+            },
             engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
             opacity: OpacityKey {
                 points: points.iter().map(|point| [point.value, point.opacity]).collect(),
@@ -223,7 +230,8 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
     let Background { top: _, bottom: _ } = background;
     let (ToneMap::Neutral | ToneMap::Clip) = tone_map;
     let Camera { .. } = camera;
-    let Sampling { kernel: _, slab: _, quadrature: _, gradients: _, engine: _, order: _ } = sampling;
+    let Sampling { kernel: _, slab: _, quadrature: _, gradients: _, classification: _, engine: _, order: _ } =
+        sampling;
     let Shading { emission: _, ambient: _, diffuse: _, specular: _, shininess: _, surface_gradient: _ } =
         shading;
     let eye = eye_table

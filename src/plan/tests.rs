@@ -101,6 +101,7 @@ fn every_setting_causes_what_the_design_says() {
         ("sampling.slab", "0.5", Effect::Eye),
         ("sampling.quadrature", "two", Effect::Eye),
         ("sampling.gradients", "sheets", Effect::Eye),
+        ("sampling.classification", "pre", Effect::AllLights),
         ("sampling.engine", "scatter", Effect::AllLights),
         ("sampling.order", "volume_aligned", Effect::Eye),
         ("output.background.top", "[0,0,0]", Effect::Display),

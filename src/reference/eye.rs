@@ -39,9 +39,12 @@ impl Reference<'_> {
         for first in (0..frame.slab_count).step_by(SLABS_AT_ONCE as usize) {
             let slabs = first..(first + SLABS_AT_ONCE).min(frame.slab_count);
             let sheets = Sheets::new(&stack, slabs.start.saturating_sub(margin)..slabs.end + margin);
+            let materials: Vec<_> = slabs.clone().into_par_iter().map(|k| stack.materials(k)).collect();
             rays.par_iter_mut().enumerate().for_each(|(pixel, ray)| {
                 for k in slabs.clone() {
-                    let Some(sample) = stack.classify(pixel as u32, k, sheets.at(k)[pixel]) else {
+                    let Some(sample) =
+                        stack.sample(pixel as u32, k, materials[(k - slabs.start) as usize][pixel])
+                    else {
                         continue;
                     };
                     let gradient = if self.settings.has_sheet_gradients() {

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::Reference;
 use super::kernel::Profile;
 use super::pyramid::MAX_LEVEL;
-use crate::model::{Kernel, Quadrature};
+use crate::model::{BakedTransfer, Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
 /// The density at an index-space point, with the kernel stretched 2^`level` times.
@@ -24,18 +24,61 @@ pub(super) fn density(reference: &Reference<'_>, profile: &Profile, point: DVec3
 
 /// Σ ρ(v) · w(v) over the 4³ voxels around a point.
 fn with_kernel(reference: &Reference<'_>, profile: &Profile, point: DVec3) -> f64 {
+    neighbours(reference, profile, point).map(|(weight, density)| weight * density).sum()
+}
+
+/// (w(v), ρ(v)) of the 4³ voxels around a point.
+fn neighbours(
+    reference: &Reference<'_>,
+    profile: &Profile,
+    point: DVec3,
+) -> impl Iterator<Item = (f64, f64)> {
     let cell = point.floor();
     let [wx, wy, wz] = (point - cell).to_array().map(|fraction| profile.four_weights(fraction));
     let [x, y, z] = cell.to_array().map(|c| c as i64 - 1);
-    let mut sum = 0.0;
-    for (dz, wz) in (0..).zip(wz) {
-        for (dy, wy) in (0..).zip(wy) {
-            for (dx, wx) in (0..).zip(wx) {
-                sum += wx * wy * wz * reference.field.at(x + dx, y + dy, z + dz);
-            }
+    (0..64).map(move |at| {
+        let [dx, dy, dz] = [at % 4, at / 4 % 4, at / 16];
+        let density = reference.field.at(x + dx as i64, y + dy as i64, z + dz as i64);
+        (wx[dx] * wy[dy] * wz[dz], density)
+    })
+}
+
+/// What stands at a point when voxels are classified before they are spread: colours times extinction,
+/// and extinction. A stretched kernel finds the blurred volume classified instead.
+pub(super) fn material(
+    reference: &Reference<'_>,
+    profile: &Profile,
+    table: &BakedTransfer,
+    point: DVec3,
+    level: f64,
+) -> [f64; 4] {
+    let level = level.clamp(0.0, MAX_LEVEL as f64);
+    let blurred = |level: f64| associated(table.sample(reference.pyramid.fetch(point, level)));
+    if level >= 1.0 {
+        return blurred(level);
+    }
+    let mut narrow = [0.0; 4];
+    for (weight, density) in neighbours(reference, profile, point) {
+        let voxel = associated(table.sample(density));
+        for (sum, value) in narrow.iter_mut().zip(voxel) {
+            *sum += weight * value;
         }
     }
-    sum
+    if level == 0.0 {
+        return narrow;
+    }
+    let wide = blurred(1.0);
+    std::array::from_fn(|channel| narrow[channel] + (wide[channel] - narrow[channel]) * level)
+}
+
+/// A material with its colours weighted by its extinction.
+pub(super) fn associated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
+    [r * extinction, g * extinction, b * extinction, extinction]
+}
+
+/// The reverse.
+pub(super) fn straight([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
+    if extinction <= 0.0 { [0.0; 4] } else { [r / extinction, g / extinction, b / extinction, extinction] }
 }
 
 /// The mean density over slab `k` along the ray of pixel (i, j): the mean over the quadrature's

@@ -38,9 +38,9 @@ impl Reference<'_> {
         let shadows = &self.settings.shadows;
         let table = self.settings.baked_lighting(self.range, &self.scene);
         let stack = Stack::new(self, &view.frame, (shadows.kernel, shadows.quadrature), table);
-        // Densities do not depend on light, so all slabs at once; then light, slab by slab.
-        let densities: Vec<_> =
-            (0..view.frame.slab_count).into_par_iter().map(|k| stack.densities(k)).collect();
+        // Materials do not depend on light, so all slabs at once; then light, slab by slab.
+        let materials: Vec<_> =
+            (0..view.frame.slab_count).into_par_iter().map(|k| stack.materials(k)).collect();
         // In front of the first slab is what the hood lets through.
         let cone = light.cone();
         let in_front = |pixel: u32| {
@@ -50,14 +50,14 @@ impl Reference<'_> {
         };
         let mut transmittance: Vec<f64> = (0..stack.pixel_count() as u32).map(in_front).collect();
         let deposits = (0..)
-            .zip(&densities)
+            .zip(&materials)
             .map(|(k, sheet)| {
                 transmittance
                     .par_iter_mut()
                     .zip(sheet)
                     .enumerate()
-                    .map(|(pixel, (transmittance, &density))| {
-                        let sample = stack.classify(pixel as u32, k, density);
+                    .map(|(pixel, (transmittance, &material))| {
+                        let sample = stack.sample(pixel as u32, k, material);
                         let optical_depth =
                             sample.map_or(0.0, |sample| sample.optical_depth) * light.density_scale;
                         let deposit = *transmittance * self.deposited_share(optical_depth);

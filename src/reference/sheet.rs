@@ -4,9 +4,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::field::Field;
 use super::kernel::Profile;
 use super::{Fault, Reference, Weights, footprint, gather};
-use crate::model::{BakedTransfer, Kernel, Quadrature};
+use crate::model::{BakedTransfer, Classification, Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
 /// The sheets of one pass.
@@ -64,6 +65,47 @@ impl<'r> Stack<'r> {
         }
     }
 
+    /// Linear colour and extinction of slab `k`, row by row: the densities classified, or the classified
+    /// voxels spread.
+    pub(super) fn materials(&self, k: u32) -> Vec<[f64; 4]> {
+        let Self { reference, frame, profile, quadrature, table } = self;
+        if reference.settings.sampling.classification == Classification::Post {
+            return self.densities(k).into_iter().map(|density| table.sample(density)).collect();
+        }
+        let weights = reference.weights();
+        if weights != Weights::Gather {
+            let points = (weights == Weights::Scatter).then_some(*quadrature);
+            let field = &reference.field;
+            let channels: [Vec<f64>; 4] = std::array::from_fn(|channel| {
+                let of_voxel = |&density: &f64| gather::associated(table.sample(density))[channel];
+                let densities = field.densities.iter().map(of_voxel).collect();
+                let field = Field { dims: field.dims, densities };
+                footprint::splat(&field, frame, profile, points, reference.kernel_shift(), k)
+            });
+            let material = |at: usize| gather::straight(std::array::from_fn(|channel| channels[channel][at]));
+            return (0..self.pixel_count()).map(material).collect();
+        }
+        let width = frame.size[0];
+        let material = |pixel: u32| {
+            let at @ [i, j, k] = [pixel % width, pixel / width, k].map(f64::from);
+            if self.material_at(at).is_none() {
+                return [0.0; 4];
+            }
+            let offsets = quadrature.offsets();
+            let mut sum = [0.0; 4];
+            for offset in offsets {
+                let depth = frame.depth_of(k) + offset * frame.slab;
+                let point = frame.point(i, j, depth) + reference.kernel_shift();
+                let found = gather::material(reference, profile, table, point, frame.stretch_level(depth));
+                for (sum, found) in sum.iter_mut().zip(found) {
+                    *sum += found / offsets.len() as f64;
+                }
+            }
+            gather::straight(sum)
+        };
+        (0..width * frame.size[1]).into_par_iter().map(material).collect()
+    }
+
     /// The middle of slab `k` on a pixel's ray, if there can be material.
     fn material_at(&self, [i, j, k]: [f64; 3]) -> Option<DVec3> {
         let point = self.frame.point(i, j, self.frame.depth_of(k));
@@ -71,14 +113,14 @@ impl<'r> Stack<'r> {
         (point.cmpge(support.min).all() && point.cmple(support.max).all()).then_some(point)
     }
 
-    /// Classifies the density of a slab on a pixel's ray; `None` where nothing is.
+    /// What the material of a slab does on a pixel's ray; `None` where nothing is.
     ///
     /// τ = μ(ρ̄) · Δs / cos θ, so that the opacity is 1 − e^−τ (P eq. 6).
-    pub(super) fn classify(&self, pixel: u32, k: u32, density: f64) -> Option<Sample> {
+    pub(super) fn sample(&self, pixel: u32, k: u32, material: [f64; 4]) -> Option<Sample> {
         let width = self.frame.size[0];
         let at @ [i, j, _] = [pixel % width, pixel / width, k].map(f64::from);
         let point = self.material_at(at)?;
-        let [r, g, b, extinction] = self.table.sample(density);
+        let [r, g, b, extinction] = material;
         let lengthening =
             if self.reference.options.fault == Fault::NoObliquity { 1.0 } else { self.frame.obliquity(i, j) };
         let optical_depth = extinction * self.frame.slab * lengthening;

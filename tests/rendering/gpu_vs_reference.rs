@@ -7,8 +7,8 @@ use crate::scenes;
 use crate::thresholds::{BYTES, LITERAL, SAME_WEIGHTS};
 use chiaroscuro::gpu::{Renderer, stored_density};
 use chiaroscuro::model::{
-    Camera, Deposit, Gradients, Kernel, LightKind, LightLock, Precision, Projection, Quadrature, Resolution,
-    Settings, ShadowAlgorithm,
+    Camera, Classification, Deposit, Gradients, Kernel, LightKind, LightLock, Precision, Projection,
+    Quadrature, Resolution, Settings, ShadowAlgorithm,
 };
 use chiaroscuro::reference::{Options, Reference, Rounding, Weights};
 use glam::DVec3;
@@ -281,4 +281,16 @@ fn light_volumes_of_bytes() {
     let voxels = loaded.volume.voxel_count() as u64;
     let added = renderer.gpu_bytes() - before;
     assert_eq!(added, voxels, "the earlier volume is kept, and this one has a byte per voxel");
+}
+
+/// Voxels are classified before the kernel spreads them, in both passes; far away the blurred volume is.
+#[test]
+fn pre_classified_voxels() {
+    let mut settings = scenes::look();
+    settings.sampling.classification = Classification::Pre;
+    settings.sampling.quadrature = Quadrature::Two;
+    settings.shadows.kernel = Kernel::Gaussian { sigma: 0.5 };
+    check("pre-classified", DVec3::new(1.0, 1.2, 1.7), &settings);
+    settings.camera.distance = 7.0;
+    check("pre-classified, far", DVec3::ONE, &settings);
 }

@@ -9,8 +9,8 @@ use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STE
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{Renderer, SHADERS};
 use chiaroscuro::model::{
-    Camera, ControlPoint, Deposit, Engine, Gradients, Interpolation, Kernel, Length, Light, LightKind,
-    LightLock, Quadrature, Resolution, Settings, SheetOrder, TransferFunction,
+    Camera, Classification, ControlPoint, Deposit, Engine, Gradients, Interpolation, Kernel, Length, Light,
+    LightKind, LightLock, Quadrature, Resolution, Settings, SheetOrder, TransferFunction,
 };
 use glam::DVec3;
 
@@ -60,6 +60,15 @@ fn a_light_inside_and_first_touch() {
     settings.lights = scenes::look().lights;
     settings.shadows.first_touch = true;
     check("scattered, first touch", DVec3::ONE, &settings);
+}
+
+/// Voxels are classified and then splatted.
+#[test]
+fn pre_classified() {
+    let mut settings = scattered();
+    settings.sampling.classification = Classification::Pre;
+    settings.lights[0].density_scale = 0.6;
+    check("scattered, pre-classified", DVec3::new(1.0, 1.2, 1.6), &settings);
 }
 
 /// No. 16: The engines' pictures are the same sums in another order.

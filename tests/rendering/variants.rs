@@ -154,7 +154,8 @@ fn cures_brighten_and_splatting_is_slightly_darker() {
     );
     assert!((SELF_SHADOW.0..=SELF_SHADOW.1).contains(&(splat / direct)), "{splat} {direct}");
     assert!(first_touch / direct >= 1.0, "{first_touch} {direct}");
-    let cures: [(&str, fn(&mut Settings, f64)); 3] = [
+    type Cure = fn(&mut Settings, f64);
+    let cures: [(&str, Cure); 3] = [
         ("gain", |settings, amount| settings.shadows.gain = 1.0 + amount),
         ("ambient offset", |settings, amount| settings.shadows.ambient_offset = 0.3 * amount),
         ("bias", |settings, amount| settings.shadows.bias_voxels = 2.0 * amount),

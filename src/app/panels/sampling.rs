@@ -4,7 +4,7 @@
 use eframe::egui::Ui;
 
 use super::controls::{Number, choice};
-use crate::model::{Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
+use crate::model::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
 
 /// σ where a Gaussian is chosen anew.
 const SIGMA: f64 = 0.6;
@@ -49,6 +49,20 @@ pub(super) fn show_engine(ui: &mut Ui, sampling: &mut Sampling) {
             "Every voxel is splatted, as in the paper; for comparison and teaching. Has no effect on direct shadows",
         ),
     ];
+    let classifications = [
+        (
+            Classification::Post,
+            "Sheets",
+            "The default: what is reconstructed is classified, and edges stay sharp",
+        ),
+        (
+            Classification::Pre,
+            "Voxels",
+            "Voxels are classified and their colours blurred: for comparison; slower",
+        ),
+    ];
+    let tip = "When the transfer functions are applied, also for lights that are splatted";
+    choice(ui, "Classify", tip, &mut sampling.classification, &classifications);
     choice(ui, "Sheets", "How sheets are filled, for the eye and for lights", &mut sampling.engine, &engines);
     if sampling.engine == Engine::Scatter {
         let orders = [
