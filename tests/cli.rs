@@ -519,7 +519,7 @@ fn help_and_version_are_no_errors() {
     let folder = Folder::new();
     assert!(folder.succeed("--version").contains(env!("CARGO_PKG_VERSION")));
     let help = folder.succeed("--help");
-    for command in ["render", "light-volume", "info", "bench"] {
+    for command in ["render", "compare", "light-volume", "info", "bench"] {
         assert!(help.contains(command), "{command} is missing: {help}");
         assert!(!folder.succeed(&format!("{command} --help")).is_empty());
     }
@@ -785,4 +785,15 @@ fn a_slice_of_light_is_a_picture_in_false_colours() {
     let luma = |pixel: &image::Rgb<u8>| pixel.0.iter().map(|&c| u32::from(c)).sum::<u32>();
     let (dark, bright) = slice.pixels().map(luma).fold((u32::MAX, 0), |(a, b), l| (a.min(l), b.max(l)));
     assert!(dark < 300 && bright > 500, "a ball has a lit and a dark side: {dark} … {bright}");
+}
+
+#[test]
+fn looks_stand_side_by_side_with_their_distances() {
+    let folder = Folder::new();
+    let text = folder.succeed("compare builtin:sphere:16 -o row.png --size 40x30 --looks splat,splat,off");
+    let row = image::open(folder.path("row.png")).expect("a picture").to_rgba8();
+    assert_eq!(row.dimensions(), (3 * 40 + 2 * 4, 30));
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[1].starts_with("splat") && lines[1].contains("RMSE   0.00"), "{text}");
+    assert!(lines[2].starts_with("off") && !lines[2].contains("RMSE   0.00"), "{text}");
 }

@@ -7,6 +7,7 @@ use eframe::egui::{WidgetInfo, pos2, vec2};
 
 use super::theme;
 use super::viewport::Pictures;
+use crate::gpu::Distance;
 use crate::model::{Settings, Variant};
 
 /// Points to either side of the divider in which it can be taken.
@@ -81,7 +82,8 @@ impl Compare {
             label(pos2(rect.right() - 8.0, top), Align2::RIGHT_TOP, self.right.label());
         }
         if let Some(other) = pictures.other {
-            let text = format!("RMSE {:.2} of 255, largest {}", other.rmse, other.largest);
+            let Distance { rmse, largest } = other.distance;
+            let text = format!("RMSE {rmse:.2} of 255, largest {largest}");
             label(pos2(rect.center().x, rect.bottom() - 8.0), Align2::CENTER_BOTTOM, &text);
         }
     }

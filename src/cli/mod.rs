@@ -2,6 +2,7 @@
 //! window.
 
 mod bench;
+mod compare;
 mod cpu_time;
 mod error;
 mod info;
@@ -36,6 +37,8 @@ struct Args {
 enum Command {
     /// Render a picture to a PNG file
     Render(render::RenderArgs),
+    /// Render several looks side by side and say how far they are apart
+    Compare(compare::CompareArgs),
     /// Write a light's attenuation volume as NRRD
     LightVolume(light_volume::LightVolumeArgs),
     /// Say what is in a volume
@@ -68,6 +71,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     };
     let result = match args.command {
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::LightVolume(args)) => light_volume::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),

@@ -5,6 +5,7 @@
 
 mod context;
 mod display;
+mod distance;
 mod error;
 mod export;
 mod export_light;
@@ -39,6 +40,7 @@ mod volume;
 mod warm_up;
 
 pub use context::{Context, device_descriptor};
+pub use distance::Distance;
 pub use error::GpuError;
 pub use export::{ExportError, export_png, write_atomically};
 pub use export_light::{LightSlice, export_slice, light_volume_nrrd};

@@ -18,7 +18,7 @@ pub(super) use self::facts::{Doing, Facts};
 use self::painter::{Frame, Painter};
 use super::refine::Look;
 use crate::data::{Bricks, Volume};
-use crate::gpu::{Context, GpuError, Renderer};
+use crate::gpu::{Context, Distance, GpuError, Renderer};
 use crate::model::Settings;
 
 /// How long a frame of the window waits for a preview: what is left of 1/60 s.
@@ -55,10 +55,8 @@ pub(super) struct Other {
     pub right: egui::TextureId,
     /// What lies between them, amplified.
     pub difference: egui::TextureId,
-    /// Root mean square of the difference, in steps of 8 bits.
-    pub rmse: f64,
-    /// The largest.
-    pub largest: u8,
+    /// How far they are apart.
+    pub distance: Distance,
 }
 
 /// What the painter works on.
@@ -80,8 +78,8 @@ pub(super) struct Viewport {
     volume: Option<(Arc<Volume>, Arc<Bricks>)>,
     /// The picture, or of a comparison left, right and their difference.
     textures: [Option<Texture>; 3],
-    /// RMSE and largest difference.
-    differs: Option<(f64, u8)>,
+    /// How far the two are apart.
+    differs: Option<Distance>,
     shown: Option<(Wanted, Look)>,
     /// What could not be rendered; the painter does not try it again.
     failed: Option<Wanted>,
@@ -140,12 +138,7 @@ impl Viewport {
         let other = right.zip(difference).zip(self.differs);
         Pictures {
             left,
-            other: other.map(|((right, difference), (rmse, largest))| Other {
-                right,
-                difference,
-                rmse,
-                largest,
-            }),
+            other: other.map(|((right, difference), distance)| Other { right, difference, distance }),
         }
     }
 
@@ -206,7 +199,7 @@ impl Viewport {
         self.place(0, image, options, ctx);
         match other {
             Some((right, difference)) => {
-                self.differs = Some((difference.rmse, difference.largest));
+                self.differs = Some(difference.distance);
                 self.place(1, right, options, ctx);
                 self.place(2, difference.image, options, ctx);
             }

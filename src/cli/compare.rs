@@ -1,0 +1,113 @@
+//! `chiaroscuro compare`: several looks of one scene side by side, and how far they are apart.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::scene::{SceneArgs, parse_size};
+use super::{CliError, print_line};
+use crate::gpu::{Context, Distance, Picture, RenderOptions, Renderer, export_png};
+use crate::model::{Settings, Variant};
+
+/// Pixels between two pictures.
+const GAP: usize = 4;
+
+/// A look to be shown.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum LookArg {
+    /// The look as it is
+    Current,
+    /// No shadows
+    Off,
+    /// Shadows from a splatted light volume
+    Splat,
+    /// Shadows from a light volume filled by rays
+    Raycast,
+    /// Shadows by rays from every sample
+    Direct,
+    /// Voxels scattered instead of gathered
+    Scatter,
+    /// Voxels take the first sheet that touches them
+    FirstTouch,
+}
+
+impl LookArg {
+    fn of(self, settings: &Settings) -> Settings {
+        let variant = match self {
+            Self::Current => Variant::Current,
+            Self::Off => Variant::Off,
+            Self::Splat => Variant::Splat,
+            Self::Raycast => Variant::Raycast,
+            Self::Direct => Variant::Direct,
+            Self::Scatter => Variant::Scatter,
+            Self::FirstTouch => Variant::FirstTouch,
+        };
+        variant.of(settings)
+    }
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub(super) struct CompareArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// PNG file to write
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+    /// Pixels of each picture
+    #[arg(long, value_name = "WxH", default_value = "400x400", value_parser = parse_size)]
+    size: [u32; 2],
+    /// What to show, from the left
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "off,splat")]
+    looks: Vec<LookArg>,
+}
+
+/// Renders the looks, writes them in one row and says how far each is from the first.
+pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
+    let loaded = args.scene.load()?;
+    let look = args.scene.look(&loaded)?;
+    let mut renderer = Renderer::new(&Context::headless()?)?;
+    let settings = look.settings(&mut renderer, &loaded)?;
+    let mut pictures: Vec<Picture> = Vec::new();
+    for look in &args.looks {
+        let settings = look.of(&settings);
+        let options = RenderOptions::default();
+        let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
+        let first = pictures.first().unwrap_or(&picture);
+        let Distance { rmse, largest } = Distance::between(&first.shown, &picture.shown);
+        let name = look.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+        print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"));
+        pictures.push(picture);
+    }
+    export_png(&row_of(&pictures), true, &args.output)?;
+    print_line(&format!("{}", args.output.display()));
+    Ok(())
+}
+
+/// Pictures of one size from left to right, with transparent gaps.
+fn row_of(pictures: &[Picture]) -> Picture {
+    let [width, height] = pictures.first().map_or([0, 0], |picture| picture.size.map(|n| n as usize));
+    let whole = (width + GAP) * pictures.len() - GAP.min((width + GAP) * pictures.len());
+    let mut shown = vec![0; whole * height * 4];
+    for (at, picture) in pictures.iter().enumerate() {
+        for (row, line) in picture.shown.chunks_exact(width * 4).enumerate() {
+            let start = (row * whole + at * (width + GAP)) * 4;
+            shown[start..start + line.len()].copy_from_slice(line);
+        }
+    }
+    Picture { size: [whole as u32, height as u32], light: Vec::new(), shown }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_stand_side_by_side() {
+        let picture = |grey: u8| Picture { size: [2, 1], light: Vec::new(), shown: vec![grey; 8] };
+        let row = row_of(&[picture(1), picture(2), picture(3)]);
+        assert_eq!(row.size, [6 + 2 * GAP as u32, 1]);
+        let texels: Vec<u8> = row.shown.chunks_exact(4).map(|texel| texel[0]).collect();
+        assert_eq!(texels, [1, 1, 0, 0, 0, 0, 2, 2, 0, 0, 0, 0, 3, 3]);
+    }
+}
