@@ -19,7 +19,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let brick = bricks[scatter.first + listed];
     let voxel = voxel_in(brick.x, group, local);
     let density = voxel_density(brick.y, voxel % 8u);
-    if (density == 0.0) {
+    let material = classify(density);
+    let extinction = material.a / scatter.extinction_unit;
+    // What lies beyond the grid is no voxel.
+    if (any(vec3f(voxel) >= scatter.dims) || (density == 0.0 && (SPLAT == SPLAT_DENSITY || extinction == 0.0))) {
         return;
     }
     let centre = vec3f(voxel);
@@ -37,8 +40,6 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     atomicAdd(&splats, 1u);
-    let material = classify(density);
-    let extinction = material.a / scatter.extinction_unit;
     let value = select(density, extinction, SPLAT == SPLAT_EXTINCTION);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {

@@ -41,6 +41,8 @@ pub(super) enum Command {
     ToggleCompare,
     /// Show a slice of a light volume.
     ShowLightVolume,
+    /// Ask for settings to compare with.
+    CompareWithFile,
     /// Show keys and mouse.
     ShowHelp,
     /// Show what this is and what it runs on.
@@ -87,6 +89,7 @@ impl Command {
             Self::ToggleHandles => "Light handles",
             Self::ToggleCompare => "Compare two looks",
             Self::ShowLightVolume => "Light volume…",
+            Self::CompareWithFile => "Compare with settings…",
             Self::ShowHelp => "Keys and mouse",
             Self::ShowAbout => "About Chiaroscuro",
         }

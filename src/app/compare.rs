@@ -37,6 +37,11 @@ impl Default for Compare {
 }
 
 impl Compare {
+    /// Shows the current look on the left and another one on the right.
+    pub(super) fn with(&mut self, look: Settings) {
+        (self.on, self.left, self.right) = (true, Variant::Current, Variant::Look(Box::new(look)));
+    }
+
     /// What is to be rendered: the look, or the left and the right one.
     pub(super) fn looks(&self, settings: &Settings) -> (Settings, Option<Settings>) {
         if self.on {

@@ -47,6 +47,7 @@ impl App {
             Command::ToggleHandles => self.handles.hidden ^= true,
             Command::ToggleCompare => self.compare.on ^= true,
             Command::ShowLightVolume => self.light_slice.open = true,
+            Command::CompareWithFile => self.files.ask(Purpose::CompareSettings, frame, ctx),
             Command::ShowHelp => self.help.keys = true,
             Command::ShowAbout => self.help.about = true,
         }
@@ -123,6 +124,10 @@ impl App {
                 }
             }
             Purpose::LoadSettings => self.load_settings(path),
+            Purpose::CompareSettings => match files::load_settings(path, &self.settings) {
+                Ok((look, _)) => self.compare.with(look),
+                Err(err) => self.messages.error("the settings were not loaded", err),
+            },
         }
     }
 

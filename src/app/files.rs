@@ -15,6 +15,8 @@ pub(super) enum Purpose {
     OpenVolume,
     /// Settings to apply.
     LoadSettings,
+    /// Settings to compare with.
+    CompareSettings,
     /// Where to save settings.
     SaveSettings,
     /// Where to export a picture.
@@ -28,6 +30,7 @@ impl Purpose {
         match self {
             Self::OpenVolume => "Open volume",
             Self::LoadSettings => "Load settings",
+            Self::CompareSettings => "Compare with settings",
             Self::SaveSettings => "Save settings",
             Self::ExportPicture => "Export picture",
             Self::ExportLight => "Export light volume",
@@ -37,7 +40,7 @@ impl Purpose {
     fn hint(self) -> &'static str {
         match self {
             Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
-            Self::LoadSettings | Self::SaveSettings => "a .json file",
+            Self::LoadSettings | Self::CompareSettings | Self::SaveSettings => "a .json file",
             Self::ExportPicture => "a .png file",
             Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
         }
@@ -82,7 +85,9 @@ impl Files {
                 let filters = ["nrrd", "nhdr", "raw", "gz"];
                 Box::pin(dialog.add_filter("Volumes", &filters).add_filter("All files", &["*"]).pick_file())
             }
-            Purpose::LoadSettings => Box::pin(dialog.add_filter("Settings", &["json"]).pick_file()),
+            Purpose::LoadSettings | Purpose::CompareSettings => {
+                Box::pin(dialog.add_filter("Settings", &["json"]).pick_file())
+            }
             Purpose::SaveSettings => {
                 Box::pin(dialog.add_filter("Settings", &["json"]).set_file_name("settings.json").save_file())
             }
@@ -147,6 +152,7 @@ impl Files {
                 let verb = match typed.purpose {
                     Purpose::OpenVolume => "Open",
                     Purpose::LoadSettings => "Load",
+                    Purpose::CompareSettings => "Compare",
                     Purpose::SaveSettings => "Save",
                     Purpose::ExportPicture => "Use",
                     Purpose::ExportLight => "Export",

@@ -56,8 +56,13 @@ fn doing(ui: &mut egui::Ui, doing: Doing) {
 fn figures(facts: &Facts) -> RichText {
     let ms = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.0} ms"));
     let software = if facts.software { " (software)" } else { "" };
+    let splats = if facts.splats > 0 {
+        format!("{:.1} million splats · ", facts.splats as f64 * 1e-6)
+    } else {
+        String::new()
+    };
     RichText::new(format!(
-        "full {} · preview {} · light volumes {} cached, {} filled · {:.0} MiB · {}{software}",
+        "{splats}full {} · preview {} · light volumes {} cached, {} filled · {:.0} MiB · {}{software}",
         ms(facts.full_ms),
         ms(facts.preview_ms),
         facts.cached_light_volumes,

@@ -16,7 +16,7 @@ use super::tables::Tables;
 use super::volume::{GpuVolume, texture_3d};
 use super::{Context, GpuError, ShaderLibrary, prefilter};
 use crate::data::{Bricks, Volume};
-use crate::model::{Settings, SheetOrder};
+use crate::model::{Classification, Settings, SheetOrder};
 use crate::plan::{Request, SliceOrder, eye_frame};
 
 /// Renders volumes on one device.
@@ -259,8 +259,12 @@ impl Renderer {
         if settings.scatters() {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
             self.splats = Some(self.context.buffer("Renderer::splats", &[0u32], usage));
-            if self.voxels.is_none() {
-                self.voxels = Some(ScatterVoxels::new(&self.context, gpu_volume)?);
+            // Sums of nothing are zeros, but voxels of nothing are not splatted by themselves.
+            let by_voxel = settings.sampling.classification == Classification::Pre
+                || settings.sampling.order == SheetOrder::EveryFootprint;
+            let all = by_voxel && self.tables.as_ref().is_some_and(Tables::show_nothing);
+            if !self.voxels.as_ref().is_some_and(|voxels| voxels.holds_all || !all) {
+                self.voxels = Some(ScatterVoxels::new(&self.context, gpu_volume, all)?);
             }
         }
         // With everything behind the eye there is no sheet: the gathering pass clears the picture.

@@ -121,8 +121,9 @@ impl EyeScatter {
                 }
             }
             // Nothing to composite, and nothing to make room for.
-            let touched =
-                self.scatterer.is_filled(k) || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
+            let touched = tables.eye.shows_nothing()
+                || self.scatterer.is_filled(k)
+                || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
             if !touched {
                 continue;
             }

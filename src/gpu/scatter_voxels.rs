@@ -10,7 +10,7 @@ use crate::plan::BrickSet;
 /// Words of a brick: two voxels to each.
 const BRICK_WORDS: usize = BRICK_EDGE * BRICK_EDGE * BRICK_EDGE / 2;
 
-/// Densities of all bricks that hold any, as `scatter_splat.wgsl` reads them.
+/// Densities of all bricks that hold any, or of all, as `scatter_splat.wgsl` reads them.
 #[derive(Debug)]
 pub(super) struct ScatterVoxels {
     /// Two 16-bit normalised densities per word, 8³ voxels per brick.
@@ -19,17 +19,20 @@ pub(super) struct ScatterVoxels {
     pub first_word: Vec<Option<u32>>,
     /// The same for shaders; −1 for empty ones.
     pub first_words: wgpu::Buffer,
+    /// Whether empty bricks are listed, too.
+    pub holds_all: bool,
 }
 
 impl ScatterVoxels {
-    /// Lists a volume's voxels.
+    /// Lists a volume's voxels; with `all` also bricks of nothing but zeros, which a transfer function
+    /// may show.
     ///
     /// # Errors
     /// When they are more than a buffer of the adapter can hold.
-    pub(super) fn new(context: &Context, volume: &GpuVolume) -> Result<Self, GpuError> {
+    pub(super) fn new(context: &Context, volume: &GpuVolume, all: bool) -> Result<Self, GpuError> {
         let [nx, ny, nz] = volume.bricks.dims;
         let layers: Vec<_> =
-            (0..nz).into_par_iter().map(|z| layer_words(&volume.volume, z, [nx, ny])).collect();
+            (0..nz).into_par_iter().map(|z| layer_words(&volume.volume, z, [nx, ny], all)).collect();
         let bricks = layers.iter().flatten().filter(|words| words.is_some()).count();
         let bytes = (bricks * BRICK_WORDS * 4) as u64;
         let limit = context.device.limits().max_storage_buffer_binding_size;
@@ -41,18 +44,18 @@ impl ScatterVoxels {
                 help: "the gathering engine makes the same picture without it",
             });
         }
-        let mut all = Vec::with_capacity(bricks.max(1) * BRICK_WORDS);
+        let mut listed = Vec::with_capacity(bricks.max(1) * BRICK_WORDS);
         let mut first_word = Vec::with_capacity(nx * ny * nz);
         for words in layers.into_iter().flatten() {
-            first_word.push(words.is_some().then_some(all.len() as u32));
-            all.extend(words.into_iter().flatten());
+            first_word.push(words.is_some().then_some(listed.len() as u32));
+            listed.extend(words.into_iter().flatten());
         }
         // A binding cannot be empty.
-        all.resize(all.len().max(1), 0);
-        let buffer = context.buffer("ScatterVoxels::buffer", &all, wgpu::BufferUsages::STORAGE);
+        listed.resize(listed.len().max(1), 0);
+        let buffer = context.buffer("ScatterVoxels::buffer", &listed, wgpu::BufferUsages::STORAGE);
         let words: Vec<i32> = first_word.iter().map(|word| word.map_or(-1, |word| word as i32)).collect();
         let first_words = context.buffer("ScatterVoxels::first_words", &words, wgpu::BufferUsages::STORAGE);
-        Ok(Self { buffer, first_word, first_words })
+        Ok(Self { buffer, first_word, first_words, holds_all: all })
     }
 
     /// Bricks of a set that hold anything: coordinates and first word.
@@ -68,8 +71,8 @@ impl ScatterVoxels {
     }
 }
 
-/// The words of every brick of layer `z`, `None` for those without anything.
-fn layer_words(volume: &Volume, z: usize, [nx, ny]: [usize; 2]) -> Vec<Option<Vec<u32>>> {
+/// The words of every brick of layer `z`, `None` for those without anything, unless `all` are wanted.
+fn layer_words(volume: &Volume, z: usize, [nx, ny]: [usize; 2], all: bool) -> Vec<Option<Vec<u32>>> {
     let dims = volume.dims();
     let first = z * BRICK_EDGE;
     let slices: Vec<Vec<f32>> =
@@ -89,7 +92,7 @@ fn layer_words(volume: &Volume, z: usize, [nx, ny]: [usize; 2]) -> Vec<Option<Ve
                 word(density(x + dx, y + dy, dz), density(x + dx + 1, y + dy, dz))
             })
             .collect();
-        words.iter().any(|&word| word != 0).then_some(words)
+        (all || words.iter().any(|&word| word != 0)).then_some(words)
     };
     (0..ny).flat_map(|by| (0..nx).map(move |bx| (bx, by))).map(|(bx, by)| brick(bx, by)).collect()
 }

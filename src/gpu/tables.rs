@@ -23,6 +23,11 @@ impl Table {
         Self { baked, buffer, occupied }
     }
 
+    /// Whether the lowest density has any extinction.
+    pub(super) fn shows_nothing(&self) -> bool {
+        self.baked.entries[0][3] > 0.0
+    }
+
     /// The largest extinction of any density, per scene unit.
     pub(super) fn largest_extinction(&self) -> f32 {
         self.baked.entries.iter().map(|[.., extinction]| *extinction).fold(0.0, f32::max)
@@ -59,6 +64,11 @@ impl Tables {
         // Once per transfer function: at 512³ voxels this takes longer than the rest of a picture's plan.
         let lit = eye.occupied.union(&lighting.occupied).dilated(1);
         Ok(Self { eye, lighting, lit, eye_distances, lighting_distances })
+    }
+
+    /// Whether either shows the lowest density, which is also that of what lies around the grid.
+    pub(super) fn show_nothing(&self) -> bool {
+        self.eye.shows_nothing() || self.lighting.shows_nothing()
     }
 
     /// Brings the tables up to date with changed settings.

@@ -71,6 +71,17 @@ fn pre_classified() {
     check("scattered, pre-classified", DVec3::new(1.0, 1.2, 1.6), &settings);
 }
 
+/// The lowest density may show: then what no voxel was splatted to does, too.
+#[test]
+fn nothing_that_shows() {
+    let mut settings = scattered();
+    settings.transfer.points[0].opacity = 0.02;
+    settings.transfer.points[0].value = 0.0;
+    check("scattered, nothing shows", DVec3::ONE, &settings);
+    settings.sampling.classification = Classification::Pre;
+    check("scattered, nothing shows, pre-classified", DVec3::ONE, &settings);
+}
+
 /// No. 16: The engines' pictures are the same sums in another order.
 #[test]
 fn both_engines_make_the_same_picture() {

@@ -8,7 +8,7 @@ use crate::thresholds::{
 use chiaroscuro::data::{Histogram, Samples, Volume};
 use chiaroscuro::gpu::{Renderer, mean_luminance};
 use chiaroscuro::model::{
-    Camera, ControlPoint, Interpolation, Length, LightKind, LightingTransfer, Projection, Settings,
+    Camera, ControlPoint, Engine, Interpolation, Length, LightKind, LightingTransfer, Projection, Settings,
     ShadowAlgorithm, TransferFunction, auto,
 };
 use glam::DVec3;
@@ -65,7 +65,7 @@ fn beer_lambert_by_rays_from_samples() {
 
 /// A half-plane one voxel thick hangs over a receiver that the eye sees from above, through the
 /// half-plane, which only light meets: the profile of the shadow's optical depth across the edge.
-fn shadow_profile(algorithm: ShadowAlgorithm) -> Vec<f64> {
+fn shadow_profile(algorithm: ShadowAlgorithm, engine: Engine) -> Vec<f64> {
     let n = 24;
     let values = (0..n * n * n)
         .map(|at| match (at % n, at / n / n) {
@@ -96,6 +96,7 @@ fn shadow_profile(algorithm: ShadowAlgorithm) -> Vec<f64> {
     settings.camera.distance = 1.0;
     settings.camera.fov_y_deg = 2.0 * (f64::from(size[1]) / f64::from(size[0])).atan().to_degrees();
     settings.shadows.algorithm = algorithm;
+    settings.sampling.engine = engine;
     let picture = render(&mut renderer, &loaded, &settings, size);
     let row = &picture.light[4 * 480..5 * 480];
     let light = |at: usize| f64::from(row[at][0]);
@@ -117,12 +118,15 @@ fn crossing(profile: &[f64], value: f64) -> f64 {
 /// and three blurs of a step, and its middle stays where it is.
 #[test]
 fn edges_of_shadows_are_as_wide_as_the_blurs() {
-    for (algorithm, width) in EDGE_WIDTHS {
-        let profile = shadow_profile(algorithm);
+    let gathered = EDGE_WIDTHS.map(|(algorithm, width)| (algorithm, Engine::Gather, width));
+    let [.., splatted] = EDGE_WIDTHS;
+    for (algorithm, engine, width) in gathered.into_iter().chain([(splatted.0, Engine::Scatter, splatted.1)])
+    {
+        let profile = shadow_profile(algorithm, engine);
         let found = crossing(&profile, 0.1) - crossing(&profile, 0.9);
         let middle = crossing(&profile, 0.5);
         println!(
-            "edge by {algorithm:?}: {found:.3} voxels wide (calculated {width}), middle at {middle:+.3}"
+            "edge by {algorithm:?}, {engine:?}: {found:.3} voxels wide (calculated {width}), middle at {middle:+.3}"
         );
         assert!((found / width - 1.0).abs() <= EDGE_WIDTH, "{algorithm:?}: {found} not {width}");
         assert!(middle.abs() <= EDGE_CENTRE, "{algorithm:?}: the edge moved by {middle}");
@@ -144,6 +148,9 @@ fn cures_brighten_and_splatting_is_slightly_darker() {
     let direct = brightness(&settings);
     settings.shadows.algorithm = ShadowAlgorithm::Splat;
     let splat = brightness(&settings);
+    let mut scattered = settings.clone();
+    scattered.sampling.engine = Engine::Scatter;
+    let scattered = brightness(&scattered);
     let mut touched = settings.clone();
     touched.shadows.first_touch = true;
     let first_touch = brightness(&touched);
@@ -152,7 +159,9 @@ fn cures_brighten_and_splatting_is_slightly_darker() {
         splat / direct,
         first_touch / direct
     );
-    assert!((SELF_SHADOW.0..=SELF_SHADOW.1).contains(&(splat / direct)), "{splat} {direct}");
+    for splat in [splat, scattered] {
+        assert!((SELF_SHADOW.0..=SELF_SHADOW.1).contains(&(splat / direct)), "{splat} {direct}");
+    }
     assert!(first_touch / direct >= 1.0, "{first_touch} {direct}");
     type Cure = fn(&mut Settings, f64);
     let cures: [(&str, Cure); 3] = [

@@ -2,12 +2,13 @@
 
 use eframe::egui::{self, Ui};
 
+use super::super::commands::Command;
 use super::super::compare::Compare;
 use super::controls::{row, switch};
 use crate::model::{Settings, Variant};
 
 /// Shows the section.
-pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings) {
+pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, commands: &mut Vec<Command>) {
     let tip = "Shows two looks in one picture: drag the line between them (C)";
     switch(ui, "Compare two looks", tip, &mut compare.on);
     ui.add_enabled_ui(compare.on, |ui| {
@@ -20,8 +21,12 @@ pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings) 
         let keep = ui.button("Keep this look on the right");
         if keep.on_hover_text("Then change something: the left side follows, the right side stays").clicked()
         {
-            (compare.on, compare.left) = (true, Variant::Current);
-            compare.right = Variant::Look(Box::new(settings.clone()));
+            compare.with(settings.clone());
+        }
+    });
+    row(ui, "", "Settings or a preset, laid over the look as it is now", |ui| {
+        if ui.button("Compare with a file…").clicked() {
+            commands.push(Command::CompareWithFile);
         }
     });
     if let Variant::Look(kept) = &compare.right {

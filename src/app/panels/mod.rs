@@ -47,7 +47,9 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
         controls::section(ui, "Shadows", true, |ui| shadows::show(ui, panels));
         controls::section(ui, "Shading", false, |ui| shading::show(ui, panels));
         controls::section(ui, "Camera", false, |ui| camera::show(ui, panels));
-        controls::section(ui, "Compare", false, |ui| compare::show(ui, panels.compare, panels.settings));
+        controls::section(ui, "Compare", false, |ui| {
+            compare::show(ui, panels.compare, panels.settings, panels.commands);
+        });
         controls::section(ui, "Data", false, |ui| data::show(ui, panels));
     });
 }

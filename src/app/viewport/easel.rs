@@ -228,6 +228,7 @@ impl Easel {
         let dark_share = (is_settled && !(preview && self.measured.elapsed() < MEASURE_EVERY))
             .then(|| scene.renderer.read_light().map(|light| crate::gpu::dark_share(&light)))
             .transpose()?;
+        let splats = if is_settled { Some(scene.renderer.splats()?) } else { None };
         let total_ms = total_ms + start.elapsed().as_secs_f64() * 1000.0;
         log::debug!("{look:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
         let light_rebuilds: u64 = scene.renderer.light_rebuilds().iter().sum();
@@ -259,6 +260,9 @@ impl Easel {
         *kind = Some(total_ms);
         desk.figures.light_rebuilds = light_rebuilds;
         desk.figures.cached_light_volumes = scene.renderer.cached_light_volumes();
+        if let Some(splats) = splats {
+            desk.figures.splats = splats;
+        }
         desk.figures.light_bytes = scene.renderer.light_bytes();
         desk.figures.gpu_bytes = scene.renderer.gpu_bytes();
         desk.figures.refining = None;

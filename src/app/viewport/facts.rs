@@ -40,6 +40,8 @@ pub(in crate::app) struct Facts {
     pub cached_light_volumes: usize,
     /// Share of what the last full-quality picture shows that is nearly black.
     pub dark_share: Option<f64>,
+    /// Footprints that the last full-quality picture has splatted; 0 of one that gathers.
+    pub splats: u64,
     /// Mebibytes of light volumes.
     pub light_mebibytes: f64,
     /// Mebibytes of textures.
@@ -61,6 +63,7 @@ impl Viewport {
             preview_ms: figures.preview_ms,
             light_rebuilds: figures.light_rebuilds,
             cached_light_volumes: figures.cached_light_volumes,
+            splats: figures.splats,
             light_mebibytes: figures.light_bytes as f64 / f64::from(1 << 20),
             dark_share: figures.dark_share,
             gpu_mebibytes: figures.gpu_bytes as f64 / f64::from(1 << 20),

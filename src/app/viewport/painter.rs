@@ -35,6 +35,8 @@ pub(super) struct Figures {
     pub(super) cached_light_volumes: usize,
     pub(super) gpu_bytes: u64,
     pub(super) light_bytes: u64,
+    /// Footprints that the last full-quality picture has splatted; 0 of one that gathers.
+    pub(super) splats: u64,
     /// Share of what the last full-quality picture shows that is nearly black.
     pub(super) dark_share: Option<f64>,
     /// A refinement under way: what is done now, and the share that is done.
