@@ -15,7 +15,9 @@ const ANCHORS: [[f64; 3]; 6] = [
 /// The colour of a value of 0 … 1, as sRGB bytes.
 pub fn false_color(value: f32) -> [u8; 3] {
     let last = ANCHORS.len() - 1;
-    let at = f64::from(value).clamp(0.0, 1.0) * last as f64;
+    // No number counts as dark.
+    let value = if value.is_nan() { 0.0 } else { f64::from(value) };
+    let at = value.clamp(0.0, 1.0) * last as f64;
     let low = (at as usize).min(last - 1);
     std::array::from_fn(|channel| {
         let [a, b] = [ANCHORS[low][channel], ANCHORS[low + 1][channel]];
