@@ -110,7 +110,9 @@ impl<'r> Stack<'r> {
     fn material_at(&self, [i, j, k]: [f64; 3]) -> Option<DVec3> {
         let point = self.frame.point(i, j, self.frame.depth_of(k));
         let support = self.reference.scene.support_in_index();
-        (point.cmpge(support.min).all() && point.cmple(support.max).all()).then_some(point)
+        // Slack for faces that lie exactly in the middle of a slab.
+        let is_inside = point.cmpge(support.min - 1e-9).all() && point.cmple(support.max + 1e-9).all();
+        is_inside.then_some(point)
     }
 
     /// What the material of a slab does on a pixel's ray; `None` where nothing is.
