@@ -564,6 +564,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("display.wgsl", [8, 8, 1]),
         ("downsample.wgsl", [8, 4, 4]),
         ("eye.wgsl", [8, 8, 1]),
+        ("light_around.wgsl", [8, 8, 4]),
         ("light_backproject.wgsl", [8, 8, 4]),
         ("light_collapse.wgsl", [8, 8, 4]),
         ("light_march.wgsl", [8, 8, 1]),

@@ -112,6 +112,8 @@ pub(super) struct LightBuild {
     pub chunks: Vec<u32>,
     /// Data bricks whose sheets will be read.
     pub read: BrickSet,
+    /// Bricks around them, which only previews look up: they are fully lit.
+    pub around: Vec<u32>,
     /// Bricks of the light volume, for rays to fill or sums to be normalised in.
     pub bricks: Vec<u32>,
     /// Sheets and schedule of the view that is being marched …
@@ -148,6 +150,7 @@ impl LightBuild {
             views,
             chunks,
             read,
+            around: Vec::new(),
             bricks,
             current: None,
             scatter: None,

@@ -3,8 +3,10 @@
 use super::job::LightBuild;
 use super::light_collapse::{CollapsedKey, CollapsedLight};
 use super::light_volume::{LightVolume, bricks_holding};
+use super::listed_bricks;
+use super::volume::GpuVolume;
 use super::{GpuError, Renderer};
-use crate::plan::{BrickSet, LightKey, Request};
+use crate::plan::{BrickSet, LightKey, Request, eye_frame};
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
 /// undoing a drag finds them, and two looks that are compared do not push out each other's.
@@ -23,6 +25,15 @@ pub(super) struct PlacedLights {
     pub to_collapse: Option<usize>,
 }
 
+/// Whether a picture can look up light further from material than the kernel reaches: with stretched
+/// kernels, or a bias. The same for every direction to look from, so that orbiting refills nothing.
+fn looks_widely(volume: &GpuVolume, request: &Request) -> bool {
+    let Request { settings, size, .. } = request;
+    let frame = eye_frame(&settings.camera, &volume.scene, *size, settings.sampling.slab);
+    let farthest = frame.pitch_at(volume.scene.support_radius());
+    settings.shadows.bias_voxels > 0.0 || farthest > frame.voxel_edge
+}
+
 impl Renderer {
     /// Finds or makes the light of a request: volumes for each light, or one for all.
     pub(super) fn place_all_light(&mut self, request: &Request) -> Result<PlacedLights, GpuError> {
@@ -36,7 +47,7 @@ impl Renderer {
         let all =
             (0..request.settings.lights.len()).filter_map(|light| LightKey::of(request, light)).collect();
         let key = CollapsedKey::new(all, &request.settings, &volume.scene, &self.options);
-        let needed = self.needed_bricks(request.settings.shadows.resolution.divisor())?;
+        let needed = self.needed_bricks(request)?;
         let usable = |known: &CollapsedLight| known.key == key && needed.is_within(&known.filled);
         if self.collapsed.as_ref().is_some_and(usable) {
             return Ok(PlacedLights { collapsed: true, ..PlacedLights::default() });
@@ -51,15 +62,17 @@ impl Renderer {
         Ok(PlacedLights { keys, builds, collapsed: true, to_collapse })
     }
 
-    /// Bricks of a light volume in which the picture can look.
-    fn needed_bricks(&self, divisor: usize) -> Result<BrickSet, GpuError> {
+    /// Bricks of the light volumes in which a full-quality picture can look.
+    fn needed_bricks(&self, request: &Request) -> Result<BrickSet, GpuError> {
         let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else {
             return Err(GpuError::Refused("no volume".to_owned()));
         };
+        let divisor = request.settings.shadows.resolution.divisor();
         if self.options.fill_everything {
             return Ok(bricks_holding(volume, &BrickSet::full(volume.bricks.dims), divisor));
         }
-        Ok(bricks_holding(volume, &tables.lit, divisor))
+        let widely = divisor > 1 || looks_widely(volume, request);
+        Ok(bricks_holding(volume, if widely { &tables.lit_widely } else { &tables.lit }, divisor))
     }
 
     /// Forgets the light volumes of a picture, which have been collapsed.
@@ -78,14 +91,20 @@ impl Renderer {
         let count = request.settings.lights.len();
         self.rebuilds.resize(self.rebuilds.len().max(count), 0);
         let everything = self.options.fill_everything.then(|| BrickSet::full(volume.bricks.dims));
-        let lit = everything.as_ref().unwrap_or(&tables.lit);
+        let widely = looks_widely(volume, request);
         let mut keys = vec![None; count];
         let mut builds: Vec<LightBuild> = Vec::new();
         for (light, slot) in keys.iter_mut().enumerate() {
             let Some(full) = LightKey::of(request, light) else { continue };
-            let needed = |key: &LightKey| bricks_holding(volume, lit, key.resolution().divisor());
+            let needed = |key: &LightKey, widely: bool| {
+                let divisor = key.resolution().divisor();
+                let lit = if divisor > 1 || widely { &tables.lit_widely } else { &tables.lit };
+                bricks_holding(volume, everything.as_ref().unwrap_or(lit), divisor)
+            };
+            // A preview makes do with what a picture at full quality looks up; around that light is full.
+            let least = |key: &LightKey| needed(key, widely && request.coarse.is_none());
             let usable = |known: &LightVolume, key: &LightKey| {
-                known.key == *key && needed(key).is_within(&known.filled)
+                known.key == *key && least(key).is_within(&known.filled)
             };
             let coarse = request.coarse.map(|resolution| full.at_resolution(resolution));
             let found = [Some(full.clone()), coarse.clone()]
@@ -95,8 +114,11 @@ impl Renderer {
             let key = found.clone().or(coarse).unwrap_or(full);
             if found.is_none() {
                 self.lights.retain(|known| known.key != key);
-                let fresh = LightVolume::new(&self.context, volume, key.clone(), needed(&key))?;
-                let build = LightBuild::new(volume, request, light, &fresh, self.options.chunk);
+                let filled = needed(&key, widely);
+                let around = needed(&key, true).without(&filled);
+                let fresh = LightVolume::new(&self.context, volume, key.clone(), filled)?;
+                let mut build = LightBuild::new(volume, request, light, &fresh, self.options.chunk);
+                build.around = around.positions().map(listed_bricks::packed).collect();
                 self.lights.push(fresh);
                 builds.push(build);
             }

@@ -1,7 +1,8 @@
 //! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
 
+use super::listed_bricks;
 use super::tables::view_entry;
-use super::volume::{Gpu, GpuVolume, brick_dims, texture_3d};
+use super::volume::{Gpu, GpuVolume, brick_dims, entry, texture_3d};
 use super::{Context, GpuError};
 use crate::model::{MAX_LIGHTS, Precision};
 use crate::plan::{BrickSet, LightKey, LightView};
@@ -56,6 +57,34 @@ impl LightVolume {
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self { key, dims, divisor, texture, view, filled, complete: false, last_used: 0 })
+    }
+
+    /// Lights the listed bricks fully.
+    pub(super) fn light_up(
+        &self,
+        gpu: Gpu<'_>,
+        bricks: &[u32],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if bricks.is_empty() {
+            return Ok(());
+        }
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline_into("light_around.wgsl", &[], self.texture.format())?;
+        let list = listed_bricks::upload(context, bricks);
+        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("LightVolume::around"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[entry(0, list.as_entire_binding()), view_entry(1, &self.view)],
+        });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("LightVolume::around"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &own, &[]);
+        listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+        Ok(())
     }
 
     /// Bytes of its texture.

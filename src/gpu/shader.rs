@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 32] = [
+pub const SHADERS: [(&str, &str); 33] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
@@ -27,6 +27,7 @@ pub const SHADERS: [(&str, &str); 32] = [
     ("display.wgsl", include_str!("../../shaders/display.wgsl")),
     ("downsample.wgsl", include_str!("../../shaders/downsample.wgsl")),
     ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
+    ("light_around.wgsl", include_str!("../../shaders/light_around.wgsl")),
     ("light_backproject.wgsl", include_str!("../../shaders/light_backproject.wgsl")),
     ("light_collapse.wgsl", include_str!("../../shaders/light_collapse.wgsl")),
     ("light_march.wgsl", include_str!("../../shaders/light_march.wgsl")),

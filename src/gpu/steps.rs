@@ -81,6 +81,9 @@ impl Renderer {
         let mut peak = 0;
         if *begin == 0 && part.0 == 0 {
             let light = self.lights.iter().find(|light| light.key == build.key).ok_or_else(out_of_date)?;
+            if *view == 0 {
+                light.light_up(gpu, &build.around, encoder)?;
+            }
             let occupied = &tables.lighting.occupied;
             let mut sheets = if self.options.leaping {
                 Sheets::new(&self.context, geometry, chunk, &build.read, occupied)?
@@ -165,6 +168,9 @@ impl Renderer {
         let (gpu, tables) = self.gpu()?;
         let list = &build.bricks[bricks.clone()];
         let lamp = (&build.lamp, &job.request.settings);
+        if bricks.start == 0 {
+            self.lights[at].light_up(gpu, &build.around, encoder)?;
+        }
         raycast(gpu, tables, lamp, &self.options, &self.lights[at], list, encoder)?;
         if bricks.start == 0 {
             self.rebuilds[build.light] += 1;

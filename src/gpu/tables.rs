@@ -41,9 +41,13 @@ pub(super) struct Tables {
     pub eye: Table,
     /// What the light meets.
     pub lighting: Table,
-    /// Bricks in which an eye sample can look up attenuation: those that either shows, and one
-    /// further on every side for interpolation, bias and stretch.
+    /// Bricks in which an eye sample can look up attenuation: those that either shows. A sample that
+    /// sees a voxel is less than two voxels from it, and the texels around the sample are one further:
+    /// that is what a brick's range announces.
     pub lit: BrickSet,
+    /// The same, and one brick further on every side: for stretched kernels, a light bias, and light
+    /// volumes with larger voxels.
+    pub lit_widely: BrickSet,
     /// Distances in bricks to the nearest that the eye sees …
     pub eye_distances: wgpu::TextureView,
     /// … and to the nearest that attenuates light.
@@ -62,8 +66,9 @@ impl Tables {
         let eye_distances = upload("Tables::eye_distances", &eye.occupied)?;
         let lighting_distances = upload("Tables::lighting_distances", &lighting.occupied)?;
         // Once per transfer function: at 512³ voxels this takes longer than the rest of a picture's plan.
-        let lit = eye.occupied.union(&lighting.occupied).dilated(1);
-        Ok(Self { eye, lighting, lit, eye_distances, lighting_distances })
+        let lit = eye.occupied.union(&lighting.occupied);
+        let lit_widely = lit.dilated(1);
+        Ok(Self { eye, lighting, lit, lit_widely, eye_distances, lighting_distances })
     }
 
     /// Whether either shows the lowest density, which is also that of what lies around the grid.

@@ -30,6 +30,12 @@ impl BrickSet {
         Self::new(self.dims, members)
     }
 
+    /// What is in this set and not in the other, of the same grid.
+    pub fn without(&self, other: &Self) -> Self {
+        let members = self.members.iter().zip(&other.members).map(|(a, b)| *a && !*b).collect();
+        Self::new(self.dims, members)
+    }
+
     /// Whether all of this set is in the other, of the same grid.
     pub fn is_within(&self, other: &Self) -> bool {
         self.dims == other.dims && self.members.iter().zip(&other.members).all(|(a, b)| !*a || *b)
@@ -153,5 +159,6 @@ mod tests {
         assert_eq!(coarse.positions().collect::<Vec<_>>(), [[2, 0, 0]]);
         assert!(fine.is_within(&coarse.refined(2, [5, 5, 5])));
         assert!(!coarse.refined(2, [5, 5, 5]).is_within(&fine));
+        assert_eq!(fine.dilated(1).without(&fine).positions().count(), 7);
     }
 }
