@@ -23,8 +23,8 @@ fn light_extinction(density: f32) -> f32 {
     return mix(lighting_table[at.low].a, lighting_table[at.low + 1u].a, at.fraction);
 }
 
-fn light_distance(brick: vec3i) -> i32 {
-    return select(0, i32(textureLoad(lighting_distances, brick, 0).r), eye.leaping != 0u);
+fn light_distance(brick: vec3i) -> vec2u {
+    return select(vec2u(0u, 255u), textureLoad(lighting_distances, brick, 0).rg, eye.leaping != 0u);
 }
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
@@ -79,12 +79,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 if (k > inside.y) {
                     break;
                 }
-                let brick = brick_of(ray.origin + ray.direction * depth_of(eye.frame, f32(k)));
-                let distance = i32(textureLoad(distances, brick, 0).r) - grid.dilation;
-                if (distance <= 0 || eye.leaping == 0u) {
+                let p = ray.origin + ray.direction * depth_of(eye.frame, f32(k));
+                let brick = brick_of(p);
+                let near = textureLoad(distances, brick, 0).rg;
+                let distance = i32(near.r) - grid.dilation;
+                if (distance > 0 && eye.leaping != 0u) {
+                    k = leap(eye.frame, ray, k, brick, distance);
+                } else if (octant_shows(near.g, p, brick) || eye.leaping == 0u) {
                     break;
+                } else {
+                    k += 1;
                 }
-                k = leap(eye.frame, ray, k, brick, distance);
             }
             if (k > inside.y) {
                 break;

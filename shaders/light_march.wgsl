@@ -26,12 +26,14 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
             if (k >= end) {
                 break;
             }
-            let brick = brick_of(ray.origin + ray.direction * depth_of(march.frame, f32(k)));
-            let distance = vec2i(textureLoad(distances, brick, 0).rg);
-            if (distance.r > 0) {
-                k = leap(march.frame, ray, k, brick, distance.r);
+            let p = ray.origin + ray.direction * depth_of(march.frame, f32(k));
+            let brick = brick_of(p);
+            let near = textureLoad(distances, brick, 0);
+            if (near.r > 0u) {
+                k = leap(march.frame, ray, k, brick, i32(near.r));
             } else {
-                if (distance.g <= grid.dilation && t > march.dark && k >= inside.x && k <= inside.y) {
+                let attenuates = i32(near.g) <= grid.dilation && octant_shows(near.b, p, brick);
+                if (attenuates && t > march.dark && k >= inside.x && k <= inside.y) {
                     break;
                 }
                 textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(t));

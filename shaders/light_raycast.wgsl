@@ -22,7 +22,7 @@ struct Raycast {
 }
 
 @group(0) @binding(0) var<uniform> raycast: Raycast;
-// Distance in bricks to the nearest that attenuates light.
+// r: distance in bricks to the nearest that attenuates light; g: a bit for each octant that does.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 @group(0) @binding(3) var<storage, read> bricks: array<u32>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
@@ -31,8 +31,8 @@ fn light_extinction(density: f32) -> f32 {
     return classify(density).a;
 }
 
-fn light_distance(brick: vec3i) -> i32 {
-    return select(0, i32(textureLoad(distances, brick, 0).r), raycast.leaping != 0u);
+fn light_distance(brick: vec3i) -> vec2u {
+    return select(vec2u(0u, 255u), textureLoad(distances, brick, 0).rg, raycast.leaping != 0u);
 }
 
 @compute @workgroup_size(8, 8, 4)

@@ -537,6 +537,7 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     ] {
         assert!(bricks.contains(&text), "common/bricks.wgsl must have {text}");
     }
+    assert!(bricks.contains(&format!("floor(p / {}.0)", BRICK_EDGE / 2)), "octants are half as long");
     assert_eq!(bricks.matches('8').count(), 3, "a new number in common/bricks.wgsl: check it here");
 
     // A workgroup is half a brick.

@@ -20,3 +20,11 @@ fn leap(frame: SheetFrame, ray: Ray, k: i32, brick: vec3i, empty: i32) -> i32 {
     // A thousandth of a slab early: visiting one more slab of the cube is harmless.
     return max(k + 1, i32(ceil(min(exit, 1e6) - 1e-3)));
 }
+
+// Whether a sample at p can see anything of its brick, which is not empty: the bits of its octants say so
+// for samples at one point whose kernels are not stretched.
+fn octant_shows(octants: u32, p: vec3f, brick: vec3i) -> bool {
+    let octant = clamp(vec3i(floor(p / 4.0)) - 2 * brick, vec3i(0), vec3i(1));
+    let bit = octants >> u32(octant.x + 2 * octant.y + 4 * octant.z) & 1u;
+    return bit == 1u || QUADRATURE == 2u || grid.dilation > 0;
+}

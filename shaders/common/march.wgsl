@@ -22,7 +22,8 @@ struct March {
 }
 
 @group(0) @binding(0) var<uniform> march: March;
-// Distances in bricks: r to the nearest that is read, g to the nearest that attenuates light.
+// Distances in bricks: r to the nearest that is read, g to the nearest that attenuates light; b: a bit
+// for each octant of the brick that does.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 // Transmittance in front of the next slab, per pixel.
 @group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;

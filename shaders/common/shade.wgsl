@@ -33,7 +33,8 @@ struct Eye {
 }
 
 @group(0) @binding(0) var<uniform> eye: Eye;
-// Distance in bricks to the nearest that the eye's transfer function shows.
+// r: distance in bricks to the nearest that the eye's transfer function shows; g: a bit for each octant
+// of the brick that it shows.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 @group(2) @binding(0) var attenuation_0: texture_3d<f32>;
 @group(2) @binding(1) var attenuation_1: texture_3d<f32>;

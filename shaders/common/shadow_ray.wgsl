@@ -26,12 +26,17 @@ fn shadow_ray(p: vec3f, direction: vec3f, reach: f32, ray_step: f32, scale: f32,
             if (k > inside.y) {
                 break;
             }
-            let brick = brick_of(ray.origin + ray.direction * depth_of(frame, f32(k)));
-            let distance = light_distance(brick) - grid.dilation;
-            if (distance <= 0) {
+            let at = ray.origin + ray.direction * depth_of(frame, f32(k));
+            let brick = brick_of(at);
+            let near = light_distance(brick);
+            let distance = i32(near.r) - grid.dilation;
+            if (distance > 0) {
+                k = leap(frame, ray, k, brick, distance);
+            } else if (octant_shows(near.g, at, brick)) {
                 break;
+            } else {
+                k += 1;
             }
-            k = leap(frame, ray, k, brick, distance);
         }
         if (k > inside.y) {
             break;

@@ -68,7 +68,8 @@ impl Renderer {
         let geometry = &light_views(&lamp, &settings.shadows, &gpu.volume.scene)[view];
         let everything = BrickSet::full(gpu.volume.bricks.dims);
         let count = geometry.frame.slab_count;
-        let sheets = Sheets::new(&self.context, geometry, count, &everything, &tables.lighting.occupied)?;
+        let occupied = (&tables.lighting.occupied, tables.lighting.octants.as_slice());
+        let sheets = Sheets::new(&self.context, geometry, count, &everything, occupied)?;
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let table = &tables.lighting.buffer;

@@ -32,13 +32,14 @@ impl Sheets {
     /// Makes a ring that streams `chunk` slabs at a time and keeps what the reverse kernel still
     /// needs of the ones before.
     ///
-    /// `read` are the bricks whose sheets will be read, `occupied` those that attenuate light.
+    /// `read` are the bricks whose sheets will be read, `occupied` those that attenuate light, and
+    /// `octants` their parts that do.
     pub(super) fn new(
         context: &Context,
         view: &LightView,
         chunk: u32,
         read: &BrickSet,
-        occupied: &BrickSet,
+        (occupied, octants): (&BrickSet, &[u8]),
     ) -> Result<Self, GpuError> {
         let frame = &view.frame;
         let last = frame.first_depth + f64::from(frame.slab_count) * frame.slab;
@@ -62,9 +63,9 @@ impl Sheets {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let both: Vec<u8> =
-            read.distances().into_iter().zip(occupied.distances()).flat_map(|(r, g)| [r, g]).collect();
-        let distances = upload_bricks(context, "Sheets::distances", read.dims, &both, 2)?;
+        let pairs = read.distances().into_iter().zip(occupied.distances());
+        let bytes: Vec<u8> = pairs.zip(octants).flat_map(|((r, g), octants)| [r, g, *octants, 0]).collect();
+        let distances = upload_bricks(context, "Sheets::distances", read.dims, &bytes, 4)?;
         Ok(Self {
             layers,
             chunk,

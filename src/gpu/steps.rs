@@ -84,12 +84,13 @@ impl Renderer {
             if *view == 0 {
                 light.light_up(gpu, &build.around, encoder)?;
             }
-            let occupied = &tables.lighting.occupied;
+            let occupied = (&tables.lighting.occupied, tables.lighting.octants.as_slice());
             let mut sheets = if self.options.leaping {
                 Sheets::new(&self.context, geometry, chunk, &build.read, occupied)?
             } else {
                 let everything = BrickSet::full(build.read.dims);
-                Sheets::new(&self.context, geometry, chunk, &everything, &everything)?
+                let all = vec![u8::MAX; everything.members.len()];
+                Sheets::new(&self.context, geometry, chunk, &everything, (&everything, &all))?
             };
             sheets.dark = self.options.dark;
             peak = self.gpu_bytes() + sheets.bytes();

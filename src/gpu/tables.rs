@@ -14,13 +14,16 @@ pub(super) struct Table {
     pub buffer: wgpu::Buffer,
     /// Bricks with any extinction.
     pub occupied: BrickSet,
+    /// Which octants of them have any, a bit each.
+    pub octants: Vec<u8>,
 }
 
 impl Table {
     fn new(context: &Context, volume: &GpuVolume, baked: BakedTransfer) -> Self {
         let buffer = context.buffer("Table::entries", &baked.entries, wgpu::BufferUsages::STORAGE);
         let occupied = BrickSet::new(volume.bricks.dims, volume.bricks.occupancy(baked.visibility()));
-        Self { baked, buffer, occupied }
+        let octants = volume.bricks.octant_masks(baked.visibility());
+        Self { baked, buffer, occupied, octants }
     }
 
     /// Whether the lowest density has any extinction.
@@ -48,9 +51,9 @@ pub(super) struct Tables {
     /// The same, and one brick further on every side: for stretched kernels, a light bias, and light
     /// volumes with larger voxels.
     pub lit_widely: BrickSet,
-    /// Distances in bricks to the nearest that the eye sees …
+    /// Distances in bricks to the nearest that the eye sees, and the octants that it sees …
     pub eye_distances: wgpu::TextureView,
-    /// … and to the nearest that attenuates light.
+    /// … and the same for what attenuates light.
     pub lighting_distances: wgpu::TextureView,
 }
 
@@ -60,11 +63,13 @@ impl Tables {
         let range = volume.volume.value_range();
         let eye = Table::new(context, volume, settings.baked_eye(range, &volume.scene));
         let lighting = Table::new(context, volume, settings.baked_lighting(range, &volume.scene));
-        let upload = |label: &'static str, set: &BrickSet| {
-            upload_bricks(context, label, set.dims, &set.distances(), 1)
+        let upload = |label: &'static str, table: &Table| {
+            let pairs = table.occupied.distances().into_iter().zip(&table.octants);
+            let bytes: Vec<u8> = pairs.flat_map(|(distance, octants)| [distance, *octants]).collect();
+            upload_bricks(context, label, table.occupied.dims, &bytes, 2)
         };
-        let eye_distances = upload("Tables::eye_distances", &eye.occupied)?;
-        let lighting_distances = upload("Tables::lighting_distances", &lighting.occupied)?;
+        let eye_distances = upload("Tables::eye_distances", &eye)?;
+        let lighting_distances = upload("Tables::lighting_distances", &lighting)?;
         // Once per transfer function: at 512³ voxels this takes longer than the rest of a picture's plan.
         let lit = eye.occupied.union(&lighting.occupied);
         let lit_widely = lit.dilated(1);
@@ -93,7 +98,7 @@ impl Tables {
     }
 }
 
-/// A 3D texture of `channels` unsigned bytes per brick.
+/// A 3D texture of `channels` unsigned bytes per brick: two or four.
 pub(super) fn upload_bricks(
     context: &Context,
     label: &'static str,
@@ -101,7 +106,7 @@ pub(super) fn upload_bricks(
     bytes: &[u8],
     channels: u32,
 ) -> Result<wgpu::TextureView, GpuError> {
-    let format = if channels == 1 { wgpu::TextureFormat::R8Uint } else { wgpu::TextureFormat::Rg8Uint };
+    let format = if channels == 2 { wgpu::TextureFormat::Rg8Uint } else { wgpu::TextureFormat::Rgba8Uint };
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = context.texture(&super::volume::texture_3d(label, dims, format, usage))?;
     context.queue.write_texture(
