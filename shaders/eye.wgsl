@@ -79,13 +79,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 if (k > inside.y) {
                     break;
                 }
-                let p = ray.origin + ray.direction * depth_of(eye.frame, f32(k));
+                let depth = depth_of(eye.frame, f32(k));
+                let p = ray.origin + ray.direction * depth;
                 let brick = brick_of(p);
                 let near = textureLoad(distances, brick, 0).rg;
-                let distance = i32(near.r) - grid.dilation;
-                if (distance > 0 && eye.leaping != 0u) {
-                    k = leap(eye.frame, ray, k, brick, distance);
-                } else if (octant_shows(near.g, p, brick) || eye.leaping == 0u) {
+                let empty = i32(near.r) - grid.dilation;
+                if (empty > 0 && eye.leaping != 0u) {
+                    k = leap(eye.frame, ray, k, brick, empty);
+                } else if (can_see(eye.frame, depth, p, brick, i32(near.r), near.g) || eye.leaping == 0u) {
                     break;
                 } else {
                     k += 1;

@@ -20,24 +20,39 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
     var k = i32(march.begin);
     var t = select(transmittance[pixel], unattenuated(vec2f(id.xy)), march.begin == 0u);
     loop {
-        // Cheap steps in a loop of their own: leap over what nobody reads, and pass the light on
-        // where nothing attenuates it. Software drivers save work only by leaving a loop.
+        // Cheap steps in loops of their own: leap over what nobody reads, and pass the light on where
+        // nothing attenuates it. Software drivers save work only by leaving a loop.
         loop {
-            if (k >= end) {
-                break;
+            loop {
+                if (k >= end) {
+                    break;
+                }
+                let brick = brick_of(ray.origin + ray.direction * depth_of(march.frame, f32(k)));
+                let unread = i32(textureLoad(distances, brick, 0).r);
+                if (unread == 0) {
+                    break;
+                }
+                k = leap(march.frame, ray, k, brick, unread);
             }
-            let p = ray.origin + ray.direction * depth_of(march.frame, f32(k));
-            let brick = brick_of(p);
-            let near = textureLoad(distances, brick, 0);
-            if (near.r > 0u) {
-                k = leap(march.frame, ray, k, brick, i32(near.r));
-            } else {
-                let attenuates = i32(near.g) <= grid.dilation && octant_shows(near.b, p, brick);
-                if (attenuates && t > march.dark && k >= inside.x && k <= inside.y) {
+            var attenuates = false;
+            loop {
+                if (k >= end) {
+                    break;
+                }
+                let depth = depth_of(march.frame, f32(k));
+                let p = ray.origin + ray.direction * depth;
+                let brick = brick_of(p);
+                let near = textureLoad(distances, brick, 0);
+                attenuates = near.r == 0u && t > march.dark && k >= inside.x && k <= inside.y
+                    && can_see(march.frame, depth, p, brick, i32(near.g), near.b);
+                if (attenuates || near.r > 0u) {
                     break;
                 }
                 textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(t));
                 k += 1;
+            }
+            if (attenuates || k >= end) {
+                break;
             }
         }
         if (k >= end) {

@@ -21,10 +21,14 @@ fn leap(frame: SheetFrame, ray: Ray, k: i32, brick: vec3i, empty: i32) -> i32 {
     return max(k + 1, i32(ceil(min(exit, 1e6) - 1e-3)));
 }
 
-// Whether a sample at p can see anything of its brick, which is not empty: the bits of its octants say so
-// for samples at one point whose kernels are not stretched.
-fn octant_shows(octants: u32, p: vec3f, brick: vec3i) -> bool {
+// Whether a sample at p, at a depth of the frame, can see anything: `empty` is its brick's distance to the
+// nearest that shows something, and a bit for each of the brick's octants says whether that does. The
+// octants speak for samples at one point whose kernels are not stretched.
+fn can_see(frame: SheetFrame, depth: f32, p: vec3f, brick: vec3i, empty: i32, octants: u32) -> bool {
+    // A slab of slack for the second of two points.
+    let pitch = frame.pitch * (1.0 + (depth + frame.slab) * frame.inverse_distance);
+    let stretched = STRETCH && pitch > frame.voxel_edge;
     let octant = clamp(vec3i(floor(p / 4.0)) - 2 * brick, vec3i(0), vec3i(1));
     let bit = octants >> u32(octant.x + 2 * octant.y + 4 * octant.z) & 1u;
-    return bit == 1u || QUADRATURE == 2u || grid.dilation > 0;
+    return empty <= select(0, grid.dilation, stretched) && (bit == 1u || QUADRATURE == 2u || stretched);
 }

@@ -26,13 +26,14 @@ fn shadow_ray(p: vec3f, direction: vec3f, reach: f32, ray_step: f32, scale: f32,
             if (k > inside.y) {
                 break;
             }
-            let at = ray.origin + ray.direction * depth_of(frame, f32(k));
+            let at_depth = depth_of(frame, f32(k));
+            let at = ray.origin + ray.direction * at_depth;
             let brick = brick_of(at);
             let near = light_distance(brick);
-            let distance = i32(near.r) - grid.dilation;
-            if (distance > 0) {
-                k = leap(frame, ray, k, brick, distance);
-            } else if (octant_shows(near.g, at, brick)) {
+            let empty = i32(near.r) - grid.dilation;
+            if (empty > 0) {
+                k = leap(frame, ray, k, brick, empty);
+            } else if (can_see(frame, at_depth, at, brick, i32(near.r), near.g)) {
                 break;
             } else {
                 k += 1;
