@@ -97,8 +97,11 @@ fn ranges(volume: &Volume, dims: [usize; 3], cells: &Cells) -> Vec<[f32; 2]> {
         let densities = volume.slice_densities(z);
         let rows: Vec<[f32; 2]> = (0..ny * dims[0])
             .map(|at| {
-                let (y, b) = (at / dims[0], at % dims[0]);
-                cells.gather(b, nx, |x| [densities[y * nx + x]; 2])
+                let (row, (inside, outside)) =
+                    (&densities[at / dims[0] * nx..], cells.reach(at % dims[0], nx));
+                let start = if outside { [0.0, 0.0] } else { EMPTY };
+                let seen = inside.map_or(&row[..0], |(first, last)| &row[first..=last]);
+                seen.iter().fold(start, |[low, high], &d| [low.min(d), high.max(d)])
             })
             .collect();
         (0..dims[1] * dims[0])
