@@ -28,13 +28,13 @@ fn light_distance(brick: vec3i) -> vec2u {
 }
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
-    let direction = to_index(eye.space, towards.direction);
-    let p = surface.point + direction * eye.shading.bias;
+    let p = biased(surface, towards);
     if (!DIRECT) {
         return looked_up(light, volume, p);
     }
     let s = eye.shading;
     let reach = towards.distance - s.bias;
+    let direction = to_index(eye.space, towards.direction);
     return shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth)
         * hood_share(light, towards.direction);
 }

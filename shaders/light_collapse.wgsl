@@ -2,6 +2,7 @@
 // every voxel, and the picture only looks up diffuse light. One thread per voxel.
 #import "common/volume.wgsl"
 #import "common/shade.wgsl"
+#import "common/looked_up_light.wgsl"
 #import "common/listed_bricks.wgsl"
 #import "common/gradient.wgsl"
 
@@ -19,10 +20,6 @@ struct Collapse {
 @group(0) @binding(1) var<uniform> collapse: Collapse;
 @group(0) @binding(3) var<storage, read> bricks: array<u32>;
 @group(0) @binding(4) var collapsed: texture_storage_3d<rgba16float, write>;
-
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
-    return looked_up(light, volume, surface.point + to_index(eye.space, towards.direction) * eye.shading.bias);
-}
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {

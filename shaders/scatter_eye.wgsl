@@ -4,14 +4,11 @@
 #import "common/table.wgsl"
 #import "common/scatter.wgsl"
 #import "common/shade.wgsl"
+#import "common/looked_up_light.wgsl"
 
 // Colour and opacity so far.
 @group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
 @group(1) @binding(4) var clamped: sampler;
-
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
-    return looked_up(light, volume, surface.point + to_index(eye.space, towards.direction) * eye.shading.bias);
-}
 
 // The sheet's value at a pixel; nothing lies before the first or behind the last.
 fn sheet(pixel: vec2i, k: i32) -> f32 {

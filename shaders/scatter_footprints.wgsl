@@ -4,7 +4,9 @@
 #import "common/table.wgsl"
 #import "common/footprint.wgsl"
 #import "common/shade.wgsl"
+#import "common/looked_up_light.wgsl"
 #import "common/voxels.wgsl"
+#import "common/listed_bricks.wgsl"
 
 // Which voxels of every brick, or of every `stride`-th brick, this dispatch composites: their place
 // in the slice.
@@ -31,10 +33,6 @@ struct Phase {
 @group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
 @group(1) @binding(4) var clamped: sampler;
 @group(3) @binding(0) var<uniform> phase: Phase;
-
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
-    return looked_up(light, volume, surface.point + to_index(eye.space, towards.direction) * eye.shading.bias);
-}
 
 fn density_of(voxel: vec3i) -> f32 {
     if (any(voxel < vec3i(0)) || any(vec3f(voxel) >= scatter.dims)) {
@@ -63,7 +61,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let listed = bricks[scatter.first + id.x];
-    let brick = vec3u(listed.x & 1023u, listed.x >> 10u & 1023u, listed.x >> 20u);
+    let brick = unpacked(listed.x);
     // The two axes of the slice.
     let along = vec3u(scatter.axis);
     let u_axis = select(vec3u(1u, 0u, 0u), vec3u(0u, 1u, 0u), along.x == 1u);

@@ -18,7 +18,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ray = ray_of(scatter.frame, vec2f(id.xy));
     let p = ray.origin + ray.direction * depth;
     // Pixels pass the grid at up to the kernel's width from it.
-    let brick = clamp(vec3i(floor(p / 8.0)), vec3i(0), scatter.bricks - 1);
+    let brick = brick_near(p);
     if (textureLoad(distances, brick, 0).r > 0u) {
         return;
     }

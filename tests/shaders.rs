@@ -546,6 +546,16 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     for text in [format!("brick * {BRICK_EDGE}u + local"), format!("group.x % 2u * {half}u")] {
         assert!(listed.contains(&text), "common/listed_bricks.wgsl must have {text}");
     }
+    let (scatter, voxels) = (file("common/scatter.wgsl"), file("common/voxels.wgsl"));
+    assert!(scatter.contains(&format!("floor(p / {BRICK_EDGE}.0)")), "common/scatter.wgsl");
+    assert!(
+        voxels.contains(&format!("{BRICK_EDGE}u * (local.y + {BRICK_EDGE}u * local.z)")),
+        "common/voxels.wgsl"
+    );
+    let footprints = file("scatter_footprints.wgsl");
+    for text in [format!("voxel / {BRICK_EDGE};"), format!("brick * {BRICK_EDGE}u *")] {
+        assert!(footprints.contains(&text), "scatter_footprints.wgsl must have {text}");
+    }
     let over_bricks = [
         "light_backproject.wgsl",
         "light_collapse.wgsl",

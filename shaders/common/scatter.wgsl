@@ -107,11 +107,16 @@ fn locate(p: vec3f) -> vec3f {
     );
 }
 
+// The brick of a point; what lies beyond the grid belongs to the bricks at its border.
+fn brick_near(p: vec3f) -> vec3i {
+    return clamp(vec3i(floor(p / 8.0)), vec3i(0), scatter.bricks - 1);
+}
+
 // The brick of a point in the grid or up to two voxels around it; −1 elsewhere.
 fn brick_with_material(p: vec3f) -> vec3i {
     // Some slack for faces that lie exactly in the middle of a slab.
     if (any(p < vec3f(-2.00001)) || any(p > scatter.dims + 1.00001)) {
         return vec3i(-1);
     }
-    return clamp(vec3i(floor(p / 8.0)), vec3i(0), scatter.bricks - 1);
+    return brick_near(p);
 }

@@ -52,6 +52,11 @@ override SHADOWED: u32 = 1u;
 // The diffuse light of those that have one is in the first volume, as colours (P §4).
 override COLLAPSED: bool = false;
 
+// Where the light of a sample is looked up: the bias nearer to the source.
+fn biased(surface: Surface, towards: Towards) -> vec3f {
+    return surface.point + to_index(eye.space, towards.direction) * eye.shading.bias;
+}
+
 // What its light volume says of a light at an index-space point.
 fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> f32 {
     return textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0).r;

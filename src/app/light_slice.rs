@@ -123,7 +123,10 @@ impl LightSlice {
         if let Some(result) = self.work.as_ref().and_then(Work::take) {
             self.work = None;
             match result {
-                Ok(Ok(Some((key, attenuation)))) => self.filled = Some((key, Arc::new(attenuation))),
+                Ok(Ok(Some((key, attenuation)))) => {
+                    self.filled = Some((key, Arc::new(attenuation)));
+                    self.failed = None;
+                }
                 Ok(Ok(None)) => self.filled = None,
                 Ok(Err(err)) => return Err(err.to_string()),
                 Err(panic) => return Err(panic),

@@ -2,48 +2,20 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line};
 use crate::gpu::{Context, Distance, Picture, RenderOptions, Renderer, export_png};
-use crate::model::{Settings, Variant};
+use crate::model::Variant;
 
 /// Pixels between two pictures.
 const GAP: usize = 4;
 
-/// A look to be shown.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum LookArg {
-    /// The look as it is
-    Current,
-    /// No shadows
-    Off,
-    /// Shadows from a splatted light volume
-    Splat,
-    /// Shadows from a light volume filled by rays
-    Raycast,
-    /// Shadows by rays from every sample
-    Direct,
-    /// Voxels scattered instead of gathered
-    Scatter,
-    /// Voxels take the first sheet that touches them
-    FirstTouch,
-}
-
-impl LookArg {
-    fn of(self, settings: &Settings) -> Settings {
-        let variant = match self {
-            Self::Current => Variant::Current,
-            Self::Off => Variant::Off,
-            Self::Splat => Variant::Splat,
-            Self::Raycast => Variant::Raycast,
-            Self::Direct => Variant::Direct,
-            Self::Scatter => Variant::Scatter,
-            Self::FirstTouch => Variant::FirstTouch,
-        };
-        variant.of(settings)
-    }
+/// The names of the looks that need nothing else.
+fn names() -> PossibleValuesParser {
+    Variant::PLAIN.map(|variant| variant.name()).into()
 }
 
 /// Arguments of `compare`.
@@ -58,8 +30,8 @@ pub(super) struct CompareArgs {
     #[arg(long, value_name = "WxH", default_value = "400x400", value_parser = parse_size)]
     size: [u32; 2],
     /// What to show, from the left
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "off,splat")]
-    looks: Vec<LookArg>,
+    #[arg(long, value_parser = names(), value_delimiter = ',', default_value = "off,splat")]
+    looks: Vec<String>,
 }
 
 /// Renders the looks, writes them in one row and says how far each is from the first.
@@ -69,13 +41,13 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
     let mut renderer = Renderer::new(&Context::headless()?)?;
     let settings = look.settings(&mut renderer, &loaded)?;
     let mut pictures: Vec<Picture> = Vec::new();
-    for look in &args.looks {
-        let settings = look.of(&settings);
+    for name in &args.looks {
+        let variant = Variant::PLAIN.into_iter().find(|variant| variant.name() == name);
+        let settings = variant.unwrap_or(Variant::Current).of(&settings);
         let options = RenderOptions::default();
         let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
         let first = pictures.first().unwrap_or(&picture);
         let Distance { rmse, largest } = Distance::between(&first.shown, &picture.shown);
-        let name = look.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"));
         pictures.push(picture);
     }

@@ -1,5 +1,6 @@
 //! The display pass: tone map, background and sRGB.
 
+use super::pass;
 use super::tables::view_entry;
 use super::uniforms;
 use super::volume::entry;
@@ -79,21 +80,23 @@ pub(super) fn display(
         pad1: 0,
     };
     let uniform = context.buffer("Display::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let bind_group = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("Display::bind_group"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
+    let bind_group = pass::bind(
+        context,
+        "Display::bind_group",
+        &pipeline,
+        0,
+        &[
             entry(0, uniform.as_entire_binding()),
             view_entry(1, &target.picture_view),
             view_entry(2, &target.shown_view),
         ],
-    });
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-        label: Some("Display::pass"),
-        timestamp_writes: None,
-    });
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &bind_group, &[]);
-    pass.dispatch_workgroups(target.size[0].div_ceil(8), target.size[1].div_ceil(8), 1);
+    );
+    pass::dispatch(
+        encoder,
+        "Display::pass",
+        &pipeline,
+        &[&bind_group],
+        [target.size[0].div_ceil(8), target.size[1].div_ceil(8), 1],
+    );
     Ok(())
 }

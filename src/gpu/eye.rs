@@ -3,6 +3,7 @@
 use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
 use super::light_collapse::CollapsedLight;
 use super::light_volume::{LightVolume, light_bind_group};
+use super::pass;
 use super::scatter_eye::scatter_dilation;
 use super::tables::{Tables, dilation, view_entry};
 use super::uniforms;
@@ -132,10 +133,12 @@ impl EyePass {
         let pipeline = shaders.pipeline("eye.wgsl", &self.constants)?;
         let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, ..self.uniform };
         let uniform = context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Eye::bind_group"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        let own = pass::bind(
+            context,
+            "Eye::bind_group",
+            &pipeline,
+            0,
+            &[
                 entry(0, uniform.as_entire_binding()),
                 entry(1, tables.eye.buffer.as_entire_binding()),
                 view_entry(2, &tables.eye_distances),
@@ -143,18 +146,16 @@ impl EyePass {
                 entry(4, tables.lighting.buffer.as_entire_binding()),
                 view_entry(5, &tables.lighting_distances),
             ],
-        });
+        );
         let of_volume = volume.bind_group(context, &pipeline, dilation(self.frame.max_stretch_level()));
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("Eye::pass"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &own, &[]);
-        pass.set_bind_group(1, &of_volume, &[]);
-        pass.set_bind_group(2, &of_lights, &[]);
-        pass.dispatch_workgroups(self.frame.size[0].div_ceil(8), (rows.end - rows.start).div_ceil(8), 1);
+        pass::dispatch(
+            encoder,
+            "Eye::pass",
+            &pipeline,
+            &[&own, &of_volume, &of_lights],
+            pass::tiles([self.frame.size[0], rows.end - rows.start]),
+        );
         Ok(())
     }
 }

@@ -7,6 +7,7 @@ use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_march::Sheets;
 use super::light_volume::LightVolume;
 use super::listed_bricks;
+use super::pass;
 use super::tables::view_entry;
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
@@ -130,23 +131,25 @@ pub(super) fn backproject(
     let uniform = context.buffer("Backprojection::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let list = listed_bricks::upload(context, bricks);
     let sampler = context.sampler("Backprojection::ring_sampler", wgpu::AddressMode::Repeat);
-    let bind_group = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("Backprojection::bind_group"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
+    let bind_group = pass::bind(
+        context,
+        "Backprojection::bind_group",
+        &pipeline,
+        0,
+        &[
             entry(0, uniform.as_entire_binding()),
             entry(1, list.as_entire_binding()),
             view_entry(2, &sheets.ring_view),
             entry(3, wgpu::BindingResource::Sampler(&sampler)),
             view_entry(4, &light.view),
         ],
-    });
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-        label: Some("Backprojection::pass"),
-        timestamp_writes: None,
-    });
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &bind_group, &[]);
-    listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+    );
+    pass::dispatch(
+        encoder,
+        "Backprojection::pass",
+        &pipeline,
+        &[&bind_group],
+        listed_bricks::workgroups(bricks.len() as u32),
+    );
     Ok(())
 }

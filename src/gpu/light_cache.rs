@@ -4,8 +4,9 @@ use super::job::LightBuild;
 use super::light_collapse::{CollapsedKey, CollapsedLight};
 use super::light_volume::{LightVolume, bricks_holding};
 use super::listed_bricks;
+use super::tables::Tables;
 use super::volume::GpuVolume;
-use super::{GpuError, Renderer};
+use super::{GpuError, RenderOptions, Renderer};
 use crate::plan::{BrickSet, LightKey, Request, eye_frame};
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
@@ -34,6 +35,21 @@ fn looks_widely(volume: &GpuVolume, request: &Request) -> bool {
     settings.shadows.bias_voxels > 0.0 || farthest > frame.voxel_edge
 }
 
+/// Bricks of a light volume, of `divisor` data voxels per voxel, in which a picture can look.
+fn needed_bricks(
+    volume: &GpuVolume,
+    tables: &Tables,
+    options: &RenderOptions,
+    divisor: usize,
+    widely: bool,
+) -> BrickSet {
+    if options.fill_everything {
+        return bricks_holding(volume, &BrickSet::full(volume.bricks.dims), divisor);
+    }
+    let lit = if divisor > 1 || widely { &tables.lit_widely } else { &tables.lit };
+    bricks_holding(volume, lit, divisor)
+}
+
 impl Renderer {
     /// Finds or makes the light of a request: volumes for each light, or one for all.
     pub(super) fn place_all_light(&mut self, request: &Request) -> Result<PlacedLights, GpuError> {
@@ -47,7 +63,10 @@ impl Renderer {
         let all =
             (0..request.settings.lights.len()).filter_map(|light| LightKey::of(request, light)).collect();
         let key = CollapsedKey::new(all, &request.settings, &volume.scene, &self.options);
-        let needed = self.needed_bricks(request)?;
+        let Some(tables) = &self.tables else { return Err(GpuError::Refused("no volume".to_owned())) };
+        let widely = looks_widely(volume, request);
+        let divisor = request.settings.shadows.resolution.divisor();
+        let needed = needed_bricks(volume, tables, &self.options, divisor, widely);
         let usable = |known: &CollapsedLight| known.key == key && needed.is_within(&known.filled);
         if self.collapsed.as_ref().is_some_and(usable) {
             return Ok(PlacedLights { collapsed: true, ..PlacedLights::default() });
@@ -60,19 +79,6 @@ impl Renderer {
         let to_collapse = Some(like.filled.positions().count());
         self.collapsed = Some(CollapsedLight::new(&self.context, key, like)?);
         Ok(PlacedLights { keys, builds, collapsed: true, to_collapse })
-    }
-
-    /// Bricks of the light volumes in which a full-quality picture can look.
-    fn needed_bricks(&self, request: &Request) -> Result<BrickSet, GpuError> {
-        let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else {
-            return Err(GpuError::Refused("no volume".to_owned()));
-        };
-        let divisor = request.settings.shadows.resolution.divisor();
-        if self.options.fill_everything {
-            return Ok(bricks_holding(volume, &BrickSet::full(volume.bricks.dims), divisor));
-        }
-        let widely = divisor > 1 || looks_widely(volume, request);
-        Ok(bricks_holding(volume, if widely { &tables.lit_widely } else { &tables.lit }, divisor))
     }
 
     /// Forgets the light volumes of a picture, which have been collapsed.
@@ -90,16 +96,14 @@ impl Renderer {
         };
         let count = request.settings.lights.len();
         self.rebuilds.resize(self.rebuilds.len().max(count), 0);
-        let everything = self.options.fill_everything.then(|| BrickSet::full(volume.bricks.dims));
         let widely = looks_widely(volume, request);
         let mut keys = vec![None; count];
         let mut builds: Vec<LightBuild> = Vec::new();
         for (light, slot) in keys.iter_mut().enumerate() {
             let Some(full) = LightKey::of(request, light) else { continue };
+            let options = &self.options;
             let needed = |key: &LightKey, widely: bool| {
-                let divisor = key.resolution().divisor();
-                let lit = if divisor > 1 || widely { &tables.lit_widely } else { &tables.lit };
-                bricks_holding(volume, everything.as_ref().unwrap_or(lit), divisor)
+                needed_bricks(volume, tables, options, key.resolution().divisor(), widely)
             };
             // A preview makes do with what a picture at full quality looks up; around that light is full.
             let least = |key: &LightKey| needed(key, widely && request.coarse.is_none());

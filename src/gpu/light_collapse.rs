@@ -3,6 +3,7 @@
 use super::eye::{EyePass, pack_light, pack_shading};
 use super::light_volume::{LightVolume, light_bind_group};
 use super::listed_bricks;
+use super::pass;
 use super::tables::view_entry;
 use super::uniforms;
 use super::volume::{Gpu, entry, texture_3d};
@@ -121,27 +122,27 @@ impl CollapsedLight {
         };
         let uniform = context.buffer("Collapse::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
         let list = listed_bricks::upload(context, bricks);
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Collapse::bind_group"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        let own = pass::bind(
+            context,
+            "Collapse::bind_group",
+            &pipeline,
+            0,
+            &[
                 entry(0, eye.as_entire_binding()),
                 entry(1, uniform.as_entire_binding()),
                 entry(3, list.as_entire_binding()),
                 view_entry(4, &self.view),
             ],
-        });
+        );
         let of_volume = volume.pyramid_bind_group(context, &pipeline);
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("Collapse::pass"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &own, &[]);
-        pass.set_bind_group(1, &of_volume, &[]);
-        pass.set_bind_group(2, &of_lights, &[]);
-        listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+        pass::dispatch(
+            encoder,
+            "Collapse::pass",
+            &pipeline,
+            &[&own, &of_volume, &of_lights],
+            listed_bricks::workgroups(bricks.len() as u32),
+        );
         Ok(())
     }
 }

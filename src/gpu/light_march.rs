@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
+use super::pass;
 use super::tables::{dilation, upload_bricks, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry, texture_3d};
@@ -85,17 +86,19 @@ impl Sheets {
         uniform: &wgpu::Buffer,
         table: &wgpu::Buffer,
     ) -> wgpu::BindGroup {
-        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("March::bind_group"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        pass::bind(
+            context,
+            "March::bind_group",
+            pipeline,
+            0,
+            &[
                 entry(0, uniform.as_entire_binding()),
                 entry(1, table.as_entire_binding()),
                 view_entry(2, &self.distances),
                 entry(3, self.transmittance.as_entire_binding()),
                 view_entry(4, &self.ring_view),
             ],
-        })
+        )
     }
 
     /// Bytes of the ring and of the running transmittance.
@@ -173,13 +176,12 @@ pub(super) fn march(
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let own = sheets.march_bind_group(context, &pipeline, &uniform, table);
     let of_volume = volume.bind_group(context, &pipeline, dilation(stretch));
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-        label: Some("March::pass"),
-        timestamp_writes: None,
-    });
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &own, &[]);
-    pass.set_bind_group(1, &of_volume, &[]);
-    pass.dispatch_workgroups(view.frame.size[0].div_ceil(8), (rows.end - rows.start).div_ceil(8), 1);
+    pass::dispatch(
+        encoder,
+        "March::pass",
+        &pipeline,
+        &[&own, &of_volume],
+        pass::tiles([view.frame.size[0], rows.end - rows.start]),
+    );
     Ok(())
 }

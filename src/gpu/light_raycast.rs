@@ -4,6 +4,7 @@ use super::eye::pack_light;
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_volume::LightVolume;
 use super::listed_bricks;
+use super::pass;
 use super::tables::{Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
@@ -52,26 +53,27 @@ pub(super) fn raycast(
     };
     let uniform = context.buffer("Raycast::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let list = listed_bricks::upload(context, bricks);
-    let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("Raycast::bind_group"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
+    let own = pass::bind(
+        context,
+        "Raycast::bind_group",
+        &pipeline,
+        0,
+        &[
             entry(0, uniform.as_entire_binding()),
             entry(1, tables.lighting.buffer.as_entire_binding()),
             view_entry(2, &tables.lighting_distances),
             entry(3, list.as_entire_binding()),
             view_entry(4, &target.view),
         ],
-    });
+    );
     // Rays to lights are not stretched.
     let of_volume = volume.bind_group(context, &pipeline, 0);
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-        label: Some("Raycast::pass"),
-        timestamp_writes: None,
-    });
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &own, &[]);
-    pass.set_bind_group(1, &of_volume, &[]);
-    listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+    pass::dispatch(
+        encoder,
+        "Raycast::pass",
+        &pipeline,
+        &[&own, &of_volume],
+        listed_bricks::workgroups(bricks.len() as u32),
+    );
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
 
 use super::listed_bricks;
+use super::pass;
 use super::tables::view_entry;
 use super::volume::{Gpu, GpuVolume, brick_dims, entry, texture_3d};
 use super::{Context, GpuError};
@@ -72,18 +73,20 @@ impl LightVolume {
         let Gpu { context, shaders, .. } = gpu;
         let pipeline = shaders.pipeline_into("light_around.wgsl", &[], self.texture.format())?;
         let list = listed_bricks::upload(context, bricks);
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("LightVolume::around"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[entry(0, list.as_entire_binding()), view_entry(1, &self.view)],
-        });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("LightVolume::around"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &own, &[]);
-        listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+        let own = pass::bind(
+            context,
+            "LightVolume::around",
+            &pipeline,
+            0,
+            &[entry(0, list.as_entire_binding()), view_entry(1, &self.view)],
+        );
+        pass::dispatch(
+            encoder,
+            "LightVolume::around",
+            &pipeline,
+            &[&own],
+            listed_bricks::workgroups(bricks.len() as u32),
+        );
         Ok(())
     }
 
@@ -102,11 +105,7 @@ pub(super) fn light_bind_group(
 ) -> wgpu::BindGroup {
     let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.nothing);
     let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
-    gpu.context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("LightVolume::bind_group"),
-        layout: &pipeline.get_bind_group_layout(2),
-        entries: &views,
-    })
+    pass::bind(gpu.context, "LightVolume::bind_group", pipeline, 2, &views)
 }
 
 /// The bricks of a light volume that hold the given bricks of the data.

@@ -15,7 +15,7 @@ pub(super) fn upload(context: &Context, bricks: &[u32]) -> wgpu::Buffer {
     context.buffer("listed_bricks", bricks, wgpu::BufferUsages::STORAGE)
 }
 
-/// Two workgroups for each brick.
-pub(super) fn dispatch(pass: &mut wgpu::ComputePass<'_>, listed: u32) {
-    pass.dispatch_workgroups(2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1);
+/// Two workgroups for each of so many bricks.
+pub(super) fn workgroups(listed: u32) -> [u32; 3] {
+    [2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1]
 }

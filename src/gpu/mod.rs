@@ -22,6 +22,7 @@ mod light_march;
 mod light_raycast;
 mod light_volume;
 mod listed_bricks;
+mod pass;
 mod picture;
 mod prefilter;
 mod readback;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::pass;
 use super::uniforms;
 use super::volume::{GpuVolume, entry};
 use super::{Context, GpuError, ShaderLibrary};
@@ -51,23 +52,25 @@ pub(super) fn fill(
     let pipeline = shaders.pipeline(shader, &[])?;
     let uniform = uniforms::Slices { first: slices.start, end: slices.end, pad0: 0, pad1: 0 };
     let uniform = context.buffer("Pyramid::slices", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let bind_group = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("Pyramid::bind_group"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
+    let bind_group = pass::bind(
+        context,
+        "Pyramid::bind_group",
+        &pipeline,
+        0,
+        &[
             entry(0, wgpu::BindingResource::TextureView(&source)),
             entry(1, wgpu::BindingResource::Sampler(&volume.clamped)),
             entry(2, wgpu::BindingResource::TextureView(&view_of(level))),
             entry(3, uniform.as_entire_binding()),
         ],
-    });
+    );
     let [width, height, _] = texels(volume, level);
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-        label: Some("Pyramid::fill"),
-        timestamp_writes: None,
-    });
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &bind_group, &[]);
-    pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(4), (slices.end - slices.start).div_ceil(4));
+    pass::dispatch(
+        encoder,
+        "Pyramid::fill",
+        &pipeline,
+        &[&bind_group],
+        [width.div_ceil(8), height.div_ceil(4), (slices.end - slices.start).div_ceil(4)],
+    );
     Ok(())
 }

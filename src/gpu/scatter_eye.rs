@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::eye::EyePass;
 use super::light_volume::light_bind_group;
+use super::pass;
 use super::scatter_footprints::Footprints;
 use super::scatter_splat::{Scatterer, Splat, sums, widest_stretch};
 use super::scatter_voxels::ScatterVoxels;
@@ -102,15 +103,17 @@ impl EyeScatter {
         let mut constants = eye.scatter_constants();
         constants.extend_from_slice(&self.scatterer.constants()[3..]);
         let pipeline = shaders.pipeline("scatter_eye.wgsl", &constants)?;
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("EyeScatter::bind_group"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        let own = pass::bind(
+            context,
+            "EyeScatter::bind_group",
+            &pipeline,
+            0,
+            &[
                 entry(0, uniform.as_entire_binding()),
                 entry(1, tables.eye.buffer.as_entire_binding()),
                 view_entry(2, &tables.eye_distances),
             ],
-        });
+        );
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         for k in slabs {
             // The slabs ahead are there when their neighbours need them.
@@ -128,26 +131,25 @@ impl EyeScatter {
                 continue;
             }
             let slab = self.scatterer.uniform_buffer(context, k, 1.0);
-            let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("EyeScatter::sheets"),
-                layout: &pipeline.get_bind_group_layout(1),
-                entries: &[
+            let shared = pass::bind(
+                context,
+                "EyeScatter::sheets",
+                &pipeline,
+                1,
+                &[
                     entry(0, slab.as_entire_binding()),
                     entry(1, self.scatterer.sheets.as_entire_binding()),
                     entry(3, self.rays.as_entire_binding()),
                     entry(4, wgpu::BindingResource::Sampler(&self.clamped)),
                 ],
-            });
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("EyeScatter::composite"),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &own, &[]);
-            pass.set_bind_group(1, &shared, &[]);
-            pass.set_bind_group(2, &of_lights, &[]);
-            let [width, height] = self.scatterer.frame.size;
-            pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
+            );
+            pass::dispatch(
+                encoder,
+                "EyeScatter::composite",
+                &pipeline,
+                &[&own, &shared, &of_lights],
+                pass::tiles(self.scatterer.frame.size),
+            );
         }
         if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) }
     }
@@ -162,25 +164,22 @@ impl EyeScatter {
         let Gpu { context, shaders, .. } = gpu;
         let pipeline = shaders.pipeline("scatter_resolve.wgsl", &[])?;
         let uniform = self.scatterer.uniform_buffer(context, 0, 1.0);
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("EyeScatter::picture"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[entry(0, self.rays.as_entire_binding()), view_entry(1, picture)],
-        });
-        let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("EyeScatter::frame"),
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &[entry(0, uniform.as_entire_binding())],
-        });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("EyeScatter::resolve"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &own, &[]);
-        pass.set_bind_group(1, &shared, &[]);
-        let [width, height] = self.scatterer.frame.size;
-        pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
+        let own = pass::bind(
+            context,
+            "EyeScatter::picture",
+            &pipeline,
+            0,
+            &[entry(0, self.rays.as_entire_binding()), view_entry(1, picture)],
+        );
+        let shared =
+            pass::bind(context, "EyeScatter::frame", &pipeline, 1, &[entry(0, uniform.as_entire_binding())]);
+        pass::dispatch(
+            encoder,
+            "EyeScatter::resolve",
+            &pipeline,
+            &[&own, &shared],
+            pass::tiles(self.scatterer.frame.size),
+        );
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 
 use super::eye::EyePass;
 use super::light_volume::light_bind_group;
+use super::pass;
 use super::scatter_splat::Scatterer;
 use super::scatter_voxels::ScatterVoxels;
 use super::uniforms::Phase;
@@ -74,10 +75,12 @@ impl Footprints {
         let mut constants = eye.scatter_constants();
         constants.extend_from_slice(scatterer.constants());
         let pipeline = shaders.pipeline("scatter_footprints.wgsl", &constants)?;
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Footprints::bind_group"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        let own = pass::bind(
+            context,
+            "Footprints::bind_group",
+            &pipeline,
+            0,
+            &[
                 entry(0, eye_uniform.as_entire_binding()),
                 entry(1, table.as_entire_binding()),
                 entry(3, voxels.first_words.as_entire_binding()),
@@ -85,36 +88,38 @@ impl Footprints {
                 entry(5, counter.as_entire_binding()),
                 entry(6, voxels.buffer.as_entire_binding()),
             ],
-        });
+        );
         let uniform: uniforms::Scatter = scatterer.uniform(k, 1.0);
         let slab = context.buffer("Footprints::slice", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Footprints::rays"),
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &[
+        let shared = pass::bind(
+            context,
+            "Footprints::rays",
+            &pipeline,
+            1,
+            &[
                 entry(0, slab.as_entire_binding()),
                 entry(2, scatterer.footprints().as_entire_binding()),
                 entry(3, rays.as_entire_binding()),
                 entry(4, wgpu::BindingResource::Sampler(clamped)),
             ],
-        });
+        );
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("Footprints::draw"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &own, &[]);
-        pass.set_bind_group(1, &shared, &[]);
-        pass.set_bind_group(2, &of_lights, &[]);
         for phase in &self.phases {
-            let turn = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("Footprints::phase"),
-                layout: &pipeline.get_bind_group_layout(3),
-                entries: &[entry(0, phase.as_entire_binding())],
-            });
-            pass.set_bind_group(3, &turn, &[]);
-            pass.dispatch_workgroups(uniform.count.div_ceil(64), 1, 1);
+            let turn = pass::bind(
+                context,
+                "Footprints::phase",
+                &pipeline,
+                3,
+                &[entry(0, phase.as_entire_binding())],
+            );
+            let groups = [&own, &shared, &of_lights, &turn];
+            pass::dispatch(
+                encoder,
+                "Footprints::draw",
+                &pipeline,
+                &groups,
+                [uniform.count.div_ceil(64), 1, 1],
+            );
         }
         Ok(())
     }

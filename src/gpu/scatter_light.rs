@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::light_march::{Sheets, constants as march_constants, march_uniform};
 use super::light_volume::LightVolume;
 use super::listed_bricks;
+use super::pass;
 use super::scatter_eye::{scatter_dilation, splatted_bricks};
 use super::scatter_splat::{Scatterer, Splat, sums};
 use super::scatter_voxels::ScatterVoxels;
@@ -88,23 +89,20 @@ impl LightScatter {
                 self.scatterer.splat(gpu, voxels, counter, k, encoder)?;
             }
             let slab = self.scatterer.uniform_buffer(context, k, 1.0);
-            let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("LightScatter::sheets"),
-                layout: &pipeline.get_bind_group_layout(1),
-                entries: &[
-                    entry(0, slab.as_entire_binding()),
-                    entry(1, self.scatterer.sheets.as_entire_binding()),
-                ],
-            });
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("LightScatter::march"),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &own, &[]);
-            pass.set_bind_group(1, &shared, &[]);
-            let [width, height] = view.frame.size;
-            pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
+            let shared = pass::bind(
+                context,
+                "LightScatter::sheets",
+                &pipeline,
+                1,
+                &[entry(0, slab.as_entire_binding()), entry(1, self.scatterer.sheets.as_entire_binding())],
+            );
+            pass::dispatch(
+                encoder,
+                "LightScatter::march",
+                &pipeline,
+                &[&own, &shared],
+                pass::tiles(view.frame.size),
+            );
         }
         Ok(())
     }
@@ -119,28 +117,28 @@ impl LightScatter {
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
         let pipeline = shaders.pipeline("scatter_reverse.wgsl", self.scatterer.constants())?;
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("LightScatter::grid"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        let own = pass::bind(
+            context,
+            "LightScatter::grid",
+            &pipeline,
+            0,
+            &[
                 view_entry(0, &sheets.distances),
                 view_entry(1, &sheets.ring_view),
                 entry(2, self.light.as_entire_binding()),
                 entry(3, self.weights.as_entire_binding()),
             ],
-        });
+        );
         for k in slabs {
             let slab = self.scatterer.uniform_buffer(context, k, self.divisor as f64);
             let shared = self.scatterer.bind_group(context, &pipeline, &slab, false);
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("LightScatter::splat_back"),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &own, &[]);
-            pass.set_bind_group(1, &shared, &[]);
-            let [width, height] = self.scatterer.frame.size;
-            pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
+            pass::dispatch(
+                encoder,
+                "LightScatter::splat_back",
+                &pipeline,
+                &[&own, &shared],
+                pass::tiles(self.scatterer.frame.size),
+            );
         }
         Ok(())
     }
@@ -162,29 +160,27 @@ impl LightScatter {
         let mut uniform = self.scatterer.uniform(0, 1.0);
         uniform.count = bricks.len() as u32;
         let uniform = context.buffer("LightScatter::normalise", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("LightScatter::normalise"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        let own = pass::bind(
+            context,
+            "LightScatter::normalise",
+            &pipeline,
+            0,
+            &[
                 entry(0, list.as_entire_binding()),
                 entry(1, self.light.as_entire_binding()),
                 entry(2, self.weights.as_entire_binding()),
                 view_entry(3, &target.view),
             ],
-        });
-        let shared = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("LightScatter::slab"),
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &[entry(0, uniform.as_entire_binding())],
-        });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("LightScatter::normalise"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &own, &[]);
-        pass.set_bind_group(1, &shared, &[]);
-        listed_bricks::dispatch(&mut pass, bricks.len() as u32);
+        );
+        let shared =
+            pass::bind(context, "LightScatter::slab", &pipeline, 1, &[entry(0, uniform.as_entire_binding())]);
+        pass::dispatch(
+            encoder,
+            "LightScatter::normalise",
+            &pipeline,
+            &[&own, &shared],
+            listed_bricks::workgroups(bricks.len() as u32),
+        );
         Ok(())
     }
 

@@ -6,6 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::footprint_table::{RADIUS, footprint_table};
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::listed_bricks;
+use super::pass;
 use super::scatter_voxels::ScatterVoxels;
 use super::sheet_lists::{slab_lists, slice_lists};
 use super::tables::Table;
@@ -224,11 +225,7 @@ impl Scatterer {
         if with_sheets {
             entries.push(entry(1, self.sheets.as_entire_binding()));
         }
-        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Scatterer::bind_group"),
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &entries,
-        })
+        pass::bind(context, "Scatterer::bind_group", pipeline, 1, &entries)
     }
 
     /// Splats the voxels of slab `k`, and counts them.
@@ -243,26 +240,22 @@ impl Scatterer {
         let Gpu { context, shaders, .. } = gpu;
         let pipeline = shaders.pipeline("scatter_splat.wgsl", &self.constants)?;
         let uniform = self.uniform_buffer(context, k, 1.0);
-        let own = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Scatterer::voxels"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
+        let own = pass::bind(
+            context,
+            "Scatterer::voxels",
+            &pipeline,
+            0,
+            &[
                 entry(0, self.bricks.as_entire_binding()),
                 entry(1, self.table.as_entire_binding()),
                 entry(6, voxels.buffer.as_entire_binding()),
                 entry(2, counter.as_entire_binding()),
             ],
-        });
+        );
         let shared = self.bind_group(context, &pipeline, &uniform, true);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("Scatterer::splat"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &own, &[]);
-        pass.set_bind_group(1, &shared, &[]);
         let [start, end] = [self.starts[k as usize], self.starts[k as usize + 1]];
-        listed_bricks::dispatch(&mut pass, end - start);
+        let workgroups = listed_bricks::workgroups(end - start);
+        pass::dispatch(encoder, "Scatterer::splat", &pipeline, &[&own, &shared], workgroups);
         Ok(())
     }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 33] = [
+pub const SHADERS: [(&str, &str); 34] = [
     ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
@@ -14,6 +14,7 @@ pub const SHADERS: [(&str, &str); 33] = [
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),
     ("common/lights.wgsl", include_str!("../../shaders/common/lights.wgsl")),
     ("common/listed_bricks.wgsl", include_str!("../../shaders/common/listed_bricks.wgsl")),
+    ("common/looked_up_light.wgsl", include_str!("../../shaders/common/looked_up_light.wgsl")),
     ("common/march.wgsl", include_str!("../../shaders/common/march.wgsl")),
     ("common/resample.wgsl", include_str!("../../shaders/common/resample.wgsl")),
     ("common/scatter.wgsl", include_str!("../../shaders/common/scatter.wgsl")),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use half::f16;
 
+use super::pass;
 use super::uniforms::Grid;
 use super::{Context, GpuError};
 use crate::data::{BRICK_EDGE, Bricks, Volume};
@@ -170,15 +171,17 @@ impl GpuVolume {
         pipeline: &wgpu::ComputePipeline,
     ) -> wgpu::BindGroup {
         let grid = context.buffer("Volume::grid", &[self.grid(0)], wgpu::BufferUsages::UNIFORM);
-        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Volume::pyramid_bind_group"),
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &[
+        pass::bind(
+            context,
+            "Volume::pyramid_bind_group",
+            pipeline,
+            1,
+            &[
                 entry(0, grid.as_entire_binding()),
                 entry(2, wgpu::BindingResource::TextureView(&self.pyramid_view)),
                 entry(3, wgpu::BindingResource::Sampler(&self.clamped)),
             ],
-        })
+        )
     }
 
     /// Bind group 1 of the passes that sample density.
@@ -189,16 +192,18 @@ impl GpuVolume {
         dilation: i32,
     ) -> wgpu::BindGroup {
         let grid = context.buffer("Volume::grid", &[self.grid(dilation)], wgpu::BufferUsages::UNIFORM);
-        context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("Volume::bind_group"),
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &[
+        pass::bind(
+            context,
+            "Volume::bind_group",
+            pipeline,
+            1,
+            &[
                 entry(0, grid.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(&self.density_view)),
                 entry(2, wgpu::BindingResource::TextureView(&self.pyramid_view)),
                 entry(3, wgpu::BindingResource::Sampler(&self.clamped)),
             ],
-        })
+        )
     }
 }
 

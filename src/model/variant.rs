@@ -28,6 +28,20 @@ impl Variant {
     pub const PLAIN: [Self; 7] =
         [Self::Current, Self::Off, Self::Splat, Self::Raycast, Self::Direct, Self::Scatter, Self::FirstTouch];
 
+    /// What the command line calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Current => "current",
+            Self::Off => "off",
+            Self::Splat => "splat",
+            Self::Raycast => "raycast",
+            Self::Direct => "direct",
+            Self::Scatter => "scatter",
+            Self::FirstTouch => "first-touch",
+            Self::Look(_) => "look",
+        }
+    }
+
     /// What the user calls it.
     pub fn label(&self) -> &'static str {
         match self {

@@ -1,7 +1,9 @@
 //! What is kept and what is refilled; and what must not change a single bit.
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
-use chiaroscuro::model::{Kernel, LightKind, Quadrature, Settings, ShadowAlgorithm};
+use chiaroscuro::model::{
+    Kernel, LightKind, LightStorage, Quadrature, Resolution, Settings, ShadowAlgorithm,
+};
 use chiaroscuro::plan::Request;
 use glam::DVec3;
 
@@ -139,6 +141,13 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
     inside.lights[0] = scenes::light(LightKind::Perspective, [0.1, -0.4, 0.5]);
     inside.camera.distance = 0.6;
     looks.push(inside);
+    let mut biased = scenes::look();
+    biased.shadows.bias_voxels = 2.0;
+    let mut halved = scenes::look();
+    halved.shadows.resolution = Resolution::Half;
+    let mut collapsed = three_lights();
+    collapsed.shadows.storage = LightStorage::Collapsed;
+    looks.extend([biased, halved, collapsed]);
     for algorithm in [ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
         let mut rays = scenes::look();
         rays.shadows.algorithm = algorithm;
