@@ -8,10 +8,10 @@
 #import "common/gradient.wgsl"
 
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
-// For rays to lights: the lighting transfer function, and the distance in bricks to the nearest that
+// For rays to lights: the lighting transfer function, and in g the distance in cells to the nearest that
 // it makes attenuate light.
 @group(0) @binding(4) var<storage, read> lighting_table: array<vec4f, 1024>;
-@group(0) @binding(5) var lighting_distances: texture_3d<u32>;
+@group(0) @binding(5) var light_distances: texture_3d<u32>;
 
 // Cast rays to the lights instead of looking into volumes (P §3.3).
 override DIRECT: bool = false;
@@ -23,8 +23,8 @@ fn light_extinction(density: f32) -> f32 {
     return mix(lighting_table[at.low].a, lighting_table[at.low + 1u].a, at.fraction);
 }
 
-fn light_distance(brick: vec3i) -> vec2u {
-    return select(vec2u(0u, 255u), textureLoad(lighting_distances, brick, 0).rg, eye.leaping != 0u);
+fn light_distance(cell: vec3i) -> i32 {
+    return i32(textureLoad(light_distances, cell, 0).g);
 }
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
@@ -67,11 +67,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let ray = ray_of(eye.frame, vec2f(pixel));
     let inside = slabs_inside(eye.frame, ray);
+    let walk = walk_along(eye.frame, ray);
     var k = inside.x;
     var color = vec3f(0.0);
     var t = 1.0;
     loop {
-        // Find the next slab with material: leap over empty bricks, then look at the sheet. These are
+        // Find the next slab with material: leap over empty cells, then look at the sheet. These are
         // loops of their own because software drivers save work only by leaving a loop.
         var material = vec4f(0.0);
         loop {
@@ -79,18 +80,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 if (k > inside.y) {
                     break;
                 }
-                let depth = depth_of(eye.frame, f32(k));
-                let p = ray.origin + ray.direction * depth;
-                let brick = brick_of(p);
-                let near = textureLoad(distances, brick, 0).rg;
-                let empty = i32(near.r) - grid.dilation;
-                if (empty > 0 && eye.leaping != 0u) {
-                    k = leap(eye.frame, ray, k, brick, empty);
-                } else if (can_see(eye.frame, depth, p, brick, i32(near.r), near.g) || eye.leaping == 0u) {
+                let cell = cell_at(walk, k);
+                let empty = i32(textureLoad(distances, cell, 0).r) - grid.dilation;
+                if (empty <= 0) {
                     break;
-                } else {
-                    k += 1;
                 }
+                k = leap(walk, k, cell, empty);
             }
             if (k > inside.y) {
                 break;

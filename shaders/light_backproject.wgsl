@@ -31,7 +31,7 @@ struct Backprojection {
 }
 
 @group(0) @binding(0) var<uniform> view: Backprojection;
-@group(0) @binding(1) var<storage, read> bricks: array<u32>;
+@group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(2) var ring: texture_3d<f32>;
 // Clamps across a sheet, repeats from sheet to sheet.
 @group(0) @binding(3) var ring_sampler: sampler;
@@ -136,52 +136,84 @@ fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
     return select(1.0, sum / weights, weights > 1e-12);
 }
 
-@compute @workgroup_size(8, 8, 4)
-fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    let listed = listed_brick(group);
-    if (listed >= view.bricks) {
-        return;
-    }
-    let voxel = voxel_in(bricks[listed], group, local);
-    if (any(voxel >= view.dims)) {
-        return;
-    }
+// Where a light voxel's footprint lies in the sheets.
+struct Footprint {
+    pixel: vec2f,
+    slab: f32,
+    // Radius-one widths of the kernel.
+    pixels: f32,
+    slabs: f32,
+    // The last sheet under the kernel: the voxel's chunk is the one that marches it. Of radius 2,
+    // whichever the kernel, so that the choice of chunk does not depend on it.
+    final_slab: i32,
+    // The view owns it, and it is not in the plane of the light.
+    is_seen: bool,
+}
+
+fn footprint_of(voxel: vec3u) -> Footprint {
     let p = vec4f((vec3f(voxel) + 0.5) * view.voxel_step - 0.5, 1.0);
     let across = vec2f(dot(view.light_from_index_x, p), dot(view.light_from_index_y, p));
     let depth = dot(view.light_from_index_z, p);
     let spread = 1.0 + depth * view.frame.inverse_distance;
     let limit = spread / max(view.frame.inverse_distance * view.frame.pitch, 1e-20);
-    if (view.cube_face != 0u && !(spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001)))) {
-        return;
-    }
-    if (!(spread > 1e-3)) {
+    let owned = view.cube_face == 0u || spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001));
+    if (owned && !(spread > 1e-3) && view.begin == 0u && all(voxel < view.dims)) {
         // In the plane of the light, and of this view: at the light itself.
-        if (view.begin == 0u) {
-            textureStore(attenuation, voxel, vec4f(1.0));
-        }
-        return;
+        textureStore(attenuation, voxel, vec4f(1.0));
     }
-    let pixel = across / spread - view.first_pixel;
-    let slab = (depth - view.frame.first_depth) / view.frame.slab - 0.5;
     let pitch = view.frame.pitch * spread;
     let pixels = clamp(view.kernel_edge / pitch, 1.0, MAX_KERNEL_PIXELS);
     let slabs = pixels * pitch / view.frame.slab;
-
-    // This voxel's chunk is the one that marches the last sheet under its kernel (of radius 2,
-    // whichever the kernel, so that the choice of chunk does not depend on it).
+    let slab = (depth - view.frame.first_depth) / view.frame.slab - 0.5;
     let last_slab = i32(view.frame.slab_count) - 1;
     let final_slab = clamp(i32(floor(slab + 2.0 * slabs + point_offset())), 0, last_slab);
-    if (final_slab < i32(view.begin) || final_slab >= i32(view.end)) {
+    let is_seen = owned && spread > 1e-3 && all(voxel < view.dims);
+    return Footprint(across / spread - view.first_pixel, slab, pixels, slabs, final_slab, is_seen);
+}
+
+// Eight lanes to a cell of 2³ voxels, and every eighth cell of the brick to the same lanes.
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let listed = group.y * 32768u + group.x;
+    if (listed >= view.bricks) {
         return;
     }
-    var value: f32;
-    if (FIRST_TOUCH) {
-        let first = clamp(i32(ceil(slab - 2.0 * slabs)), 0, last_slab);
-        value = sheet(pixel, layer(first));
-    } else if (WIDE) {
-        value = gather_wide(pixel, slab, pixels, slabs);
-    } else {
-        value = gather_four(pixel, slab);
+    let brick = bricks[listed];
+    var left = brick.yz & vec2u(0x01010101u << (lane / 8u));
+    let in_cell = vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u);
+    var found: Footprint;
+    var voxel: vec3u;
+    loop {
+        // The next listed cell that this chunk completes. A loop of its own because software drivers
+        // save work only by leaving a loop.
+        var is_due = false;
+        loop {
+            if (all(left == vec2u(0u))) {
+                break;
+            }
+            let low = left.x != 0u;
+            let cell = select(firstTrailingBit(left.y) + 32u, firstTrailingBit(left.x), low);
+            left = select(vec2u(left.x, left.y & (left.y - 1u)), vec2u(left.x & (left.x - 1u), left.y), low);
+            let place = vec3u(cell, cell >> 2u, cell >> 4u) & vec3u(3u);
+            voxel = unpacked(brick.x) * 8u + place * 2u + in_cell;
+            found = footprint_of(voxel);
+            is_due = found.is_seen && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
+            if (is_due) {
+                break;
+            }
+        }
+        if (!is_due) {
+            break;
+        }
+        var value: f32;
+        if (FIRST_TOUCH) {
+            let first = clamp(i32(ceil(found.slab - 2.0 * found.slabs)), 0, i32(view.frame.slab_count) - 1);
+            value = sheet(found.pixel, layer(first));
+        } else if (WIDE) {
+            value = gather_wide(found.pixel, found.slab, found.pixels, found.slabs);
+        } else {
+            value = gather_four(found.pixel, found.slab);
+        }
+        textureStore(attenuation, voxel, vec4f(value));
     }
-    textureStore(attenuation, voxel, vec4f(value));
 }

@@ -18,7 +18,7 @@ struct Collapse {
 }
 
 @group(0) @binding(1) var<uniform> collapse: Collapse;
-@group(0) @binding(3) var<storage, read> bricks: array<u32>;
+@group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var collapsed: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(8, 8, 4)
@@ -27,8 +27,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     if (listed >= collapse.bricks) {
         return;
     }
-    let voxel = voxel_in(bricks[listed], group, local);
-    if (any(voxel >= collapse.dims)) {
+    let voxel = voxel_in(bricks[listed].x, group, local);
+    if (!is_listed(bricks[listed], group, local) || any(voxel >= collapse.dims)) {
         return;
     }
     let p = (vec3f(voxel) + 0.5) * collapse.voxel_step - 0.5;

@@ -4,7 +4,7 @@
 // Sheets go to a ring of layers; the back-projection reads them before they are overwritten. Only
 // what it will read is stored: the rest of the ring holds leftovers.
 #import "common/classify.wgsl"
-#import "common/bricks.wgsl"
+#import "common/cells.wgsl"
 #import "common/march.wgsl"
 
 @compute @workgroup_size(8, 8)
@@ -19,6 +19,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
     let end = i32(march.end);
     var k = i32(march.begin);
     var t = select(transmittance[pixel], unattenuated(vec2f(id.xy)), march.begin == 0u);
+    let walk = walk_along(march.frame, ray);
     loop {
         // Cheap steps in loops of their own: leap over what nobody reads, and pass the light on where
         // nothing attenuates it. Software drivers save work only by leaving a loop.
@@ -27,25 +28,22 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
                 if (k >= end) {
                     break;
                 }
-                let brick = brick_of(ray.origin + ray.direction * depth_of(march.frame, f32(k)));
-                let unread = i32(textureLoad(distances, brick, 0).r);
-                if (unread == 0) {
+                let cell = cell_at(walk, k);
+                let unread = i32(textureLoad(distances, cell, 0).r) - march.reach;
+                if (unread <= 0) {
                     break;
                 }
-                k = leap(march.frame, ray, k, brick, unread);
+                k = leap(walk, k, cell, unread);
             }
             var attenuates = false;
             loop {
                 if (k >= end) {
                     break;
                 }
-                let depth = depth_of(march.frame, f32(k));
-                let p = ray.origin + ray.direction * depth;
-                let brick = brick_of(p);
-                let near = textureLoad(distances, brick, 0);
-                attenuates = near.r == 0u && t > march.dark && k >= inside.x && k <= inside.y
-                    && can_see(march.frame, depth, p, brick, i32(near.g), near.b);
-                if (attenuates || near.r > 0u) {
+                let near = vec2i(textureLoad(distances, cell_at(walk, k), 0).rg);
+                let is_read = near.r <= march.reach;
+                attenuates = is_read && near.g <= grid.dilation && t > march.dark && k >= inside.x && k <= inside.y;
+                if (attenuates || !is_read) {
                     break;
                 }
                 textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(t));

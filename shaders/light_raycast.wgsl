@@ -17,22 +17,21 @@ struct Raycast {
     ray_step: f32,
     // Optical depth at which a ray ends.
     dark: f32,
-    // 1: consult the bricks.
-    leaping: u32,
+    pad0: u32,
 }
 
 @group(0) @binding(0) var<uniform> raycast: Raycast;
-// r: distance in bricks to the nearest that attenuates light; g: a bit for each octant that does.
+// g: distance in cells to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<u32>;
-@group(0) @binding(3) var<storage, read> bricks: array<u32>;
+@group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
 fn light_extinction(density: f32) -> f32 {
     return classify(density).a;
 }
 
-fn light_distance(brick: vec3i) -> vec2u {
-    return select(vec2u(0u, 255u), textureLoad(distances, brick, 0).rg, raycast.leaping != 0u);
+fn light_distance(cell: vec3i) -> i32 {
+    return i32(textureLoad(distances, cell, 0).g);
 }
 
 @compute @workgroup_size(8, 8, 4)
@@ -41,8 +40,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     if (listed >= raycast.bricks) {
         return;
     }
-    let voxel = voxel_in(bricks[listed], group, local);
-    if (any(voxel >= raycast.dims)) {
+    let voxel = voxel_in(bricks[listed].x, group, local);
+    if (!is_listed(bricks[listed], group, local) || any(voxel >= raycast.dims)) {
         return;
     }
     let p = (vec3f(voxel) + 0.5) * raycast.voxel_step - 0.5;

@@ -65,7 +65,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
     if (material.a > 0.0 && left >= eye.dark && brick.x >= 0 && in_front) {
         // Sums are complete only where the transfer function shows something at all.
-        if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation || eye.leaping == 0u) {
+        if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
             let rgb = shade(p, gradient_between_sheets(pixel, k, met), material.rgb);
             let opacity = 1.0 - exp(-material.a * met.thickness * ray.obliquity);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);

@@ -3,7 +3,7 @@
 #import "common/scatter.wgsl"
 #import "common/listed_bricks.wgsl"
 
-@group(0) @binding(0) var<storage, read> bricks: array<u32>;
+@group(0) @binding(0) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(1) var<storage, read> light: array<i32>;
 @group(0) @binding(2) var<storage, read> weights: array<i32>;
 @group(0) @binding(3) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
@@ -14,7 +14,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     if (listed >= scatter.count) {
         return;
     }
-    let voxel = voxel_in(bricks[listed], group, local);
+    let voxel = voxel_in(bricks[listed].x, group, local);
     if (any(voxel >= scatter.light_dims)) {
         return;
     }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use chiaroscuro::data::BRICK_EDGE;
+use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
 use chiaroscuro::gpu::{SHADERS, ShaderLibrary, uniforms};
 use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS};
 use chiaroscuro::plan::{MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL};
@@ -211,7 +211,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         slope_dj,
         size,
     });
-    let grid = layout!(Grid { dims, dilation, density_scale, pad0, pyramid_scale, pad1, bricks, pad2 });
+    let grid = layout!(Grid { dims, dilation, density_scale, pad0, pyramid_scale, pad1, cells, pad2 });
     let light = layout!(Light {
         place,
         perspective,
@@ -246,6 +246,10 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 hood_outer,
                 hood_axis,
                 dark,
+                reach,
+                pad0,
+                pad1,
+                pad2,
             }),
         ),
         (
@@ -269,7 +273,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light_raycast.wgsl", light.clone()),
         (
             "light_raycast.wgsl",
-            layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, leaping }),
+            layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, pad0 }),
         ),
         ("eye.wgsl", light),
         (
@@ -309,14 +313,14 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 eye,
                 first_row,
                 end_row,
-                leaping,
+                dilation,
                 dark,
                 gradient_pixels,
                 gradient_slabs,
-                dilation,
                 pad0,
-                collapsed_lookup,
                 pad1,
+                collapsed_lookup,
+                pad2,
                 lights
             }),
         ),
@@ -529,21 +533,18 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
         let (_, text) = SHADERS.iter().find(|(known, _)| *known == name).expect("the file is there");
         code_of(text)
     };
-    let bricks = file("common/bricks.wgsl");
-    for text in [
-        format!("floor(p / {BRICK_EDGE}.0)"),
-        format!("vec3f(first * {BRICK_EDGE})"),
-        format!("vec3f(last * {BRICK_EDGE})"),
-    ] {
-        assert!(bricks.contains(&text), "common/bricks.wgsl must have {text}");
-    }
-    assert!(bricks.contains(&format!("floor(p / {}.0)", BRICK_EDGE / 2)), "octants are half as long");
-    assert_eq!(bricks.matches('8').count(), 3, "a new number in common/bricks.wgsl: check it here");
+    let cells = file("common/cells.wgsl");
+    let halves = format!("/ {CELL_EDGE}.0");
+    assert_eq!(cells.matches(&halves).count(), 2, "common/cells.wgsl divides by the edge of a cell");
 
     // A workgroup is half a brick.
     let half = BRICK_EDGE / 2;
     let listed = file("common/listed_bricks.wgsl");
-    for text in [format!("brick * {BRICK_EDGE}u + local"), format!("group.x % 2u * {half}u")] {
+    for text in [
+        format!("brick * {BRICK_EDGE}u + local"),
+        format!("group.x % 2u * {half}u"),
+        format!("local / {CELL_EDGE}u"),
+    ] {
         assert!(listed.contains(&text), "common/listed_bricks.wgsl must have {text}");
     }
     let (scatter, voxels) = (file("common/scatter.wgsl"), file("common/voxels.wgsl"));
@@ -556,13 +557,14 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     for text in [format!("voxel / {BRICK_EDGE};"), format!("brick * {BRICK_EDGE}u *")] {
         assert!(footprints.contains(&text), "scatter_footprints.wgsl must have {text}");
     }
-    let over_bricks = [
-        "light_backproject.wgsl",
-        "light_collapse.wgsl",
-        "light_raycast.wgsl",
-        "scatter_normalise.wgsl",
-        "scatter_splat.wgsl",
-    ];
+    // Or a whole one, cell by cell.
+    let backproject = file("light_backproject.wgsl");
+    for text in [format!("brick.x) * {BRICK_EDGE}u + place * {CELL_EDGE}u"), format!("lane / {BRICK_EDGE}u")]
+    {
+        assert!(backproject.contains(&text), "light_backproject.wgsl must have {text}");
+    }
+    let over_bricks =
+        ["light_collapse.wgsl", "light_raycast.wgsl", "scatter_normalise.wgsl", "scatter_splat.wgsl"];
     for name in over_bricks {
         let text = format!("@workgroup_size({BRICK_EDGE}, {BRICK_EDGE}, {half})");
         assert!(file(name).contains(&text), "{name} must have {text}");
@@ -576,7 +578,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("downsample.wgsl", [8, 4, 4]),
         ("eye.wgsl", [8, 8, 1]),
         ("light_around.wgsl", [8, 8, 4]),
-        ("light_backproject.wgsl", [8, 8, 4]),
+        ("light_backproject.wgsl", [64, 1, 1]),
         ("light_collapse.wgsl", [8, 8, 4]),
         ("light_march.wgsl", [8, 8, 1]),
         ("light_raycast.wgsl", [8, 8, 4]),

@@ -1,12 +1,13 @@
 // Passes over the light voxels of listed bricks (src/gpu/listed_bricks.rs): two workgroups of
 // 8 × 8 × 4 to a brick of 8³, in rows of 32768 bricks because a dispatch has at most 65535 groups.
+// A listed brick is its coordinates, of ten bits each, and a bit for each of its 4³ cells that is meant.
 
 // Which brick of the list a workgroup fills half of.
 fn listed_brick(group: vec3u) -> u32 {
     return group.y * 32768u + group.x / 2u;
 }
 
-// A brick's coordinates, of ten bits each.
+// A brick's coordinates.
 fn unpacked(packed: u32) -> vec3u {
     return vec3u(packed & 1023u, packed >> 10u & 1023u, packed >> 20u);
 }
@@ -15,4 +16,10 @@ fn unpacked(packed: u32) -> vec3u {
 fn voxel_in(packed: u32, group: vec3u, local: vec3u) -> vec3u {
     let brick = unpacked(packed);
     return brick * 8u + local + vec3u(0u, 0u, group.x % 2u * 4u);
+}
+
+// Whether that voxel's cell is meant.
+fn is_listed(brick: vec4u, group: vec3u, local: vec3u) -> bool {
+    let cell = local / 2u;
+    return (select(brick.y, brick.z, group.x % 2u == 1u) >> (cell.x + 4u * cell.y + 16u * cell.z) & 1u) == 1u;
 }

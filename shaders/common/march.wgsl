@@ -19,11 +19,16 @@ struct March {
     hood_axis: vec3f,
     // Light is followed until less than this is left of it.
     dark: f32,
+    // Cells beyond those whose light is looked up that the reverse kernel reads.
+    reach: i32,
+    pad0: i32,
+    pad1: i32,
+    pad2: i32,
 }
 
 @group(0) @binding(0) var<uniform> march: March;
-// Distances in bricks: r to the nearest that is read, g to the nearest that attenuates light; b: a bit
-// for each octant of the brick that does.
+// Distances in cells: r to the nearest whose light is looked up, g to the nearest that attenuates light. Of
+// scattered sheets in bricks, r to the nearest that is read.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 // Transmittance in front of the next slab, per pixel.
 @group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;

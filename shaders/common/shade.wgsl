@@ -16,25 +16,23 @@ struct Eye {
     first_row: u32,
     // One beyond the last row of this dispatch.
     end_row: u32,
-    // 1: consult the bricks (always, but for the check that they change nothing).
-    leaping: u32,
+    // Of scattered sheets: bricks beyond an occupied one in which sums are complete.
+    dilation: i32,
     // The ray ends when less than this is left of its transmittance.
     dark: f32,
     // Gradients from sheets are differences between so many pixels and slabs to either side.
     gradient_pixels: i32,
     gradient_slabs: i32,
-    // Bricks beyond an occupied one that a stretched kernel can see.
-    dilation: i32,
     pad0: i32,
+    pad1: i32,
     // Index space to texture coordinates of the volume into which lights have been collapsed.
     collapsed_lookup: vec3f,
-    pad1: f32,
+    pad2: f32,
     lights: array<Light, MAX_LIGHTS>,
 }
 
 @group(0) @binding(0) var<uniform> eye: Eye;
-// r: distance in bricks to the nearest that the eye's transfer function shows; g: a bit for each octant
-// of the brick that it shows.
+// Distance to the nearest cell, or for scattered sheets brick, that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 @group(2) @binding(0) var attenuation_0: texture_3d<f32>;
 @group(2) @binding(1) var attenuation_1: texture_3d<f32>;

@@ -1,6 +1,6 @@
 // A ray from a point of the volume towards a light (P eq. 7 and 8). The shader that imports this
-// says what attenuates light, by light_extinction(density) and light_distance(brick).
-#import "common/bricks.wgsl"
+// says what attenuates light, by light_extinction(density) and light_distance(cell).
+#import "common/cells.wgsl"
 
 // Whether the first sample lies a whole step from the point, as P eq. 7 and 8 have it, or in the
 // middle of the first step.
@@ -18,26 +18,21 @@ fn shadow_ray(p: vec3f, direction: vec3f, reach: f32, ray_step: f32, scale: f32,
     frame.slab_count = u32(clamp((reach - frame.first_depth) / ray_step + 0.5, 0.0, 65535.0));
     let ray = Ray(p, direction, 1.0);
     let inside = slabs_inside(frame, ray);
+    let walk = walk_along(frame, ray);
     var k = inside.x;
     var depth = 0.0;
     loop {
-        // Loops of their own, as in the eye pass.
+        // A loop of its own, as in the eye pass.
         loop {
             if (k > inside.y) {
                 break;
             }
-            let at_depth = depth_of(frame, f32(k));
-            let at = ray.origin + ray.direction * at_depth;
-            let brick = brick_of(at);
-            let near = light_distance(brick);
-            let empty = i32(near.r) - grid.dilation;
-            if (empty > 0) {
-                k = leap(frame, ray, k, brick, empty);
-            } else if (can_see(frame, at_depth, at, brick, i32(near.r), near.g)) {
+            let cell = cell_at(walk, k);
+            let empty = light_distance(cell) - grid.dilation;
+            if (empty <= 0) {
                 break;
-            } else {
-                k += 1;
             }
+            k = leap(walk, k, cell, empty);
         }
         if (k > inside.y) {
             break;

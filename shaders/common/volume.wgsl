@@ -5,7 +5,7 @@
 struct Grid {
     // Voxels.
     dims: vec3f,
-    // Bricks beyond an occupied one that a stretched kernel can see.
+    // Cells beyond the one around a sample that it sees: stretched, or at two points.
     dilation: i32,
     // 1 / texels of the density texture, which has one voxel of nothing around the data.
     density_scale: vec3f,
@@ -13,7 +13,8 @@ struct Grid {
     // 1 / texels of the pyramid's level 0, which has four voxels of nothing before the data.
     pyramid_scale: vec3f,
     pad1: f32,
-    bricks: vec3i,
+    // Cells of 2³ voxels.
+    cells: vec3i,
     pad2: i32,
 }
 

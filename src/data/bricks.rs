@@ -9,6 +9,7 @@
 use rayon::prelude::*;
 
 use super::Volume;
+use super::cells::{self, CellBounds};
 
 /// Voxels along the edge of a brick.
 pub const BRICK_EDGE: usize = 8;
@@ -24,25 +25,17 @@ pub struct Bricks {
     pub dims: [usize; 3],
     /// (smallest, largest) density that a sample in the brick can see, x fastest.
     pub ranges: Vec<[f32; 2]>,
-    /// The same of the octants of every brick, x fastest within it, for samples at one point and
-    /// kernels that are not stretched: they see a voxel less before and two behind their own.
-    pub octants: Vec<[[f32; 2]; 8]>,
+    /// Bounds of the density reconstructed in each of their cells, by one unstretched kernel.
+    pub cells: Vec<CellBounds>,
 }
 
 impl Bricks {
     /// Finds the ranges of a volume's bricks.
     pub fn of(volume: &Volume) -> Self {
         let dims = volume.dims().map(|n| n.div_ceil(BRICK_EDGE));
-        let ranges = ranges(volume, dims, &Cells { edge: BRICK_EDGE, before: REACH, behind: REACH });
-        let halves = dims.map(|n| 2 * n);
-        let of_halves = self::ranges(volume, halves, &Cells { edge: BRICK_EDGE / 2, before: 1, behind: 2 });
-        let octant = |brick: usize, octant: usize| {
-            let [x, y, z] = [brick % dims[0], brick / dims[0] % dims[1], brick / (dims[0] * dims[1])];
-            let (x, y, z) = (2 * x + octant % 2, 2 * y + octant / 2 % 2, 2 * z + octant / 4);
-            of_halves[x + halves[0] * (y + halves[1] * z)]
-        };
-        let octants = (0..ranges.len()).map(|brick| std::array::from_fn(|at| octant(brick, at))).collect();
-        Self { dims, ranges, octants }
+        let ranges = ranges(volume, dims);
+        let cells = cells::bounds(volume, dims, &ranges);
+        Self { dims, ranges, cells }
     }
 
     /// For every brick whether a transfer function shows anything of it: `visible(min, max)`.
@@ -50,13 +43,19 @@ impl Bricks {
         self.ranges.par_iter().map(|&[min, max]| visible(min, max)).collect()
     }
 
-    /// For every brick its octants of which a transfer function shows anything, a bit each.
-    pub fn octant_masks(&self, visible: impl Fn(f32, f32) -> bool + Sync) -> Vec<u8> {
-        let mask = |octants: &[[f32; 2]; 8]| {
-            let bit = |at: usize| u8::from(visible(octants[at][0], octants[at][1])) << at;
-            (0..8).map(bit).sum()
+    /// For every brick its cells in which a transfer function shows anything, a bit each.
+    pub fn cell_masks(&self, visible: impl Fn(f32, f32) -> bool + Sync) -> Vec<u64> {
+        let mask = |(range, cells): (&[f32; 2], &CellBounds)| {
+            if !visible(range[0], range[1]) {
+                return 0;
+            }
+            let bit = |(at, bounds): (usize, &[u8; 2])| {
+                let [min, max] = cells::restored(*bounds, *range);
+                u64::from(visible(min, max)) << at
+            };
+            cells.iter().enumerate().map(bit).sum()
         };
-        self.octants.par_iter().map(mask).collect()
+        self.ranges.par_iter().zip(&self.cells).map(mask).collect()
     }
 }
 
@@ -66,53 +65,43 @@ fn union(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// Cubes of voxels, and how many voxels further their samples see on either side.
-struct Cells {
-    edge: usize,
-    before: usize,
-    behind: usize,
+/// First and last voxel that brick `b` looks at along an axis of `n` voxels, if any, and whether it looks
+/// outside.
+fn reach(b: usize, n: usize) -> (Option<(usize, usize)>, bool) {
+    let (low, high) = (b * BRICK_EDGE, (b + 1) * BRICK_EDGE - 1 + REACH);
+    let first = low.saturating_sub(REACH);
+    ((first < n).then_some((first, high.min(n - 1))), low < REACH || high > n - 1)
 }
 
-impl Cells {
-    /// First and last voxel that cell `b` looks at along an axis of `n` voxels, if any, and whether it
-    /// looks outside.
-    fn reach(&self, b: usize, n: usize) -> (Option<(usize, usize)>, bool) {
-        let (low, high) = (b * self.edge, (b + 1) * self.edge - 1 + self.behind);
-        let first = low.saturating_sub(self.before);
-        ((first < n).then_some((first, high.min(n - 1))), low < self.before || high > n - 1)
-    }
-
-    /// The union of what lies in reach of cell `b`, and of nothing where it looks outside.
-    fn gather(&self, b: usize, n: usize, at: impl Fn(usize) -> [f32; 2]) -> [f32; 2] {
-        let (inside, outside) = self.reach(b, n);
-        let start = if outside { [0.0, 0.0] } else { EMPTY };
-        inside.map_or(start, |(first, last)| (first..=last).fold(start, |range, i| union(range, at(i))))
-    }
+/// The union of what lies in reach of brick `b`, and of nothing where it looks outside.
+fn gather(b: usize, n: usize, at: impl Fn(usize) -> [f32; 2]) -> [f32; 2] {
+    let (inside, outside) = reach(b, n);
+    let start = if outside { [0.0, 0.0] } else { EMPTY };
+    inside.map_or(start, |(first, last)| (first..=last).fold(start, |range, i| union(range, at(i))))
 }
 
-/// The range of every cell: slices reduced in x and y, then layers of slices in z.
-fn ranges(volume: &Volume, dims: [usize; 3], cells: &Cells) -> Vec<[f32; 2]> {
+/// The range of every brick: slices reduced in x and y, then layers of slices in z.
+fn ranges(volume: &Volume, dims: [usize; 3]) -> Vec<[f32; 2]> {
     let [nx, ny, nz] = volume.dims();
     let reduce_slice = |z: usize| -> Vec<[f32; 2]> {
         let densities = volume.slice_densities(z);
         let rows: Vec<[f32; 2]> = (0..ny * dims[0])
             .map(|at| {
-                let (row, (inside, outside)) =
-                    (&densities[at / dims[0] * nx..], cells.reach(at % dims[0], nx));
+                let (row, (inside, outside)) = (&densities[at / dims[0] * nx..], reach(at % dims[0], nx));
                 let start = if outside { [0.0, 0.0] } else { EMPTY };
                 let seen = inside.map_or(&row[..0], |(first, last)| &row[first..=last]);
                 seen.iter().fold(start, |[low, high], &d| [low.min(d), high.max(d)])
             })
             .collect();
         (0..dims[1] * dims[0])
-            .map(|at| cells.gather(at / dims[0], ny, |y| rows[y * dims[0] + at % dims[0]]))
+            .map(|at| gather(at / dims[0], ny, |y| rows[y * dims[0] + at % dims[0]]))
             .collect()
     };
     let per_slice: Vec<Vec<[f32; 2]>> = (0..nz).into_par_iter().map(reduce_slice).collect();
     (0..dims[2])
         .into_par_iter()
         .flat_map_iter(|b| {
-            (0..dims[0] * dims[1]).map(|at| cells.gather(b, nz, |z| per_slice[z][at])).collect::<Vec<_>>()
+            (0..dims[0] * dims[1]).map(|at| gather(b, nz, |z| per_slice[z][at])).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -137,28 +126,6 @@ mod tests {
         assert_eq!(bricks.occupancy(|_, max| max > 0.0), [true, true, false]);
         let bricks = Bricks::of(&volume_with([24, 8, 8], [11, 4, 4]));
         assert_eq!(bricks.occupancy(|_, max| max > 0.0), [false, true, false]);
-    }
-
-    #[test]
-    fn every_sample_sees_only_what_its_octant_announces() {
-        let dims = [19, 11, 9];
-        let lit = [7i32, 8, 3];
-        let bricks = Bricks::of(&volume_with(dims, lit.map(|c| c as usize)));
-        let masks = bricks.octant_masks(|_, max| max > 0.0);
-        for at in 0..15 * 15 * 23 {
-            let cell = [at % 23 - 2, at / 23 % 15 - 2, at / (23 * 15) - 2];
-            let sees = (0..3).all(|axis| (cell[axis] - 1..=cell[axis] + 2).contains(&lit[axis]));
-            let brick: [usize; 3] = std::array::from_fn(|axis| {
-                (cell[axis].max(0) as usize / BRICK_EDGE).min(bricks.dims[axis] - 1)
-            });
-            let half = |axis: usize| {
-                (cell[axis].div_euclid(BRICK_EDGE as i32 / 2) - 2 * brick[axis] as i32).clamp(0, 1) as usize
-            };
-            let mask = masks[brick[0] + bricks.dims[0] * (brick[1] + bricks.dims[1] * brick[2])];
-            let shown = mask >> (half(0) + 2 * half(1) + 4 * half(2)) & 1 == 1;
-            assert!(!sees || shown, "cell {cell:?}");
-        }
-        assert!(masks.iter().map(|mask| mask.count_ones()).sum::<u32>() < 30, "most octants see nothing");
     }
 
     #[test]

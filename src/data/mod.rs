@@ -3,11 +3,13 @@
 //! Knows nothing of settings, of the GPU or of the window.
 
 mod bricks;
+mod cells;
 mod histogram;
 pub mod load;
 pub mod synthetic;
 mod volume;
 
 pub use bricks::{BRICK_EDGE, Bricks};
+pub use cells::{BOUNDED_SIGMA, CELL_EDGE, CELLS, CellBounds, SIGMA_TOLERANCE};
 pub use histogram::Histogram;
 pub use volume::{Samples, Volume, VolumeError, VoxelType};

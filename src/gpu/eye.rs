@@ -5,7 +5,7 @@ use super::light_collapse::CollapsedLight;
 use super::light_volume::{LightVolume, light_bind_group};
 use super::pass;
 use super::scatter_eye::scatter_dilation;
-use super::tables::{Tables, dilation, view_entry};
+use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
 use super::{Context, GpuError, RenderOptions};
@@ -14,13 +14,15 @@ use crate::model::{
     Deposit, Gradients, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm,
     Shadows,
 };
-use crate::plan::{SheetFrame, eye_frame};
+use crate::plan::{SheetFrame, eye_frame, ray_reach, sample_reach};
 
 /// Everything that the eye pass of one picture needs besides the volume.
 #[derive(Debug)]
 pub(super) struct EyePass {
     frame: SheetFrame,
     uniform: uniforms::Eye,
+    /// Cells around a sample's own that it sees.
+    dilation: i32,
     constants: Vec<(&'static str, f64)>,
 }
 
@@ -71,17 +73,22 @@ impl EyePass {
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
             end_row: size[1],
-            leaping: u32::from(options.leaping),
+            dilation: if options.leaping { scatter_dilation(&frame) } else { EVERYWHERE },
             dark: options.dark,
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
-            dilation: dilation(frame.max_stretch_level()),
             pad0: 0,
+            pad1: 0,
             collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
-            pad1: 0.0,
+            pad2: 0.0,
             lights: packed,
         };
-        Self { frame, uniform, constants }
+        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature);
+        if direct {
+            seen = seen.max(ray_reach(&settings.shadows, scene));
+        }
+        let dilation = if options.leaping { i32::from(seen) } else { EVERYWHERE };
+        Self { frame, uniform, dilation, constants }
     }
 
     /// Slabs of the stack.
@@ -96,11 +103,7 @@ impl EyePass {
 
     /// What the shaders know about the eye, for the whole picture from scattered sheets.
     pub(super) fn uniform_buffer(&self, context: &Context, gradient_slabs: u32) -> wgpu::Buffer {
-        let uniform = uniforms::Eye {
-            dilation: scatter_dilation(&self.frame),
-            gradient_slabs: gradient_slabs as i32,
-            ..self.uniform
-        };
+        let uniform = uniforms::Eye { gradient_slabs: gradient_slabs as i32, ..self.uniform };
         context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
     }
 
@@ -144,10 +147,10 @@ impl EyePass {
                 view_entry(2, &tables.eye_distances),
                 view_entry(3, picture),
                 entry(4, tables.lighting.buffer.as_entire_binding()),
-                view_entry(5, &tables.lighting_distances),
+                view_entry(5, &tables.light_distances),
             ],
         );
-        let of_volume = volume.bind_group(context, &pipeline, dilation(self.frame.max_stretch_level()));
+        let of_volume = volume.bind_group(context, &pipeline, self.dilation);
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         pass::dispatch(
             encoder,

@@ -8,7 +8,7 @@ use super::scatter_light::LightScatter;
 use super::{GpuError, RenderOptions, Renderer};
 use crate::data::{Bricks, Volume};
 use crate::model::Settings;
-use crate::plan::{BrickSet, LightKey, Request, light_views};
+use crate::plan::{FARTHEST, LightKey, Request, light_views};
 
 impl Renderer {
     /// Reads back the attenuation volume that a light of the last picture used.
@@ -66,23 +66,30 @@ impl Renderer {
         let (gpu, tables) = self.gpu()?;
         let lamp = settings.lights[light].in_world(&settings.camera);
         let geometry = &light_views(&lamp, &settings.shadows, &gpu.volume.scene)[view];
-        let everything = BrickSet::full(gpu.volume.bricks.dims);
         let count = geometry.frame.slab_count;
-        let occupied = (&tables.lighting.occupied, tables.lighting.octants.as_slice());
-        let sheets = Sheets::new(&self.context, geometry, count, &everything, occupied)?;
+        let sheets = Sheets::new(&self.context, geometry, count, i32::from(FARTHEST))?;
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let table = &tables.lighting.buffer;
         let lamp = (&lamp, settings);
         if settings.scatters() {
             let (voxels, counter) = self.scattering()?;
             let target = self.lights.first().ok_or_else(|| GpuError::Refused("no light".to_owned()))?;
             let of_light = (settings, target);
             let options = RenderOptions::default();
-            let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, &options)?;
-            scatter.march(gpu, voxels, counter, table, lamp, geometry, &sheets, 0..count, &mut encoder)?;
+            let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, None, &options)?;
+            scatter.march(
+                gpu,
+                voxels,
+                counter,
+                &tables.lighting.buffer,
+                lamp,
+                geometry,
+                &sheets,
+                0..count,
+                &mut encoder,
+            )?;
         } else {
-            march(gpu, table, lamp, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
+            march(gpu, tables, lamp, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
         }
         self.context.queue.submit([encoder.finish()]);
         let mut values = read_floats(&self.context, &sheets.ring)?;

@@ -8,12 +8,12 @@ use super::light_backproject::Schedule;
 use super::light_march::Sheets;
 use super::light_raycast::BRICKS_PER_STEP;
 use super::light_volume::{LightVolume, read_bricks};
-use super::listed_bricks::packed;
+use super::listed_bricks::{Listed, listed};
 use super::scatter_eye::{EyeScatter, SLABS_PER_STEP};
 use super::scatter_light::LightScatter;
 use super::volume::GpuVolume;
 use crate::model::{Light, ShadowAlgorithm};
-use crate::plan::{BrickSet, LightKey, LightView, Request, light_views};
+use crate::plan::{BrickSet, LightKey, LightView, Request, light_views, reverse_reach};
 
 /// Slabs per chunk of the light march: enough to be worth a dispatch, few enough for one to be short.
 const CHUNK_SLABS: std::ops::RangeInclusive<u64> = 8..=64;
@@ -110,12 +110,14 @@ pub(super) struct LightBuild {
     pub views: Vec<LightView>,
     /// … and slabs per chunk of each.
     pub chunks: Vec<u32>,
-    /// Data bricks whose sheets will be read.
-    pub read: BrickSet,
-    /// Bricks around them, which only previews look up: they are fully lit.
-    pub around: Vec<u32>,
+    /// Cells beyond those that the transfer functions show whose sheets will be read.
+    pub reach: u8,
+    /// Data bricks whose scattered sheets will be splatted back.
+    pub read: Option<BrickSet>,
+    /// Bricks around what is filled, which only previews look up: they are fully lit.
+    pub around: Vec<Listed>,
     /// Bricks of the light volume, for rays to fill or sums to be normalised in.
-    pub bricks: Vec<u32>,
+    pub bricks: Vec<Listed>,
     /// Sheets and schedule of the view that is being marched …
     pub current: Option<(Sheets, Schedule)>,
     /// … and what is scattered into them and back, if it is.
@@ -141,20 +143,23 @@ impl LightBuild {
         let views = if splats { light_views(&lamp, &shadows, &volume.scene) } else { Vec::new() };
         let usual = |view| if settings.scatters() { SLABS_PER_STEP } else { chunk_slabs(volume, view) };
         let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| usual(view))).collect();
-        let read = read_bricks(volume, &fresh.filled, fresh.divisor, &views);
-        let bricks = fresh.filled.positions().map(packed).collect();
+        let scatters = splats && settings.scatters();
+        let read = scatters.then(|| read_bricks(volume, &fresh.filled, fresh.divisor, &views));
+        let reach = fresh.reach.saturating_add(reverse_reach(&views, &volume.scene, fresh.divisor));
+        let bricks = fresh.filled.bricks().map(listed).collect();
         Self {
             light,
             lamp,
             key: fresh.key.clone(),
             views,
             chunks,
+            reach,
             read,
             around: Vec::new(),
             bricks,
             current: None,
             scatter: None,
-            scatters: splats && settings.scatters(),
+            scatters,
         }
     }
 

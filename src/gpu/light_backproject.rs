@@ -6,7 +6,7 @@ use super::GpuError;
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_march::Sheets;
 use super::light_volume::LightVolume;
-use super::listed_bricks;
+use super::listed_bricks::{self, Listed};
 use super::pass;
 use super::tables::view_entry;
 use super::uniforms::{self, rows};
@@ -19,7 +19,7 @@ use crate::plan::LightView;
 /// The bricks of a light volume, by the chunk of slabs that completes them.
 #[derive(Debug)]
 pub(super) struct Schedule {
-    chunks: Vec<Vec<u32>>,
+    chunks: Vec<Vec<Listed>>,
 }
 
 impl Schedule {
@@ -27,10 +27,10 @@ impl Schedule {
     pub(super) fn new(scene: &SceneSpace, view: &LightView, light: &LightVolume, chunk: u32) -> Self {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
-        for brick in light.filled.positions() {
+        for (brick, cells) in light.filled.bricks() {
             let (first, last) = final_slabs(scene, view, light, brick);
             for list in &mut chunks[(first / chunk) as usize..=(last / chunk) as usize] {
-                list.push(listed_bricks::packed(brick));
+                list.push(listed_bricks::listed((brick, cells)));
             }
         }
         Self { chunks }
@@ -149,7 +149,7 @@ pub(super) fn backproject(
         "Backprojection::pass",
         &pipeline,
         &[&bind_group],
-        listed_bricks::workgroups(bricks.len() as u32),
+        listed_bricks::single_workgroups(bricks.len() as u32),
     );
     Ok(())
 }

@@ -1,13 +1,18 @@
 //! Which light volumes a picture needs, which of them are there, and which are forgotten.
 
+use std::sync::Arc;
+
 use super::job::LightBuild;
 use super::light_collapse::{CollapsedKey, CollapsedLight};
-use super::light_volume::{LightVolume, bricks_holding};
-use super::listed_bricks;
+use super::light_volume::LightVolume;
+use super::listed_bricks::listed;
 use super::tables::Tables;
-use super::volume::GpuVolume;
+use super::volume::{GpuVolume, brick_dims};
 use super::{GpuError, RenderOptions, Renderer};
-use crate::plan::{BrickSet, LightKey, Request, eye_frame};
+use crate::plan::{
+    CellSet, FARTHEST, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, eye_frame, lookup_reach, slab_reach,
+    stretch_reach,
+};
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
 /// undoing a drag finds them, and two looks that are compared do not push out each other's.
@@ -26,28 +31,42 @@ pub(super) struct PlacedLights {
     pub to_collapse: Option<usize>,
 }
 
-/// Whether a picture can look up light further from material than the kernel reaches: with stretched
-/// kernels, or a bias. The same for every direction to look from, so that orbiting refills nothing.
-fn looks_widely(volume: &GpuVolume, request: &Request) -> bool {
+/// The reach of samples of previews, whose pixels may be as wide as kernels stretch.
+const WIDEST: f64 = MAX_STRETCH_LEVEL;
+
+/// How many cells from what the transfer functions show a picture looks up light: as far as its samples
+/// see, and a light bias further. The same for every direction to look from, so that orbiting refills
+/// nothing.
+fn sample_reach(volume: &GpuVolume, request: &Request) -> u8 {
     let Request { settings, size, .. } = request;
-    let frame = eye_frame(&settings.camera, &volume.scene, *size, settings.sampling.slab);
-    let farthest = frame.pitch_at(volume.scene.support_radius());
-    settings.shadows.bias_voxels > 0.0 || farthest > frame.voxel_edge
+    let scene = &volume.scene;
+    let frame = eye_frame(&settings.camera, scene, *size, settings.sampling.slab);
+    let stretch = frame.stretch_level(scene.support_radius() + frame.slab);
+    let [width, height] = size.map(f64::from);
+    let obliquity = frame.obliquity(0.0, 0.0).max(frame.obliquity(width, height));
+    let slab = slab_reach(scene, frame.slab, obliquity, settings.sampling.quadrature);
+    stretch_reach(stretch).saturating_add(slab).saturating_add(bias_reach(settings.shadows.bias_voxels))
 }
 
-/// Bricks of a light volume, of `divisor` data voxels per voxel, in which a picture can look.
-fn needed_bricks(
+/// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples
+/// reach so far, and how far those are from what the transfer functions show.
+fn needed_cells(
     volume: &GpuVolume,
     tables: &Tables,
     options: &RenderOptions,
     divisor: usize,
-    widely: bool,
-) -> BrickSet {
+    reach: u8,
+) -> (Arc<CellSet>, u8) {
     if options.fill_everything {
-        return bricks_holding(volume, &BrickSet::full(volume.bricks.dims), divisor);
+        let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
+        return (Arc::new(CellSet::full(brick_dims(dims))), FARTHEST);
     }
-    let lit = if divisor > 1 || widely { &tables.lit_widely } else { &tables.lit };
-    bricks_holding(volume, lit, divisor)
+    let reach = reach.saturating_add(lookup_reach(divisor));
+    (tables.cells_within(volume, reach, divisor), reach)
+}
+
+fn is_within(needed: &Arc<CellSet>, filled: &Arc<CellSet>) -> bool {
+    Arc::ptr_eq(needed, filled) || needed.is_within(filled)
 }
 
 impl Renderer {
@@ -64,10 +83,10 @@ impl Renderer {
             (0..request.settings.lights.len()).filter_map(|light| LightKey::of(request, light)).collect();
         let key = CollapsedKey::new(all, &request.settings, &volume.scene, &self.options);
         let Some(tables) = &self.tables else { return Err(GpuError::Refused("no volume".to_owned())) };
-        let widely = looks_widely(volume, request);
+        let reach = sample_reach(volume, request);
         let divisor = request.settings.shadows.resolution.divisor();
-        let needed = needed_bricks(volume, tables, &self.options, divisor, widely);
-        let usable = |known: &CollapsedLight| known.key == key && needed.is_within(&known.filled);
+        let (needed, _) = needed_cells(volume, tables, &self.options, divisor, reach);
+        let usable = |known: &CollapsedLight| known.key == key && is_within(&needed, &known.filled);
         if self.collapsed.as_ref().is_some_and(usable) {
             return Ok(PlacedLights { collapsed: true, ..PlacedLights::default() });
         }
@@ -76,7 +95,7 @@ impl Renderer {
         let first = keys.iter().flatten().next();
         let like = self.lights.iter().find(|light| Some(&light.key) == first);
         let like = like.ok_or_else(|| GpuError::Refused("no light casts shadows".to_owned()))?;
-        let to_collapse = Some(like.filled.positions().count());
+        let to_collapse = Some(like.filled.bricks().count());
         self.collapsed = Some(CollapsedLight::new(&self.context, key, like)?);
         Ok(PlacedLights { keys, builds, collapsed: true, to_collapse })
     }
@@ -96,19 +115,19 @@ impl Renderer {
         };
         let count = request.settings.lights.len();
         self.rebuilds.resize(self.rebuilds.len().max(count), 0);
-        let widely = looks_widely(volume, request);
+        let reach = sample_reach(volume, request);
         let mut keys = vec![None; count];
         let mut builds: Vec<LightBuild> = Vec::new();
         for (light, slot) in keys.iter_mut().enumerate() {
             let Some(full) = LightKey::of(request, light) else { continue };
             let options = &self.options;
-            let needed = |key: &LightKey, widely: bool| {
-                needed_bricks(volume, tables, options, key.resolution().divisor(), widely)
+            let needed = |key: &LightKey, reach: u8| {
+                needed_cells(volume, tables, options, key.resolution().divisor(), reach)
             };
             // A preview makes do with what a picture at full quality looks up; around that light is full.
-            let least = |key: &LightKey| needed(key, widely && request.coarse.is_none());
+            let least = |key: &LightKey| needed(key, if request.coarse.is_some() { 0 } else { reach }).0;
             let usable = |known: &LightVolume, key: &LightKey| {
-                known.key == *key && least(key).is_within(&known.filled)
+                known.key == *key && is_within(&least(key), &known.filled)
             };
             let coarse = request.coarse.map(|resolution| full.at_resolution(resolution));
             let found = [Some(full.clone()), coarse.clone()]
@@ -118,11 +137,11 @@ impl Renderer {
             let key = found.clone().or(coarse).unwrap_or(full);
             if found.is_none() {
                 self.lights.retain(|known| known.key != key);
-                let filled = needed(&key, widely);
-                let around = needed(&key, true).without(&filled);
+                let filled = needed(&key, reach);
+                let around = needed(&key, reach.max(stretch_reach(WIDEST))).0.without(&filled.0);
                 let fresh = LightVolume::new(&self.context, volume, key.clone(), filled)?;
                 let mut build = LightBuild::new(volume, request, light, &fresh, self.options.chunk);
-                build.around = around.positions().map(listed_bricks::packed).collect();
+                build.around = around.bricks().map(listed).collect();
                 self.lights.push(fresh);
                 builds.push(build);
             }

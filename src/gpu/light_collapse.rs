@@ -1,8 +1,10 @@
 //! Collapses the light volumes of several lights into one of diffuse light.
 
+use std::sync::Arc;
+
 use super::eye::{EyePass, pack_light, pack_shading};
 use super::light_volume::{LightVolume, light_bind_group};
-use super::listed_bricks;
+use super::listed_bricks::{self, Listed};
 use super::pass;
 use super::tables::view_entry;
 use super::uniforms;
@@ -10,7 +12,7 @@ use super::volume::{Gpu, entry, texture_3d};
 use super::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::Settings;
-use crate::plan::{BrickSet, LightKey};
+use crate::plan::{CellSet, LightKey};
 
 /// Bricks per submission: 2048 × 512 voxels take a software adapter some 0.1 s.
 pub(super) const BRICKS_PER_STEP: usize = 2048;
@@ -58,8 +60,8 @@ pub(super) struct CollapsedLight {
     divisor: usize,
     /// Linear RGB.
     pub view: wgpu::TextureView,
-    /// Bricks that hold values.
-    pub filled: BrickSet,
+    /// Cells that hold values.
+    pub filled: Arc<CellSet>,
     /// Whether all of them are there.
     pub complete: bool,
 }
@@ -82,7 +84,7 @@ impl CollapsedLight {
             dims: like.dims,
             divisor: like.divisor,
             view,
-            filled: like.filled.clone(),
+            filled: Arc::clone(&like.filled),
             complete: false,
         })
     }
@@ -103,7 +105,7 @@ impl CollapsedLight {
         gpu: Gpu<'_>,
         pass: &EyePass,
         attenuation: &[&wgpu::TextureView],
-        bricks: &[u32],
+        bricks: &[Listed],
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         if bricks.is_empty() {

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
 use super::pass;
-use super::tables::{dilation, upload_bricks, view_entry};
+use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry, texture_3d};
 use super::{Context, GpuError, RenderOptions};
 use crate::model::{Deposit, Light, Settings};
-use crate::plan::{BrickSet, LightView};
+use crate::plan::{LightView, sample_reach};
 
 /// The sheets of one view of a light: a ring of layers through which the slabs stream.
 #[derive(Debug)]
@@ -25,23 +25,16 @@ pub(super) struct Sheets {
     /// The same.
     pub ring_view: wgpu::TextureView,
     transmittance: wgpu::Buffer,
-    /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
-    pub distances: wgpu::TextureView,
+    /// Cells beyond those that the transfer functions show whose sheets are read.
+    reach: i32,
 }
 
 impl Sheets {
     /// Makes a ring that streams `chunk` slabs at a time and keeps what the reverse kernel still
     /// needs of the ones before.
     ///
-    /// `read` are the bricks whose sheets will be read, `occupied` those that attenuate light, and
-    /// `octants` their parts that do.
-    pub(super) fn new(
-        context: &Context,
-        view: &LightView,
-        chunk: u32,
-        read: &BrickSet,
-        (occupied, octants): (&BrickSet, &[u8]),
-    ) -> Result<Self, GpuError> {
+    /// Sheets are read up to `reach` cells from what either transfer function shows.
+    pub(super) fn new(context: &Context, view: &LightView, chunk: u32, reach: i32) -> Result<Self, GpuError> {
         let frame = &view.frame;
         let last = frame.first_depth + f64::from(frame.slab_count) * frame.slab;
         // Radius 2 on both sides of a voxel, rounded outwards, and one for the pairs of fetches.
@@ -64,9 +57,6 @@ impl Sheets {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let pairs = read.distances().into_iter().zip(occupied.distances());
-        let bytes: Vec<u8> = pairs.zip(octants).flat_map(|((r, g), octants)| [r, g, *octants, 0]).collect();
-        let distances = upload_bricks(context, "Sheets::distances", read.dims, &bytes, 4)?;
         Ok(Self {
             layers,
             chunk,
@@ -74,7 +64,7 @@ impl Sheets {
             ring_view: ring.create_view(&wgpu::TextureViewDescriptor::default()),
             ring,
             transmittance,
-            distances,
+            reach,
         })
     }
 
@@ -85,6 +75,7 @@ impl Sheets {
         pipeline: &wgpu::ComputePipeline,
         uniform: &wgpu::Buffer,
         table: &wgpu::Buffer,
+        distances: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
         pass::bind(
             context,
@@ -94,7 +85,7 @@ impl Sheets {
             &[
                 entry(0, uniform.as_entire_binding()),
                 entry(1, table.as_entire_binding()),
-                view_entry(2, &self.distances),
+                view_entry(2, distances),
                 entry(3, self.transmittance.as_entire_binding()),
                 view_entry(4, &self.ring_view),
             ],
@@ -152,13 +143,17 @@ pub(super) fn march_uniform(
         hood_outer: cone.cos_outer as f32,
         hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
         dark: sheets.dark,
+        reach: sheets.reach,
+        pad0: 0,
+        pad1: 0,
+        pad2: 0,
     }
 }
 
 /// Marches a part of the pixels through the slabs `begin .. end` of a view.
 pub(super) fn march(
     gpu: Gpu<'_>,
-    table: &wgpu::Buffer,
+    tables: &Tables,
     (light, settings): (&Light, &Settings),
     view: &LightView,
     sheets: &Sheets,
@@ -174,8 +169,17 @@ pub(super) fn march(
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, stretch > 0.0))?;
     let uniform = march_uniform(light, view, sheets, slabs, rows.clone());
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let own = sheets.march_bind_group(context, &pipeline, &uniform, table);
-    let of_volume = volume.bind_group(context, &pipeline, dilation(stretch));
+    let own = sheets.march_bind_group(
+        context,
+        &pipeline,
+        &uniform,
+        &tables.lighting.buffer,
+        &tables.light_distances,
+    );
+    let leaping = sheets.reach != EVERYWHERE;
+    let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature);
+    let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
+    let of_volume = volume.bind_group(context, &pipeline, dilation);
     pass::dispatch(
         encoder,
         "March::pass",

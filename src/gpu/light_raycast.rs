@@ -3,13 +3,14 @@
 use super::eye::pack_light;
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_volume::LightVolume;
-use super::listed_bricks;
+use super::listed_bricks::{self, Listed};
 use super::pass;
-use super::tables::{Tables, view_entry};
+use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::model::{Deposit, Light, Settings, Shadows};
+use crate::plan::ray_reach;
 
 /// Bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a
 /// software adapter some 0.2 s.
@@ -29,7 +30,7 @@ pub(super) fn raycast(
     (light, settings): (&Light, &Settings),
     options: &RenderOptions,
     target: &LightVolume,
-    bricks: &[u32],
+    bricks: &[Listed],
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     if bricks.is_empty() {
@@ -49,7 +50,7 @@ pub(super) fn raycast(
         voxel_step: target.divisor as f32,
         ray_step: settings.shadows.ray_step(&volume.scene) as f32,
         dark: options.dark_depth(),
-        leaping: u32::from(options.leaping),
+        pad0: 0,
     };
     let uniform = context.buffer("Raycast::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let list = listed_bricks::upload(context, bricks);
@@ -61,13 +62,14 @@ pub(super) fn raycast(
         &[
             entry(0, uniform.as_entire_binding()),
             entry(1, tables.lighting.buffer.as_entire_binding()),
-            view_entry(2, &tables.lighting_distances),
+            view_entry(2, &tables.light_distances),
             entry(3, list.as_entire_binding()),
             view_entry(4, &target.view),
         ],
     );
-    // Rays to lights are not stretched.
-    let of_volume = volume.bind_group(context, &pipeline, 0);
+    let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
+    let dilation = if options.leaping { seen } else { EVERYWHERE };
+    let of_volume = volume.bind_group(context, &pipeline, dilation);
     pass::dispatch(
         encoder,
         "Raycast::pass",

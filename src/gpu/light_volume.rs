@@ -1,12 +1,14 @@
 //! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
 
-use super::listed_bricks;
+use std::sync::Arc;
+
+use super::listed_bricks::{self, Listed};
 use super::pass;
 use super::tables::view_entry;
-use super::volume::{Gpu, GpuVolume, brick_dims, entry, texture_3d};
+use super::volume::{Gpu, GpuVolume, entry, texture_3d};
 use super::{Context, GpuError};
 use crate::model::{MAX_LIGHTS, Precision};
-use crate::plan::{BrickSet, LightKey, LightView};
+use crate::plan::{BrickSet, CellSet, LightKey, LightView};
 
 /// One light's attenuation volume, complete or being filled.
 #[derive(Debug)]
@@ -21,8 +23,10 @@ pub(super) struct LightVolume {
     pub texture: wgpu::Texture,
     /// The same.
     pub view: wgpu::TextureView,
-    /// Bricks (of light voxels) that hold, or will hold, values.
-    pub filled: BrickSet,
+    /// Cells (of light voxels) that hold, or will hold, values.
+    pub filled: Arc<CellSet>,
+    /// Data cells, beyond those that either transfer function shows, for whose lookups they suffice.
+    pub reach: u8,
     /// Whether everything in `filled` is there.
     pub complete: bool,
     /// Counts up with every use; the least recently used goes first.
@@ -38,7 +42,7 @@ impl LightVolume {
         context: &Context,
         volume: &GpuVolume,
         key: LightKey,
-        filled: BrickSet,
+        (filled, reach): (Arc<CellSet>, u8),
     ) -> Result<Self, GpuError> {
         let divisor = key.resolution().divisor();
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
@@ -57,14 +61,14 @@ impl LightVolume {
                 | wgpu::TextureUsages::COPY_DST,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { key, dims, divisor, texture, view, filled, complete: false, last_used: 0 })
+        Ok(Self { key, dims, divisor, texture, view, filled, reach, complete: false, last_used: 0 })
     }
 
-    /// Lights the listed bricks fully.
+    /// Lights the listed cells fully.
     pub(super) fn light_up(
         &self,
         gpu: Gpu<'_>,
-        bricks: &[u32],
+        bricks: &[Listed],
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         if bricks.is_empty() {
@@ -108,17 +112,11 @@ pub(super) fn light_bind_group(
     pass::bind(gpu.context, "LightVolume::bind_group", pipeline, 2, &views)
 }
 
-/// The bricks of a light volume that hold the given bricks of the data.
-pub(super) fn bricks_holding(volume: &GpuVolume, lit: &BrickSet, divisor: usize) -> BrickSet {
-    let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
-    lit.coarsened(divisor, brick_dims(dims))
-}
-
-/// The data bricks whose sheets the back-projection of `filled` reads: within the reverse kernel of
+/// The data bricks whose scattered sheets are splatted back into `filled`: within the reverse kernel of
 /// radius two.
 pub(super) fn read_bricks(
     volume: &GpuVolume,
-    filled: &BrickSet,
+    filled: &CellSet,
     divisor: usize,
     views: &[LightView],
 ) -> BrickSet {
@@ -130,7 +128,7 @@ pub(super) fn read_bricks(
         })
         .fold(0.0, f64::max);
     let reach_voxels = 2.0 * widest / volume.scene.smallest_edge();
-    // One voxel more, for linear fetches between pixels.
+    // One voxel more, for pixels between voxels.
     let reach_bricks = ((reach_voxels + 1.0) / 8.0).ceil() as usize;
-    filled.refined(divisor, volume.bricks.dims).dilated(reach_bricks)
+    filled.to_bricks().refined(divisor, volume.bricks.dims).dilated(reach_bricks)
 }

@@ -2,7 +2,7 @@
 
 use super::Context;
 
-/// Bricks per row of a dispatch: two workgroups each, within the 65535 that all adapters allow.
+/// Bricks per row of a dispatch: at most two workgroups each, within the 65535 that all adapters allow.
 const BRICKS_PER_ROW: u32 = 32768;
 
 /// A brick's coordinates, ten bits each.
@@ -10,12 +10,25 @@ pub(super) fn packed([x, y, z]: [usize; 3]) -> u32 {
     x as u32 | (y as u32) << 10 | (z as u32) << 20
 }
 
+/// An entry of a list: a brick's coordinates, and those of its cells that are meant.
+pub(super) type Listed = [u32; 4];
+
+/// The entry of a brick and its cells.
+pub(super) fn listed((brick, cells): ([usize; 3], u64)) -> Listed {
+    [packed(brick), cells as u32, (cells >> 32) as u32, 0]
+}
+
 /// The list as a storage buffer.
-pub(super) fn upload(context: &Context, bricks: &[u32]) -> wgpu::Buffer {
+pub(super) fn upload(context: &Context, bricks: &[Listed]) -> wgpu::Buffer {
     context.buffer("listed_bricks", bricks, wgpu::BufferUsages::STORAGE)
 }
 
 /// Two workgroups for each of so many bricks.
 pub(super) fn workgroups(listed: u32) -> [u32; 3] {
     [2 * listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1]
+}
+
+/// A workgroup for each of so many bricks.
+pub(super) fn single_workgroups(listed: u32) -> [u32; 3] {
+    [listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1]
 }

@@ -8,7 +8,7 @@ use super::pass;
 use super::scatter_footprints::Footprints;
 use super::scatter_splat::{Scatterer, Splat, sums, widest_stretch};
 use super::scatter_voxels::ScatterVoxels;
-use super::tables::{Tables, view_entry};
+use super::tables::{Tables, upload_distances, view_entry};
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::data::BRICK_EDGE;
@@ -25,6 +25,8 @@ pub(super) struct EyeScatter {
     scatterer: Scatterer,
     /// In place of sheets, if every footprint is composited.
     footprints: Option<Footprints>,
+    /// Distances in bricks to the nearest that the eye sees.
+    distances: wgpu::TextureView,
     /// Colour and opacity so far.
     rays: wgpu::Buffer,
     clamped: wgpu::Sampler,
@@ -56,9 +58,13 @@ impl EyeScatter {
         let scatterer = Scatterer::new(gpu, voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
         let footprints =
             (order == SheetOrder::EveryFootprint).then(|| Footprints::new(gpu, &scatterer)).transpose()?;
+        let occupied = &tables.eye.occupied;
+        let distances = occupied.distances();
+        let distances = upload_distances(gpu.context, "EyeScatter::distances", occupied.dims, &distances, 1)?;
         Ok(Self {
             scatterer,
             footprints,
+            distances,
             // Four 32-bit floats per ray.
             rays: sums(gpu.context, "EyeScatter::rays", 4, frame.size)?,
             clamped: gpu.context.sampler("EyeScatter::clamped", wgpu::AddressMode::ClampToEdge),
@@ -111,7 +117,7 @@ impl EyeScatter {
             &[
                 entry(0, uniform.as_entire_binding()),
                 entry(1, tables.eye.buffer.as_entire_binding()),
-                view_entry(2, &tables.eye_distances),
+                view_entry(2, &self.distances),
             ],
         );
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);

@@ -5,16 +5,16 @@ use std::ops::Range;
 
 use super::light_march::{Sheets, constants as march_constants, march_uniform};
 use super::light_volume::LightVolume;
-use super::listed_bricks;
+use super::listed_bricks::{self, Listed};
 use super::pass;
 use super::scatter_eye::{scatter_dilation, splatted_bricks};
 use super::scatter_splat::{Scatterer, Splat, sums};
 use super::scatter_voxels::ScatterVoxels;
-use super::tables::{Tables, view_entry};
+use super::tables::{Tables, upload_distances, view_entry};
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
 use crate::model::{Classification, Light, Settings, SheetOrder};
-use crate::plan::LightView;
+use crate::plan::{BrickSet, LightView};
 
 /// The sheets of one view of a light, and what was splatted back into the grid.
 #[derive(Debug)]
@@ -24,19 +24,22 @@ pub(super) struct LightScatter {
     light: wgpu::Buffer,
     /// … and the weight volume, Σ h.
     weights: wgpu::Buffer,
+    /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
+    distances: wgpu::TextureView,
     dilation: i32,
     /// Data voxels per light voxel.
     divisor: usize,
 }
 
 impl LightScatter {
-    /// Prepares a view.
+    /// Prepares a view; only sheets in the bricks of `read` will be splatted back, or all.
     pub(super) fn new(
         gpu: Gpu<'_>,
         voxels: &ScatterVoxels,
         tables: &Tables,
         view: &LightView,
         (settings, target): (&Settings, &LightVolume),
+        read: Option<&BrickSet>,
         options: &RenderOptions,
     ) -> Result<Self, GpuError> {
         let seen = splatted_bricks(&view.frame, &tables.lighting.occupied, options);
@@ -48,7 +51,12 @@ impl LightScatter {
         let what = (what, &tables.lighting);
         let kernel = (shadows.kernel, shadows.quadrature, SheetOrder::ImageAligned);
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
+        let dims = tables.lighting.occupied.dims;
+        let unread = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);
+        let thin = if options.leaping { tables.lighting.occupied.distances() } else { vec![0; unread.len()] };
+        let pairs: Vec<u8> = unread.into_iter().zip(thin).flat_map(|(r, g)| [r, g]).collect();
         Ok(Self {
+            distances: upload_distances(gpu.context, "LightScatter::distances", dims, &pairs, 2)?,
             scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, what, &seen, 1)?.towards_grid(
                 view.first_pixel.as_vec2().into(),
                 view.cube_face,
@@ -83,7 +91,7 @@ impl LightScatter {
         let rows = 0..view.frame.size[1];
         let uniform = march_uniform(lamp, view, sheets, (slabs.start, slabs.end), rows);
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let own = sheets.march_bind_group(context, &pipeline, &uniform, table);
+        let own = sheets.march_bind_group(context, &pipeline, &uniform, table, &self.distances);
         for k in slabs {
             if self.scatterer.is_filled(k) {
                 self.scatterer.splat(gpu, voxels, counter, k, encoder)?;
@@ -123,7 +131,7 @@ impl LightScatter {
             &pipeline,
             0,
             &[
-                view_entry(0, &sheets.distances),
+                view_entry(0, &self.distances),
                 view_entry(1, &sheets.ring_view),
                 entry(2, self.light.as_entire_binding()),
                 entry(3, self.weights.as_entire_binding()),
@@ -148,7 +156,7 @@ impl LightScatter {
         &self,
         gpu: Gpu<'_>,
         target: &LightVolume,
-        bricks: &[u32],
+        bricks: &[Listed],
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         if bricks.is_empty() {

@@ -7,7 +7,7 @@ use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
 pub const SHADERS: [(&str, &str); 34] = [
-    ("common/bricks.wgsl", include_str!("../../shaders/common/bricks.wgsl")),
+    ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
     ("common/gradient.wgsl", include_str!("../../shaders/common/gradient.wgsl")),

@@ -9,14 +9,13 @@ use super::light_backproject::{Schedule, backproject};
 use super::light_march::{Sheets, march};
 use super::light_raycast::raycast;
 use super::light_volume::LightVolume;
-use super::listed_bricks::packed;
+use super::listed_bricks::listed;
 use super::scatter_eye::EyeScatter;
 use super::scatter_light::LightScatter;
 use super::scatter_voxels::ScatterVoxels;
-use super::tables::Tables;
+use super::tables::{EVERYWHERE, Tables};
 use super::volume::Gpu;
 use super::{GpuError, Renderer, prefilter};
-use crate::plan::BrickSet;
 
 /// What went away between `begin` and `step`.
 fn out_of_date() -> GpuError {
@@ -84,20 +83,16 @@ impl Renderer {
             if *view == 0 {
                 light.light_up(gpu, &build.around, encoder)?;
             }
-            let occupied = (&tables.lighting.occupied, tables.lighting.octants.as_slice());
-            let mut sheets = if self.options.leaping {
-                Sheets::new(&self.context, geometry, chunk, &build.read, occupied)?
-            } else {
-                let everything = BrickSet::full(build.read.dims);
-                let all = vec![u8::MAX; everything.members.len()];
-                Sheets::new(&self.context, geometry, chunk, &everything, (&everything, &all))?
-            };
+            let reach = if self.options.leaping { i32::from(build.reach) } else { EVERYWHERE };
+            let mut sheets = Sheets::new(&self.context, geometry, chunk, reach)?;
             sheets.dark = self.options.dark;
             peak = self.gpu_bytes() + sheets.bytes();
             if build.scatters {
                 let of_light = (settings, light);
                 let (voxels, _) = self.scattering()?;
-                let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, &self.options)?;
+                let read = build.read.as_ref().filter(|_| self.options.leaping);
+                let scatter =
+                    LightScatter::new(gpu, voxels, tables, geometry, of_light, read, &self.options)?;
                 peak += scatter.bytes();
                 build.scatter = Some(scatter);
             }
@@ -106,13 +101,22 @@ impl Renderer {
         }
         let Some((sheets, _)) = &build.current else { return Ok(()) };
         let slabs = *begin..(*begin + chunk).min(geometry.frame.slab_count);
-        let table = &tables.lighting.buffer;
         let lamp = (&build.lamp, settings);
         if let Some(scatter) = &build.scatter {
             let (voxels, counter) = self.scattering()?;
-            scatter.march(gpu, voxels, counter, table, lamp, geometry, sheets, slabs, encoder)?;
+            scatter.march(
+                gpu,
+                voxels,
+                counter,
+                &tables.lighting.buffer,
+                lamp,
+                geometry,
+                sheets,
+                slabs,
+                encoder,
+            )?;
         } else {
-            march(gpu, table, lamp, geometry, sheets, ((slabs.start, slabs.end), *part), encoder)?;
+            march(gpu, tables, lamp, geometry, sheets, ((slabs.start, slabs.end), *part), encoder)?;
         }
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
         if *begin == 0 && part.0 == 0 && *view == 0 {
@@ -199,7 +203,7 @@ impl Renderer {
         let target = self.collapsed.as_ref().ok_or_else(out_of_date)?;
         let (settings, size) = (&job.request.settings, job.request.size);
         let pass = EyePass::new(&gpu.volume.scene, settings, size, &found, None, &self.options);
-        let list: Vec<u32> = target.filled.positions().map(packed).collect();
+        let list: Vec<_> = target.filled.bricks().map(listed).collect();
         target.fill(gpu, &pass, &attenuation, &list[bricks.clone()], encoder)?;
         let is_last = bricks.end == list.len();
         if is_last {

@@ -1,11 +1,14 @@
 //! Transfer functions on the GPU, and the bricks that they show.
 
-use super::volume::{GpuVolume, entry};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use super::volume::{GpuVolume, brick_dims, entry};
 use super::{Context, GpuError};
 use crate::model::{BakedTransfer, Settings};
-use crate::plan::BrickSet;
+use crate::plan::{BrickSet, CellDistances, CellSet};
 
-/// A baked transfer function: its table and the bricks in which it shows anything.
+/// A baked transfer function: its table and where it shows anything.
 #[derive(Debug)]
 pub(super) struct Table {
     /// What it was baked to.
@@ -13,17 +16,34 @@ pub(super) struct Table {
     /// The table as a storage buffer.
     pub buffer: wgpu::Buffer,
     /// Bricks with any extinction.
-    pub occupied: BrickSet,
-    /// Which octants of them have any, a bit each.
-    pub octants: Vec<u8>,
+    pub occupied: Arc<BrickSet>,
+    /// Distances to cells with any.
+    distances: Arc<CellDistances>,
 }
 
 impl Table {
-    fn new(context: &Context, volume: &GpuVolume, baked: BakedTransfer) -> Self {
+    /// Finds where a transfer function shows anything, unless one of the `known` shows the same.
+    fn new<'a>(
+        context: &Context,
+        volume: &GpuVolume,
+        baked: BakedTransfer,
+        bounded: bool,
+        known: impl IntoIterator<Item = &'a Self>,
+    ) -> Self {
         let buffer = context.buffer("Table::entries", &baked.entries, wgpu::BufferUsages::STORAGE);
-        let occupied = BrickSet::new(volume.bricks.dims, volume.bricks.occupancy(baked.visibility()));
-        let octants = volume.bricks.octant_masks(baked.visibility());
-        Self { baked, buffer, occupied, octants }
+        if let Some(known) = known.into_iter().find(|known| baked.shows_like(&known.baked)) {
+            let (occupied, distances) = (Arc::clone(&known.occupied), Arc::clone(&known.distances));
+            return Self { baked, buffer, occupied, distances };
+        }
+        let dims = volume.bricks.dims;
+        let occupied = BrickSet::new(dims, volume.bricks.occupancy(baked.visibility()));
+        let masks = if bounded {
+            volume.bricks.cell_masks(baked.visibility())
+        } else {
+            occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
+        };
+        let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
+        Self { baked, buffer, occupied: Arc::new(occupied), distances }
     }
 
     /// Whether the lowest density has any extinction.
@@ -44,36 +64,76 @@ pub(super) struct Tables {
     pub eye: Table,
     /// What the light meets.
     pub lighting: Table,
-    /// Bricks in which an eye sample can look up attenuation: those that either shows. A sample that
-    /// sees a voxel is less than two voxels from it, and the texels around the sample are one further:
-    /// that is what a brick's range announces.
-    pub lit: BrickSet,
-    /// The same, and one brick further on every side: for stretched kernels, a light bias, and light
-    /// volumes with larger voxels.
-    pub lit_widely: BrickSet,
-    /// Distances in bricks to the nearest that the eye sees, and the octants that it sees …
+    /// Distances in cells to the nearest that the eye sees.
     pub eye_distances: wgpu::TextureView,
-    /// … and the same for what attenuates light.
-    pub lighting_distances: wgpu::TextureView,
+    /// Distances in cells: r to the nearest that either shows, g to the nearest that attenuates light.
+    pub light_distances: wgpu::TextureView,
+    /// Whether the bounds of cells hold for all kernels in use.
+    bounded: bool,
+    /// Distances to what either shows: an eye sample looks up its light not far from there.
+    lit: Arc<CellDistances>,
+    /// Cells of light volumes up to a distance from there, by that distance and the volumes' divisor.
+    needed: RefCell<Vec<((u8, usize), Arc<CellSet>)>>,
 }
 
 impl Tables {
-    /// Bakes both and finds their bricks.
+    /// Bakes both and finds their cells.
     pub(super) fn new(context: &Context, volume: &GpuVolume, settings: &Settings) -> Result<Self, GpuError> {
+        Self::after(None, context, volume, settings)
+    }
+
+    /// The same, with what tables of other settings know already.
+    fn after(
+        previous: Option<&Self>,
+        context: &Context,
+        volume: &GpuVolume,
+        settings: &Settings,
+    ) -> Result<Self, GpuError> {
         let range = volume.volume.value_range();
-        let eye = Table::new(context, volume, settings.baked_eye(range, &volume.scene));
-        let lighting = Table::new(context, volume, settings.baked_lighting(range, &volume.scene));
-        let upload = |label: &'static str, table: &Table| {
-            let pairs = table.occupied.distances().into_iter().zip(&table.octants);
-            let bytes: Vec<u8> = pairs.flat_map(|(distance, octants)| [distance, *octants]).collect();
-            upload_bricks(context, label, table.occupied.dims, &bytes, 2)
+        let bounded = settings.cells_are_bounds();
+        let known = || {
+            let same = previous.filter(|previous| previous.bounded == bounded);
+            same.into_iter().flat_map(|previous| [&previous.eye, &previous.lighting])
         };
-        let eye_distances = upload("Tables::eye_distances", &eye)?;
-        let lighting_distances = upload("Tables::lighting_distances", &lighting)?;
-        // Once per transfer function: at 512³ voxels this takes longer than the rest of a picture's plan.
-        let lit = eye.occupied.union(&lighting.occupied);
-        let lit_widely = lit.dilated(1);
-        Ok(Self { eye, lighting, lit, lit_widely, eye_distances, lighting_distances })
+        let eye = Table::new(context, volume, settings.baked_eye(range, &volume.scene), bounded, known());
+        let lighting = settings.baked_lighting(range, &volume.scene);
+        let lighting = Table::new(context, volume, lighting, bounded, known().chain([&eye]));
+        if let Some(previous) = previous {
+            let is_same = |a: &Table, b: &Table| Arc::ptr_eq(&a.distances, &b.distances);
+            if is_same(&eye, &previous.eye) && is_same(&lighting, &previous.lighting) {
+                let (eye_distances, light_distances) =
+                    (previous.eye_distances.clone(), previous.light_distances.clone());
+                let (lit, needed) = (Arc::clone(&previous.lit), previous.needed.clone());
+                return Ok(Self { eye, lighting, eye_distances, light_distances, bounded, lit, needed });
+            }
+        }
+        let lit = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
+            Arc::clone(&eye.distances)
+        } else {
+            Arc::new(eye.distances.nearest(&lighting.distances))
+        };
+        let dims = lit.dims;
+        let pairs: Vec<u8> =
+            lit.values.iter().zip(&lighting.distances.values).flat_map(|(r, g)| [*r, *g]).collect();
+        let eye_distances =
+            upload_distances(context, "Tables::eye_distances", dims, &eye.distances.values, 1)?;
+        let light_distances = upload_distances(context, "Tables::light_distances", dims, &pairs, 2)?;
+        let needed = RefCell::default();
+        Ok(Self { eye, lighting, eye_distances, light_distances, bounded, lit, needed })
+    }
+
+    /// The cells of a light volume, of `divisor` data voxels per voxel, that hold a cell at most `reach`
+    /// from what either transfer function shows.
+    pub(super) fn cells_within(&self, volume: &GpuVolume, reach: u8, divisor: usize) -> Arc<CellSet> {
+        let key = (reach, divisor);
+        let mut needed = self.needed.borrow_mut();
+        if let Some((_, known)) = needed.iter().find(|(known, _)| *known == key) {
+            return Arc::clone(known);
+        }
+        let dims = brick_dims(volume.volume.dims().map(|n| n.div_ceil(divisor)));
+        let fresh = Arc::new(self.lit.within(reach, divisor, dims));
+        needed.push((key, Arc::clone(&fresh)));
+        fresh
     }
 
     /// Whether either shows the lowest density, which is also that of what lies around the grid.
@@ -91,27 +151,31 @@ impl Tables {
         let range = volume.volume.value_range();
         let eye = settings.baked_eye(range, &volume.scene);
         let lighting = settings.baked_lighting(range, &volume.scene);
-        if eye != self.eye.baked || lighting != self.lighting.baked {
-            *self = Self::new(context, volume, settings)?;
+        let bounded = settings.cells_are_bounds();
+        if eye != self.eye.baked || lighting != self.lighting.baked || bounded != self.bounded {
+            *self = Self::after(Some(self), context, volume, settings)?;
         }
         Ok(())
     }
 }
 
-/// A 3D texture of `channels` unsigned bytes per brick: two or four.
-pub(super) fn upload_bricks(
+/// A reach that no distance exceeds: nothing is leapt over.
+pub(super) const EVERYWHERE: i32 = 255;
+
+/// A 3D texture of distances, one byte or two for each cell or brick.
+pub(super) fn upload_distances(
     context: &Context,
     label: &'static str,
     dims: [usize; 3],
-    bytes: &[u8],
+    distances: &[u8],
     channels: u32,
 ) -> Result<wgpu::TextureView, GpuError> {
-    let format = if channels == 2 { wgpu::TextureFormat::Rg8Uint } else { wgpu::TextureFormat::Rgba8Uint };
+    let format = if channels == 1 { wgpu::TextureFormat::R8Uint } else { wgpu::TextureFormat::Rg8Uint };
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = context.texture(&super::volume::texture_3d(label, dims, format, usage))?;
     context.queue.write_texture(
         texture.as_image_copy(),
-        bytes,
+        distances,
         wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(channels * dims[0] as u32),
@@ -120,12 +184,6 @@ pub(super) fn upload_bricks(
         texture.size(),
     );
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
-}
-
-/// The distance, in bricks, up to which a kernel stretched to a pyramid level can see beyond the
-/// range that a brick announces: at level 2 it reaches 9.4 voxels, the announcement three.
-pub(super) fn dilation(max_stretch_level: f64) -> i32 {
-    i32::from(max_stretch_level > 0.0)
 }
 
 /// A bind group entry for a texture view.

@@ -83,7 +83,7 @@ pub struct Grid {
     pub pad0: f32,
     pub pyramid_scale: [f32; 3],
     pub pad1: f32,
-    pub bricks: [i32; 3],
+    pub cells: [i32; 3],
     pub pad2: i32,
 }
 
@@ -157,6 +157,10 @@ pub struct March {
     pub hood_outer: f32,
     pub hood_axis: [f32; 3],
     pub dark: f32,
+    pub reach: i32,
+    pub pad0: i32,
+    pub pad1: i32,
+    pub pad2: i32,
 }
 
 /// `light_backproject.wgsl`.
@@ -189,7 +193,7 @@ pub struct Raycast {
     pub voxel_step: f32,
     pub ray_step: f32,
     pub dark: f32,
-    pub leaping: u32,
+    pub pad0: u32,
 }
 
 /// `light_collapse.wgsl`.
@@ -277,14 +281,14 @@ pub struct Eye {
     pub eye: [f32; 4],
     pub first_row: u32,
     pub end_row: u32,
-    pub leaping: u32,
+    pub dilation: i32,
     pub dark: f32,
     pub gradient_pixels: i32,
     pub gradient_slabs: i32,
-    pub dilation: i32,
     pub pad0: i32,
+    pub pad1: i32,
     pub collapsed_lookup: [f32; 3],
-    pub pad1: f32,
+    pub pad2: f32,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 

@@ -7,7 +7,7 @@ use half::f16;
 use super::pass;
 use super::uniforms::Grid;
 use super::{Context, GpuError};
-use crate::data::{BRICK_EDGE, Bricks, Volume};
+use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
 use crate::math::SceneSpace;
 use crate::plan::MAX_STRETCH_LEVEL;
 
@@ -94,7 +94,7 @@ impl GpuVolume {
             pad0: 0.0,
             pyramid_scale: reciprocal(padded),
             pad1: 0.0,
-            bricks: bricks.dims.map(|n| n as i32),
+            cells: bricks.dims.map(|n| (n * BRICK_EDGE / CELL_EDGE) as i32),
             pad2: 0,
         };
         Ok(Self {
@@ -149,7 +149,7 @@ impl GpuVolume {
         );
     }
 
-    /// The uniform that describes the grid to a pass whose stretched kernels see `dilation` bricks.
+    /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.
     pub(super) fn grid(&self, dilation: i32) -> Grid {
         Grid { dilation, ..self.grid }
     }

@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::transfer::unit_in_scene;
 use super::{
-    BakedTransfer, Camera, Engine, Gradients, Length, Light, LightStorage, Sampling, ShadowAlgorithm,
-    Shadows, TransferFunction,
+    BakedTransfer, Camera, Classification, Engine, Gradients, Kernel, Length, Light, LightStorage, Sampling,
+    ShadowAlgorithm, Shadows, TransferFunction,
 };
+use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE};
 use crate::math::SceneSpace;
 
 /// Version of the JSON form. Older files are migrated, newer ones are read as far as possible.
@@ -163,6 +164,19 @@ impl Settings {
             LightStorage::Auto => self.shading.specular == 0.0 && shadowed > 4,
         };
         wanted && shadowed > 0 && self.shadows.algorithm.has_volume()
+    }
+
+    /// Whether what is reconstructed in a cell of 2³ voxels stays within the bounds that are known of it
+    /// ([`crate::data::CellBounds`]): not where voxels are classified before they are spread, nor with
+    /// Gaussians that are much narrower or wider than the B-spline.
+    pub fn cells_are_bounds(&self) -> bool {
+        let is_bounded = |kernel: Kernel| match kernel {
+            Kernel::BSpline | Kernel::Prefiltered => true,
+            Kernel::Gaussian { sigma } => (sigma - BOUNDED_SIGMA).abs() <= SIGMA_TOLERANCE,
+        };
+        self.sampling.classification == Classification::Post
+            && is_bounded(self.sampling.kernel)
+            && is_bounded(self.shadows.kernel)
     }
 
     /// Whether normals come from sheets.

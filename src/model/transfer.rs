@@ -115,6 +115,13 @@ impl TransferFunction {
 }
 
 impl BakedTransfer {
+    /// Whether both have extinction at the same densities: only how much, and of which colour, differs.
+    pub fn shows_like(&self, other: &Self) -> bool {
+        let pairs = self.entries.iter().zip(&other.entries);
+        self.entries.len() == other.entries.len()
+            && pairs.into_iter().all(|(a, b)| (a[3] > 0.0) == (b[3] > 0.0))
+    }
+
     /// Whether any density in `[min, max]` has extinction. Looks at the table entries around the
     /// range too, since values between entries are interpolated.
     pub fn visibility(&self) -> impl Fn(f32, f32) -> bool + Sync + use<> {

@@ -4,17 +4,25 @@
 //! holds all it was made from; a product is stale exactly when its key differs (design: cache keys).
 //! `Settings` is taken apart without `..`, so a new field does not compile until it is classified.
 
+mod cell_distances;
+mod cell_set;
 mod eye_frame;
 mod light_frame;
 mod occupancy;
+mod reach;
 mod sheet_frame;
 mod slice_order;
 #[cfg(test)]
 mod tests;
 
+pub use cell_distances::{CellDistances, FARTHEST};
+pub use cell_set::CellSet;
 pub use eye_frame::eye_frame;
 pub use light_frame::{LightView, MAX_KERNEL_PIXELS, SheetPosition, light_views};
 pub use occupancy::BrickSet;
+pub use reach::{
+    bias_reach, lookup_reach, ray_reach, reverse_reach, sample_reach, slab_reach, stretch_reach,
+};
 pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use slice_order::SliceOrder;
 

@@ -1,0 +1,31 @@
+// Leaping over cells of 2³ voxels in which nothing can be seen (src/data/cells.rs).
+#import "common/volume.wgsl"
+
+// A ray in cells: where it crosses slab 0, and how far it comes from slab to slab.
+struct Walk {
+    origin: vec3f,
+    step: vec3f,
+    // Slabs per cell.
+    inverse: vec3f,
+}
+
+fn walk_along(frame: SheetFrame, ray: Ray) -> Walk {
+    let origin = (ray.origin + ray.direction * depth_of(frame, 0.0)) / 2.0;
+    let step = ray.direction * frame.slab / 2.0;
+    let parallel_to = abs(step) < vec3f(1e-9);
+    return Walk(origin, step, 1.0 / select(step, vec3f(1e-9), parallel_to));
+}
+
+// The cell that slab k crosses; what lies beyond the grid belongs to the cells at its border.
+fn cell_at(walk: Walk, k: i32) -> vec3i {
+    return clamp(vec3i(floor(walk.origin + walk.step * f32(k))), vec3i(0), grid.cells - 1);
+}
+
+// The first slab beyond the cube of cells around `cell` that is known to be empty. `empty` counts the
+// layers of that cube: 1 is the cell alone. Never steps over a slab outside the cube.
+fn leap(walk: Walk, k: i32, cell: vec3i, empty: i32) -> i32 {
+    let middle = (vec3f(cell) + 0.5 - walk.origin) * walk.inverse;
+    let exits = middle + abs(walk.inverse) * (f32(empty) - 0.5);
+    // A thousandth of a slab early: visiting one more slab of the cube is harmless.
+    return max(k + 1, i32(ceil(min(min(exits.x, exits.y), min(exits.z, 1e6)) - 1e-3)));
+}
