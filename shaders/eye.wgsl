@@ -15,7 +15,12 @@
 
 // Cast rays to the lights instead of looking into volumes (P §3.3).
 override DIRECT: bool = false;
-// Take gradients from neighbouring sheets instead of the pyramid.
+// Gradients of the pyramid (gradients.wgsl).
+@group(0) @binding(6) var gradients: texture_3d<f32>;
+
+// Take gradients from there instead of from the pyramid itself.
+override GRADIENT_TEXTURE: bool = false;
+// Take gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
 
 fn light_extinction(density: f32) -> f32 {
@@ -106,7 +111,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             slope = gradient_between_sheets(vec2f(pixel), f32(k));
         } else {
             let level = select(0.0, stretch_level(eye.frame, depth), STRETCH);
-            slope = gradient_to_scene(eye.space, index_gradient(p, level));
+            if (GRADIENT_TEXTURE) {
+                let coordinates = (p + 4.5) * grid.pyramid_scale;
+                slope = textureSampleLevel(gradients, clamped, coordinates, level).xyz;
+            } else {
+                slope = index_gradient(p, level);
+            }
+            slope = gradient_to_scene(eye.space, slope);
         }
         let rgb = shade(p, slope, material.rgb);
         let passed = exp(-material.a * eye.frame.slab * ray.obliquity);

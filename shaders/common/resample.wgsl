@@ -4,8 +4,9 @@ struct Slices {
     // First, and one beyond the last: a whole level could keep a slow adapter busy for seconds.
     first: u32,
     end: u32,
+    // Of the level's texels, in voxels.
+    spacing: f32,
     pad0: u32,
-    pad1: u32,
 }
 
 @group(0) @binding(0) var source: texture_3d<f32>;

@@ -23,6 +23,8 @@ pub(super) struct EyePass {
     uniform: uniforms::Eye,
     /// Cells around a sample's own that it sees.
     dilation: i32,
+    /// Whether normals may come from the texture of gradients.
+    takes_gradients: bool,
     constants: Vec<(&'static str, f64)>,
 }
 
@@ -56,8 +58,9 @@ impl EyePass {
         for (slot, (light, volume)) in packed.iter_mut().zip(&on) {
             *slot = pack_light(light, *volume, is_shadowed(light, *volume), settings);
         }
-        let stretch = frame.max_stretch_level() > 0.0;
-        let mut constants = constants(&settings.sampling, &settings.shadows, stretch, (on.len(), shadowed));
+        let stretch_level = frame.max_stretch_level();
+        let mut constants =
+            constants(&settings.sampling, &settings.shadows, stretch_level > 0.0, (on.len(), shadowed));
         if collapsed.is_some() {
             constants.push(("COLLAPSED", 1.0));
         }
@@ -88,7 +91,9 @@ impl EyePass {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
         let dilation = if options.leaping { i32::from(seen) } else { EVERYWHERE };
-        Self { frame, uniform, dilation, constants }
+        // Between levels of the pyramid differences and interpolation do not commute exactly.
+        let takes_gradients = stretch_level <= 0.0 || options.quick_normals;
+        Self { frame, uniform, dilation, takes_gradients, constants }
     }
 
     /// Slabs of the stack.
@@ -133,7 +138,11 @@ impl EyePass {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, volume, .. } = gpu;
-        let pipeline = shaders.pipeline("eye.wgsl", &self.constants)?;
+        let gradients = volume.gradients.as_ref().filter(|_| self.takes_gradients);
+        let mut constants = self.constants.clone();
+        constants.push(gradient_constant(gradients.is_some()));
+        let pipeline = shaders.pipeline("eye.wgsl", &constants)?;
+        let gradients = gradients.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
         let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, ..self.uniform };
         let uniform = context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
         let own = pass::bind(
@@ -148,6 +157,7 @@ impl EyePass {
                 view_entry(3, picture),
                 entry(4, tables.lighting.buffer.as_entire_binding()),
                 view_entry(5, &tables.light_distances),
+                view_entry(6, gradients.as_ref().unwrap_or(gpu.nothing)),
             ],
         );
         let of_volume = volume.bind_group(context, &pipeline, self.dilation);
@@ -183,6 +193,11 @@ pub(super) fn constants(
         constants.push(("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)));
     }
     constants
+}
+
+/// `GRADIENT_TEXTURE`.
+pub(super) fn gradient_constant(takes_gradients: bool) -> (&'static str, f64) {
+    ("GRADIENT_TEXTURE", f64::from(u8::from(takes_gradients)))
 }
 
 /// A light whose position refers to the scene, for the shaders.

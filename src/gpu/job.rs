@@ -72,6 +72,8 @@ pub(super) enum Step {
     Upload(Range<usize>),
     /// Level, slices.
     Pyramid(u32, Range<u32>),
+    /// Level, slices.
+    Gradients(u32, Range<u32>),
     March(LightStep),
     Backproject(LightStep),
     /// Index of the light build, and which of its bricks.
@@ -88,7 +90,7 @@ impl Step {
     pub(super) fn stage(&self) -> Stage {
         match self {
             Self::Upload(_) => Stage::Upload,
-            Self::Pyramid(..) => Stage::Pyramid,
+            Self::Pyramid(..) | Self::Gradients(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) | Self::Collapse(_) => Stage::LightBackproject,
             Self::Raycast(..) => Stage::LightRaycast,

@@ -12,6 +12,7 @@ mod export_light;
 mod eye;
 mod first_look;
 mod footprint_table;
+mod gradients;
 mod inspect;
 mod job;
 mod kernel;

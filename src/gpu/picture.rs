@@ -16,6 +16,8 @@ pub struct RenderOptions {
     pub chunk: Option<u32>,
     /// Pieces into which each chunk of the light pass is cut, for short submissions.
     pub light_parts: u32,
+    /// Take normals of stretched kernels from the texture of gradients, too: for previews.
+    pub quick_normals: bool,
     /// Wait after every step, so that a report's stages are true.
     pub timed: bool,
 }
@@ -30,6 +32,7 @@ impl Default for RenderOptions {
             dark: 1.0 / 4096.0,
             chunk: None,
             light_parts: 1,
+            quick_normals: false,
             timed: false,
         }
     }

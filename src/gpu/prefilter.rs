@@ -15,11 +15,11 @@ pub(super) fn levels(volume: &GpuVolume) -> u32 {
 /// Texels per step: 8 fetches each, some 40 ms on a software adapter.
 const STEP_TEXELS: u32 = 1 << 18;
 
-/// The slices of a level, cut into short steps.
-pub(super) fn steps(volume: &GpuVolume, level: u32) -> Vec<Range<u32>> {
+/// A level and its slices, cut into short steps.
+pub(super) fn steps(volume: &GpuVolume, level: u32) -> Vec<(u32, Range<u32>)> {
     let [width, height, depth] = texels(volume, level);
     let slices = (STEP_TEXELS / (width * height)).max(1);
-    (0..depth).step_by(slices as usize).map(|first| first..depth.min(first + slices)).collect()
+    (0..depth).step_by(slices as usize).map(|first| (level, first..depth.min(first + slices))).collect()
 }
 
 /// Texels of a level along x, y, z.
@@ -50,7 +50,8 @@ pub(super) fn fill(
         _ => ("downsample.wgsl", view_of(level - 1)),
     };
     let pipeline = shaders.pipeline(shader, &[])?;
-    let uniform = uniforms::Slices { first: slices.start, end: slices.end, pad0: 0, pad1: 0 };
+    let spacing = (1u32 << level) as f32;
+    let uniform = uniforms::Slices { first: slices.start, end: slices.end, spacing, pad0: 0 };
     let uniform = context.buffer("Pyramid::slices", &[uniform], wgpu::BufferUsages::UNIFORM);
     let bind_group = pass::bind(
         context,

@@ -327,10 +327,10 @@ impl Renderer {
             for first in (0..slices).step_by(fresh.slices_per_step()) {
                 steps.push(Step::Upload(first..slices.min(first + fresh.slices_per_step())));
             }
-            for level in 0..prefilter::levels(&fresh) {
-                steps.extend(
-                    prefilter::steps(&fresh, level).into_iter().map(|slices| Step::Pyramid(level, slices)),
-                );
+            let levels = || (0..prefilter::levels(&fresh)).flat_map(|level| prefilter::steps(&fresh, level));
+            steps.extend(levels().map(|(level, slices)| Step::Pyramid(level, slices)));
+            if fresh.gradients.is_some() {
+                steps.extend(levels().map(|(level, slices)| Step::Gradients(level, slices)));
             }
             self.volume = Some(fresh);
             self.uploaded = false;

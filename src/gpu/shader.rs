@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 34] = [
+pub const SHADERS: [(&str, &str); 35] = [
     ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
@@ -28,6 +28,7 @@ pub const SHADERS: [(&str, &str); 34] = [
     ("display.wgsl", include_str!("../../shaders/display.wgsl")),
     ("downsample.wgsl", include_str!("../../shaders/downsample.wgsl")),
     ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
+    ("gradients.wgsl", include_str!("../../shaders/gradients.wgsl")),
     ("light_around.wgsl", include_str!("../../shaders/light_around.wgsl")),
     ("light_backproject.wgsl", include_str!("../../shaders/light_backproject.wgsl")),
     ("light_collapse.wgsl", include_str!("../../shaders/light_collapse.wgsl")),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::display::display;
 use super::eye::EyePass;
-use super::job::{Job, LightStep, Step};
+use super::job::{Job, LightStep, Stage, Step};
 use super::light_backproject::{Schedule, backproject};
 use super::light_march::{Sheets, march};
 use super::light_raycast::raycast;
@@ -15,7 +15,7 @@ use super::scatter_light::LightScatter;
 use super::scatter_voxels::ScatterVoxels;
 use super::tables::{EVERYWHERE, Tables};
 use super::volume::Gpu;
-use super::{GpuError, Renderer, prefilter};
+use super::{GpuError, Renderer, gradients, prefilter};
 
 /// What went away between `begin` and `step`.
 fn out_of_date() -> GpuError {
@@ -38,8 +38,13 @@ impl Renderer {
             Step::Pyramid(level, slices) => {
                 let volume = self.volume.as_ref().ok_or_else(out_of_date)?;
                 prefilter::fill(&self.context, &self.shaders, volume, *level, slices, encoder)?;
-                // The last of them: what follows is no pyramid.
-                self.uploaded = !matches!(job.steps.front(), Some(Step::Pyramid(..)));
+                self.uploaded = job.steps.front().is_none_or(|next| next.stage() != Stage::Pyramid);
+                Ok(())
+            }
+            Step::Gradients(level, slices) => {
+                let volume = self.volume.as_ref().ok_or_else(out_of_date)?;
+                gradients::fill(&self.context, &self.shaders, volume, *level, slices, encoder)?;
+                self.uploaded = job.steps.front().is_none_or(|next| next.stage() != Stage::Pyramid);
                 Ok(())
             }
             Step::March(light) => self.encode_march(job, light, encoder),

@@ -93,8 +93,8 @@ pub struct Grid {
 pub struct Slices {
     pub first: u32,
     pub end: u32,
+    pub spacing: f32,
     pub pad0: u32,
-    pub pad1: u32,
 }
 
 /// `common/scatter.wgsl`.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use half::f16;
 
+use super::gradients;
 use super::pass;
 use super::uniforms::Grid;
 use super::{Context, GpuError};
@@ -43,6 +44,8 @@ pub(super) struct GpuVolume {
     pub density_view: wgpu::TextureView,
     pub pyramid: wgpu::Texture,
     pub pyramid_view: wgpu::TextureView,
+    /// Its gradients, while memory allows.
+    pub gradients: Option<wgpu::Texture>,
     pub clamped: wgpu::Sampler,
     unorm: bool,
     grid: Grid,
@@ -103,6 +106,7 @@ impl GpuVolume {
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
+            gradients: gradients::texture(context, &pyramid),
             pyramid_view: pyramid.create_view(&wgpu::TextureViewDescriptor::default()),
             pyramid,
             clamped: context.sampler("Volume::clamped", wgpu::AddressMode::ClampToEdge),
@@ -161,7 +165,8 @@ impl GpuVolume {
             u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
         };
         // The coarser levels of the pyramid add a seventh.
-        2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7
+        let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
+        2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + gradients
     }
 
     /// Bind group 1 of passes that look at the pyramid alone.

@@ -13,17 +13,17 @@ impl ShaderLibrary {
     /// # Errors
     /// When the driver refuses a shader.
     pub fn warm_up(&self) -> Result<(), GpuError> {
-        for shader in ["prefilter.wgsl", "downsample.wgsl", "display.wgsl"] {
+        for shader in ["prefilter.wgsl", "downsample.wgsl", "gradients.wgsl", "display.wgsl"] {
             self.pipeline(shader, &[])?;
         }
         let (lights, shadowed) = FIRST_LIGHTS;
         for flag in [false, true] {
             for kernel in [Kernel::Prefiltered, Kernel::BSpline] {
                 let sampling = Sampling { kernel, ..Sampling::default() };
-                self.pipeline(
-                    "eye.wgsl",
-                    &eye::constants(&sampling, &Shadows::default(), flag, (lights, shadowed)),
-                )?;
+                let mut constants = eye::constants(&sampling, &Shadows::default(), flag, (lights, shadowed));
+                // Of stretched kernels only in previews.
+                constants.push(eye::gradient_constant(!flag || kernel == Kernel::Prefiltered));
+                self.pipeline("eye.wgsl", &constants)?;
                 let shadows = Shadows { kernel, ..Shadows::default() };
                 self.pipeline("light_backproject.wgsl", &light_backproject::constants(&shadows, flag))?;
                 let settings = Settings { shadows, ..Settings::default() };

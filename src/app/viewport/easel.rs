@@ -180,8 +180,11 @@ impl Easel {
         let Some(scene) = &mut self.scene else { return Ok(()) };
         let settings = wanted.other.as_ref().filter(|_| left.is_some()).unwrap_or(&wanted.settings);
         let request = request_of(scene, settings, &wanted, look);
-        let options =
-            RenderOptions { light_parts: self.refine.light_parts(look), ..RenderOptions::default() };
+        let options = RenderOptions {
+            light_parts: self.refine.light_parts(look),
+            quick_normals: look != Look::FULL,
+            ..RenderOptions::default()
+        };
         let rebuilds_before = scene.renderer.light_rebuilds().iter().sum();
         let mut job = scene.renderer.begin(&scene.volume, &scene.bricks, request, &options)?;
         job.set_band(self.refine.rows(look, job.request().size));
