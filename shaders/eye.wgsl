@@ -7,11 +7,13 @@
 #import "common/shade.wgsl"
 #import "common/gradient.wgsl"
 
+// r: distance to the nearest cell that the eye's transfer function shows.
+@group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
 // For rays to lights: the lighting transfer function, and in g the distance in cells to the nearest that
 // it makes attenuate light.
 @group(0) @binding(4) var<storage, read> lighting_table: array<vec4f, 1024>;
-@group(0) @binding(5) var light_distances: texture_3d<u32>;
+@group(0) @binding(5) var light_distances: texture_3d<f32>;
 
 // Cast rays to the lights instead of looking into volumes (P §3.3).
 override DIRECT: bool = false;
@@ -28,8 +30,8 @@ fn light_extinction(density: f32) -> f32 {
     return mix(lighting_table[at.low].a, lighting_table[at.low + 1u].a, at.fraction);
 }
 
-fn light_distance(cell: vec3i) -> i32 {
-    return i32(textureLoad(light_distances, cell, 0).g);
+fn light_distance(cell: vec3f) -> i32 {
+    return near(light_distances, cell).y;
 }
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
@@ -86,7 +88,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                     break;
                 }
                 let cell = cell_at(walk, k);
-                let empty = i32(textureLoad(distances, cell, 0).r) - grid.dilation;
+                let empty = near(distances, cell).x - grid.dilation;
                 if (empty <= 0) {
                     break;
                 }

@@ -7,6 +7,9 @@
 #import "common/cells.wgsl"
 #import "common/march.wgsl"
 
+// Distances: r to the nearest cell whose light is looked up, g to the nearest that attenuates light.
+@group(0) @binding(2) var distances: texture_3d<f32>;
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) invocation: vec3u) {
     let id = invocation + vec3u(0u, march.first_row, 0u);
@@ -29,7 +32,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
                     break;
                 }
                 let cell = cell_at(walk, k);
-                let unread = i32(textureLoad(distances, cell, 0).r) - march.reach;
+                let unread = near(distances, cell).x - march.reach;
                 if (unread <= 0) {
                     break;
                 }
@@ -40,9 +43,9 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
                 if (k >= end) {
                     break;
                 }
-                let near = vec2i(textureLoad(distances, cell_at(walk, k), 0).rg);
-                let is_read = near.r <= march.reach;
-                attenuates = is_read && near.g <= grid.dilation && t > march.dark && k >= inside.x && k <= inside.y;
+                let found = near(distances, cell_at(walk, k));
+                let is_read = found.x <= march.reach;
+                attenuates = is_read && found.y <= grid.dilation && t > march.dark && k >= inside.x && k <= inside.y;
                 if (attenuates || !is_read) {
                     break;
                 }

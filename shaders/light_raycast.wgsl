@@ -21,8 +21,8 @@ struct Raycast {
 }
 
 @group(0) @binding(0) var<uniform> raycast: Raycast;
-// g: distance in cells to the nearest that attenuates light.
-@group(0) @binding(2) var distances: texture_3d<u32>;
+// g: distance to the nearest cell that attenuates light.
+@group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
@@ -30,8 +30,8 @@ fn light_extinction(density: f32) -> f32 {
     return classify(density).a;
 }
 
-fn light_distance(cell: vec3i) -> i32 {
-    return i32(textureLoad(distances, cell, 0).g);
+fn light_distance(cell: vec3f) -> i32 {
+    return near(distances, cell).y;
 }
 
 @compute @workgroup_size(8, 8, 4)

@@ -6,6 +6,8 @@
 #import "common/shade.wgsl"
 #import "common/looked_up_light.wgsl"
 
+// Distance in bricks to the nearest that the eye's transfer function shows.
+@group(0) @binding(2) var distances: texture_3d<u32>;
 // Colour and opacity so far.
 @group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
 @group(1) @binding(4) var clamped: sampler;

@@ -4,6 +4,9 @@
 #import "common/march.wgsl"
 #import "common/scatter.wgsl"
 
+// Distances in bricks: g to the nearest that attenuates light.
+@group(0) @binding(2) var distances: texture_3d<u32>;
+
 // Bricks beyond an occupied one that a stretched kernel can see.
 override DILATION: i32 = 0;
 

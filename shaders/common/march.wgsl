@@ -27,9 +27,6 @@ struct March {
 }
 
 @group(0) @binding(0) var<uniform> march: March;
-// Distances in cells: r to the nearest whose light is looked up, g to the nearest that attenuates light. Of
-// scattered sheets in bricks, r to the nearest that is read.
-@group(0) @binding(2) var distances: texture_3d<u32>;
 // Transmittance in front of the next slab, per pixel.
 @group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;
 @group(0) @binding(4) var ring: texture_storage_3d<STORAGE_FORMAT, write>;

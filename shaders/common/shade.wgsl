@@ -32,8 +32,6 @@ struct Eye {
 }
 
 @group(0) @binding(0) var<uniform> eye: Eye;
-// Distance to the nearest cell, or for scattered sheets brick, that the eye's transfer function shows.
-@group(0) @binding(2) var distances: texture_3d<u32>;
 @group(2) @binding(0) var attenuation_0: texture_3d<f32>;
 @group(2) @binding(1) var attenuation_1: texture_3d<f32>;
 @group(2) @binding(2) var attenuation_2: texture_3d<f32>;

@@ -13,15 +13,17 @@ struct Grid {
     // 1 / texels of the pyramid's level 0, which has four voxels of nothing before the data.
     pyramid_scale: vec3f,
     pad1: f32,
-    // Cells of 2³ voxels.
-    cells: vec3i,
-    pad2: i32,
+    // 1 / cells of 2³ voxels.
+    cell_scale: vec3f,
+    pad2: f32,
 }
 
 @group(1) @binding(0) var<uniform> grid: Grid;
 @group(1) @binding(1) var density_texture: texture_3d<f32>;
 @group(1) @binding(2) var pyramid_texture: texture_3d<f32>;
 @group(1) @binding(3) var clamped: sampler;
+// Takes the nearest texel.
+@group(1) @binding(4) var nearest: sampler;
 
 // Points per slab: 1 at its middle, or 2 by Gauss–Legendre.
 override QUADRATURE: u32 = 1u;

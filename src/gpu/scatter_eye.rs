@@ -60,7 +60,13 @@ impl EyeScatter {
             (order == SheetOrder::EveryFootprint).then(|| Footprints::new(gpu, &scatterer)).transpose()?;
         let occupied = &tables.eye.occupied;
         let distances = occupied.distances();
-        let distances = upload_distances(gpu.context, "EyeScatter::distances", occupied.dims, &distances, 1)?;
+        let distances = upload_distances(
+            gpu.context,
+            "EyeScatter::distances",
+            occupied.dims,
+            &distances,
+            wgpu::TextureFormat::R8Uint,
+        )?;
         Ok(Self {
             scatterer,
             footprints,

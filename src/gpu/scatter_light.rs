@@ -56,7 +56,13 @@ impl LightScatter {
         let thin = if options.leaping { tables.lighting.occupied.distances() } else { vec![0; unread.len()] };
         let pairs: Vec<u8> = unread.into_iter().zip(thin).flat_map(|(r, g)| [r, g]).collect();
         Ok(Self {
-            distances: upload_distances(gpu.context, "LightScatter::distances", dims, &pairs, 2)?,
+            distances: upload_distances(
+                gpu.context,
+                "LightScatter::distances",
+                dims,
+                &pairs,
+                wgpu::TextureFormat::Rg8Uint,
+            )?,
             scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, what, &seen, 1)?.towards_grid(
                 view.first_pixel.as_vec2().into(),
                 view.cube_face,

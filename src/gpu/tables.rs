@@ -115,9 +115,20 @@ impl Tables {
         let dims = lit.dims;
         let pairs: Vec<u8> =
             lit.values.iter().zip(&lighting.distances.values).flat_map(|(r, g)| [*r, *g]).collect();
-        let eye_distances =
-            upload_distances(context, "Tables::eye_distances", dims, &eye.distances.values, 1)?;
-        let light_distances = upload_distances(context, "Tables::light_distances", dims, &pairs, 2)?;
+        let eye_distances = upload_distances(
+            context,
+            "Tables::eye_distances",
+            dims,
+            &eye.distances.values,
+            wgpu::TextureFormat::R8Unorm,
+        )?;
+        let light_distances = upload_distances(
+            context,
+            "Tables::light_distances",
+            dims,
+            &pairs,
+            wgpu::TextureFormat::Rg8Unorm,
+        )?;
         let needed = RefCell::default();
         Ok(Self { eye, lighting, eye_distances, light_distances, bounded, lit, needed })
     }
@@ -162,15 +173,15 @@ impl Tables {
 /// A reach that no distance exceeds: nothing is leapt over.
 pub(super) const EVERYWHERE: i32 = 255;
 
-/// A 3D texture of distances, one byte or two for each cell or brick.
+/// A 3D texture of distances, a byte or two for each cell or brick. Shaders sample normalised formats and
+/// load integers.
 pub(super) fn upload_distances(
     context: &Context,
     label: &'static str,
     dims: [usize; 3],
     distances: &[u8],
-    channels: u32,
+    format: wgpu::TextureFormat,
 ) -> Result<wgpu::TextureView, GpuError> {
-    let format = if channels == 1 { wgpu::TextureFormat::R8Uint } else { wgpu::TextureFormat::Rg8Uint };
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = context.texture(&super::volume::texture_3d(label, dims, format, usage))?;
     context.queue.write_texture(
@@ -178,7 +189,7 @@ pub(super) fn upload_distances(
         distances,
         wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(channels * dims[0] as u32),
+            bytes_per_row: Some((distances.len() / dims[1].max(1) / dims[2].max(1)) as u32),
             rows_per_image: Some(dims[1] as u32),
         },
         texture.size(),

@@ -83,8 +83,8 @@ pub struct Grid {
     pub pad0: f32,
     pub pyramid_scale: [f32; 3],
     pub pad1: f32,
-    pub cells: [i32; 3],
-    pub pad2: i32,
+    pub cell_scale: [f32; 3],
+    pub pad2: f32,
 }
 
 /// `common/resample.wgsl`.

@@ -47,6 +47,7 @@ pub(super) struct GpuVolume {
     /// Its gradients, while memory allows.
     pub gradients: Option<wgpu::Texture>,
     pub clamped: wgpu::Sampler,
+    nearest: wgpu::Sampler,
     unorm: bool,
     grid: Grid,
 }
@@ -97,8 +98,8 @@ impl GpuVolume {
             pad0: 0.0,
             pyramid_scale: reciprocal(padded),
             pad1: 0.0,
-            cells: bricks.dims.map(|n| (n * BRICK_EDGE / CELL_EDGE) as i32),
-            pad2: 0,
+            cell_scale: reciprocal(bricks.dims.map(|n| n * BRICK_EDGE / CELL_EDGE)),
+            pad2: 0.0,
         };
         Ok(Self {
             volume: Arc::clone(volume),
@@ -110,6 +111,10 @@ impl GpuVolume {
             pyramid_view: pyramid.create_view(&wgpu::TextureViewDescriptor::default()),
             pyramid,
             clamped: context.sampler("Volume::clamped", wgpu::AddressMode::ClampToEdge),
+            nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("Volume::nearest"),
+                ..Default::default()
+            }),
             unorm,
             grid,
         })
@@ -207,6 +212,7 @@ impl GpuVolume {
                 entry(1, wgpu::BindingResource::TextureView(&self.density_view)),
                 entry(2, wgpu::BindingResource::TextureView(&self.pyramid_view)),
                 entry(3, wgpu::BindingResource::Sampler(&self.clamped)),
+                entry(4, wgpu::BindingResource::Sampler(&self.nearest)),
             ],
         )
     }
