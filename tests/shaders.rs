@@ -211,7 +211,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         slope_dj,
         size,
     });
-    let grid = layout!(Grid { dims, dilation, density_scale, pad0, pyramid_scale, pad1, cells, pad2 });
+    let grid = layout!(Grid { dims, dilation, density_scale, pad0, pyramid_scale, pad1, cell_scale, pad2 });
     let light = layout!(Light {
         place,
         perspective,
@@ -357,8 +357,9 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("scatter_footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
         ("light_collapse.wgsl", layout!(Collapse { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         ("display.wgsl", layout!(Display { top, bottom, transparent, clip, pad0, pad1 })),
-        ("prefilter.wgsl", layout!(Slices { first, end, pad0, pad1 })),
-        ("downsample.wgsl", layout!(Slices { first, end, pad0, pad1 })),
+        ("prefilter.wgsl", layout!(Slices { first, end, spacing, pad0 })),
+        ("downsample.wgsl", layout!(Slices { first, end, spacing, pad0 })),
+        ("gradients.wgsl", layout!(Slices { first, end, spacing, pad0 })),
     ]
 }
 
@@ -468,9 +469,9 @@ fn differing_structs_are_reported() {
     assert_eq!(wrong(&march, "struct March", "struct March"), Vec::<String>::new());
     let swapped = wrong(&march, "begin: u32,\n    end: u32,", "end: u32,\n    begin: u32,");
     assert_eq!(swapped.len(), 2, "{swapped:?}");
-    let retyped = wrong(&grid, "pad2: i32,\n}", "pad2: u32,\n}");
+    let retyped = wrong(&grid, "pad2: f32,\n}", "pad2: u32,\n}");
     assert_eq!(retyped.len(), 1, "{retyped:?}");
-    let longer = wrong(&grid, "pad2: i32,\n}", "pad2: i32,\n    more: vec4f,\n}");
+    let longer = wrong(&grid, "pad2: f32,\n}", "pad2: f32,\n    more: vec4f,\n}");
     assert_eq!(longer.len(), 2, "the size and the field: {longer:?}");
     let absent = Layout { name: "Marsch".to_owned(), ..march.clone() };
     let module = check(&source).expect("the shader is valid");
@@ -577,6 +578,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("display.wgsl", [8, 8, 1]),
         ("downsample.wgsl", [8, 4, 4]),
         ("eye.wgsl", [8, 8, 1]),
+        ("gradients.wgsl", [8, 4, 4]),
         ("light_around.wgsl", [8, 8, 4]),
         ("light_backproject.wgsl", [64, 1, 1]),
         ("light_collapse.wgsl", [8, 8, 4]),

@@ -9,6 +9,7 @@ use super::listed_bricks::listed;
 use super::tables::Tables;
 use super::volume::{GpuVolume, brick_dims};
 use super::{GpuError, RenderOptions, Renderer};
+use crate::model::MAX_BIAS_VOXELS;
 use crate::plan::{
     CellSet, FARTHEST, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, eye_frame, lookup_reach, slab_reach,
     stretch_reach,
@@ -45,7 +46,9 @@ fn sample_reach(volume: &GpuVolume, request: &Request) -> u8 {
     let [width, height] = size.map(f64::from);
     let obliquity = frame.obliquity(0.0, 0.0).max(frame.obliquity(width, height));
     let slab = slab_reach(scene, frame.slab, obliquity, settings.sampling.quadrature);
-    stretch_reach(stretch).saturating_add(slab).saturating_add(bias_reach(settings.shadows.bias_voxels))
+    // Any bias fills for the largest, so that the next needs nothing.
+    let bias = if settings.shadows.bias_voxels > 0.0 { bias_reach(MAX_BIAS_VOXELS) } else { 0 };
+    stretch_reach(stretch).saturating_add(slab).saturating_add(bias)
 }
 
 /// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples

@@ -21,7 +21,7 @@ pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use sampling::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
-pub use shadows::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm, Shadows};
+pub use shadows::{Deposit, LightStorage, MAX_BIAS_VOXELS, Precision, Resolution, ShadowAlgorithm, Shadows};
 pub use transfer::{
     BakedTransfer, ControlPoint, Interpolation, LUT_SIZE, MAX_OPACITY, TransferFunction, linear_from_srgb,
 };

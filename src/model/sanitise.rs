@@ -2,8 +2,8 @@
 //! negative extinction or as an endless loop.
 
 use super::{
-    Background, Camera, ControlPoint, Hood, Interpolation, Kernel, Light, Output, Sampling, Settings,
-    Shading, Shadows,
+    Background, Camera, ControlPoint, Hood, Interpolation, Kernel, Light, MAX_BIAS_VOXELS, Output, Sampling,
+    Settings, Shading, Shadows,
 };
 
 impl Settings {
@@ -98,7 +98,7 @@ impl Settings {
         number(strength, 0.0, 1.0, default.shadows.strength);
         number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);
         number(gain, 0.0, 100.0, default.shadows.gain);
-        number(bias_voxels, 0.0, 2.0, default.shadows.bias_voxels);
+        number(bias_voxels, 0.0, MAX_BIAS_VOXELS, default.shadows.bias_voxels);
         number(balance, 0.01, 100.0, default.shadows.balance);
         number(slab, 0.25, 2.0, default.shadows.slab);
         kernel(light_kernel);

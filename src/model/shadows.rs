@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// The largest light bias: the radius of the kernel.
+pub const MAX_BIAS_VOXELS: f64 = 2.0;
+
 use super::{Kernel, Quadrature};
 use crate::math::SceneSpace;
 
