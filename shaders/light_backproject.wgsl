@@ -174,7 +174,7 @@ fn footprint_of(voxel: vec3u) -> Footprint {
 // Eight lanes to a cell of 2³ voxels, and every eighth cell of the brick to the same lanes.
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let listed = group.y * 32768u + group.x;
+    let listed = group.y * 16384u + group.x;
     if (listed >= view.bricks) {
         return;
     }

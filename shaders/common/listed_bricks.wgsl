@@ -1,10 +1,10 @@
 // Passes over the light voxels of listed bricks (src/gpu/listed_bricks.rs): two workgroups of
-// 8 × 8 × 4 to a brick of 8³, in rows of 32768 bricks because a dispatch has at most 65535 groups.
+// 8 × 8 × 4 to a brick of 8³, in rows of 16384 bricks because a dispatch has at most 65535 groups along an axis.
 // A listed brick is its coordinates, of ten bits each, and a bit for each of its 4³ cells that is meant.
 
 // Which brick of the list a workgroup fills half of.
 fn listed_brick(group: vec3u) -> u32 {
-    return group.y * 32768u + group.x / 2u;
+    return group.y * 16384u + group.x / 2u;
 }
 
 // A brick's coordinates.

@@ -3,7 +3,7 @@
 use super::Context;
 
 /// Bricks per row of a dispatch: at most two workgroups each, within the 65535 that all adapters allow.
-const BRICKS_PER_ROW: u32 = 32768;
+const BRICKS_PER_ROW: u32 = 16384;
 
 /// A brick's coordinates, ten bits each.
 pub(super) fn packed([x, y, z]: [usize; 3]) -> u32 {
@@ -31,4 +31,26 @@ pub(super) fn workgroups(listed: u32) -> [u32; 3] {
 /// A workgroup for each of so many bricks.
 pub(super) fn single_workgroups(listed: u32) -> [u32; 3] {
     [listed.min(BRICKS_PER_ROW), listed.div_ceil(BRICKS_PER_ROW), 1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dispatches_cover_their_lists_within_the_limits_of_all_adapters() {
+        for listed in [1, BRICKS_PER_ROW - 1, BRICKS_PER_ROW, BRICKS_PER_ROW + 1, 262_144, 2_097_152] {
+            for (groups, per_brick) in [(workgroups(listed), 2), (single_workgroups(listed), 1)] {
+                let [x, y, z] = groups;
+                assert!(x <= 65535 && y <= 65535 && z == 1, "{listed}: {groups:?}");
+                assert!(x * y >= listed * per_brick, "{listed}: {groups:?}");
+                // Rows are whole, as the shaders count on, or there is only one.
+                assert!(y == 1 || x == BRICKS_PER_ROW * per_brick, "{listed}: {groups:?}");
+            }
+        }
+        let shader = include_str!("../../shaders/common/listed_bricks.wgsl");
+        assert!(shader.contains(&format!("group.y * {BRICKS_PER_ROW}u")));
+        let shader = include_str!("../../shaders/light_backproject.wgsl");
+        assert!(shader.contains(&format!("group.y * {BRICKS_PER_ROW}u")));
+    }
 }
