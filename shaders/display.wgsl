@@ -45,17 +45,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let light = textureLoad(picture, id.xy, 0);
     let straight = light.rgb / max(light.a, 1e-6);
     let mapped = select(neutral(straight), clamp(straight, vec3f(0.0), vec3f(1.0)), display.clip != 0u);
-    if (display.transparent != 0u) {
-        textureStore(shown, id.xy, vec4f(srgb_from_linear(select(vec3f(0.0), mapped, light.a > 0.0)), light.a));
-        return;
-    }
+    // Uniforms are no conditions of branches: Mesa's software driver would make each shader anew for their
+    // values, for every dispatch, and keep it.
+    let alone = vec4f(srgb_from_linear(select(vec3f(0.0), mapped, light.a > 0.0)), light.a);
     let down = (f32(id.y) + 0.5) / f32(size.y);
     let background = mix(display.top.rgb, display.bottom.rgb, down);
-    if (light.a <= 0.0) {
-        // Exactly the background, not its way to linear light and back.
-        textureStore(shown, id.xy, vec4f(background, 1.0));
-        return;
-    }
-    let mixed = mix(linear_from_srgb(background), mapped, light.a);
-    textureStore(shown, id.xy, vec4f(srgb_from_linear(mixed), 1.0));
+    let mixed = srgb_from_linear(mix(linear_from_srgb(background), mapped, light.a));
+    // Where nothing is, exactly the background, not its way to linear light and back.
+    let before_background = vec4f(select(mixed, background, light.a <= 0.0), 1.0);
+    textureStore(shown, id.xy, select(before_background, alone, display.transparent != 0u));
 }

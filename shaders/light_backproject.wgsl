@@ -156,8 +156,8 @@ fn footprint_of(voxel: vec3u) -> Footprint {
     let depth = dot(view.light_from_index_z, p);
     let spread = 1.0 + depth * view.frame.inverse_distance;
     let limit = spread / max(view.frame.inverse_distance * view.frame.pitch, 1e-20);
-    let owned = view.cube_face == 0u || spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001));
-    if (owned && !(spread > 1e-3) && view.begin == 0u && all(voxel < view.dims)) {
+    let owned = (spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001))) | (view.cube_face == 0u);
+    if ((owned & !(spread > 1e-3) & (view.begin == 0u)) && all(voxel < view.dims)) {
         // In the plane of the light, and of this view: at the light itself.
         textureStore(attenuation, voxel, vec4f(1.0));
     }

@@ -14,10 +14,9 @@
 
 // The sheet's value at a pixel; nothing lies before the first or behind the last.
 fn sheet(pixel: vec2i, k: i32) -> f32 {
-    if (k < 0 || k >= i32(scatter.sheet_count)) {
-        return 0.0;
-    }
-    return f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(k))])) / UNIT;
+    let last = i32(scatter.sheet_count) - 1;
+    let sum = f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(clamp(k, 0, last)))])) / UNIT;
+    return select(0.0, sum, (k >= 0) & (k <= last));
 }
 
 // The sheet's material: what its density means, or the sum of what its voxels mean.
@@ -74,11 +73,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     // Nobody looks back that far again: room for a sheet to come.
-    if (k >= eye.gradient_slabs) {
-        let past = sheet_index(id.xy, scatter.k - u32(eye.gradient_slabs));
-        atomicStore(&sheets[past], 0);
-        for (var channel = 1u; channel < 5u && SPLAT == SPLAT_MATERIAL; channel += 1u) {
-            atomicStore(&sheets[channel_index(past, channel)], 0);
-        }
+    // Uniforms are no conditions of branches (display.wgsl).
+    let kept = select(-1, 0, k >= eye.gradient_slabs);
+    let past = sheet_index(id.xy, u32(max(k - eye.gradient_slabs, 0)));
+    atomicAnd(&sheets[past], kept);
+    for (var channel = 1u; channel < 5u && SPLAT == SPLAT_MATERIAL; channel += 1u) {
+        atomicAnd(&sheets[channel_index(past, channel)], kept);
     }
 }

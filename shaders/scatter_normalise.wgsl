@@ -23,7 +23,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     // Pixels from the axis, times w.
     let across = at.xy + scatter.first_pixel * spread;
     let limit = spread / max(scatter.frame.inverse_distance * scatter.frame.pitch, 1e-20);
-    if (scatter.cube_face != 0u && !(spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001)))) {
+    if (!(spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001))) && scatter.cube_face != 0u) {
         return;
     }
     let index = voxel.x + scatter.light_dims.x * (voxel.y + scatter.light_dims.y * voxel.z);

@@ -603,3 +603,86 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         assert_eq!(entry.workgroup_size, size, "{name}");
     }
 }
+
+/// Whether an expression is made of uniforms and constants alone, and of any uniform.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    Constant,
+    Uniform,
+    Other,
+}
+
+fn origin_of(module: &naga::Module, function: &naga::Function, at: naga::Handle<naga::Expression>) -> Origin {
+    use naga::Expression as E;
+    let of = |at| origin_of(module, function, at);
+    let join = |parts: &[naga::Handle<E>]| {
+        parts.iter().map(|&part| of(part)).fold(Origin::Constant, |all, part| match (all, part) {
+            (Origin::Other, _) | (_, Origin::Other) => Origin::Other,
+            (Origin::Uniform, _) | (_, Origin::Uniform) => Origin::Uniform,
+            _ => Origin::Constant,
+        })
+    };
+    match &function.expressions[at] {
+        E::Literal(_) | E::Constant(_) | E::Override(_) | E::ZeroValue(_) => Origin::Constant,
+        E::GlobalVariable(global)
+            if module.global_variables[*global].space == naga::AddressSpace::Uniform =>
+        {
+            Origin::Uniform
+        }
+        E::Load { pointer } => of(*pointer),
+        E::AccessIndex { base, .. } => of(*base),
+        E::Access { base, index } => join(&[*base, *index]),
+        E::Splat { value, .. } => of(*value),
+        E::Swizzle { vector, .. } => of(*vector),
+        E::Compose { components, .. } => join(components),
+        E::Unary { expr, .. } | E::As { expr, .. } => of(*expr),
+        E::Binary { left, right, .. } => join(&[*left, *right]),
+        E::Select { condition, accept, reject } => join(&[*condition, *accept, *reject]),
+        E::Relational { argument, .. } => of(*argument),
+        E::Math { arg, arg1, arg2, arg3, .. } => {
+            let all: Vec<_> = [Some(*arg), *arg1, *arg2, *arg3].into_iter().flatten().collect();
+            join(&all)
+        }
+        _ => Origin::Other,
+    }
+}
+
+fn branches_on_uniforms(module: &naga::Module, function: &naga::Function, block: &naga::Block) -> usize {
+    let inner = |block| branches_on_uniforms(module, function, block);
+    block
+        .iter()
+        .map(|statement| match statement {
+            naga::Statement::Block(block) => inner(block),
+            naga::Statement::If { condition, accept, reject } => {
+                let found = origin_of(module, function, *condition) == Origin::Uniform;
+                usize::from(found) + inner(accept) + inner(reject)
+            }
+            naga::Statement::Loop { body, continuing, .. } => inner(body) + inner(continuing),
+            naga::Statement::Switch { cases, .. } => cases.iter().map(|case| inner(&case.body)).sum(),
+            _ => 0,
+        })
+        .sum()
+}
+
+fn branches_on_uniforms_in(module: &naga::Module) -> usize {
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let entries = module.entry_points.iter().map(|entry| &entry.function);
+    functions.chain(entries).map(|function| branches_on_uniforms(module, function, &function.body)).sum()
+}
+
+/// Mesa's software driver writes uniforms that alone decide a branch into the shader: it makes the shader
+/// anew for each dispatch, which takes time, and keeps it, which takes 150 KiB.
+#[test]
+fn no_branch_depends_on_uniforms_alone() {
+    for name in entry_shaders() {
+        let module = check(&joined(name)).expect("the shader is valid");
+        assert_eq!(branches_on_uniforms_in(&module), 0, "{name}");
+    }
+    // And such branches are found.
+    let wrong = joined("display.wgsl").replacen(
+        "    let down =",
+        "    if (display.clip + 1u > 1u) {\n        return;\n    }\n    let down =",
+        1,
+    );
+    assert_eq!(branches_on_uniforms_in(&check(&wrong).expect("a valid shader")), 1);
+}

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
+use super::clock::Clock;
 
 /// Said when there is no adapter.
 const ADAPTER_HELP: &str =
@@ -31,7 +32,8 @@ pub struct Context {
 /// Features that we use where an adapter has them.
 const WANTED: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
     .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
-    .union(wgpu::Features::FLOAT32_FILTERABLE);
+    .union(wgpu::Features::FLOAT32_FILTERABLE)
+    .union(Clock::FEATURES);
 
 /// What to ask of an adapter: the features we can use and its real limits instead of the defaults
 /// (which refuse a 2049-voxel axis and a 9000-pixel window on any card).

@@ -3,6 +3,7 @@
 //! One file per pass, with the same stem as its shader. [`Renderer`] reads top to bottom and owns
 //! every cache. Knows nothing of the window.
 
+mod clock;
 mod context;
 mod display;
 mod distance;

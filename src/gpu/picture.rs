@@ -74,6 +74,14 @@ pub struct Report {
     pub eye_ms: f64,
     /// Milliseconds of the display pass and of reading back.
     pub readback_ms: f64,
+    /// The same of both halves and of rays, and of the eye pass, by the GPU's own clock, if it has one.
+    pub light_gpu_ms: Option<f64>,
+    /// Of the eye pass.
+    pub eye_gpu_ms: Option<f64>,
+    /// Pixels of the picture.
+    pub size: [u32; 2],
+    /// Data voxels per voxel, along an axis, of the coarsest light volume that was looked up; 0 without.
+    pub light_divisor: usize,
     /// Slabs of the eye's stack.
     pub slabs: u32,
     /// Largest sum of our textures and buffers so far.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::clock::Clock;
 use super::display::Target;
 use super::job::{Job, Stage, Step};
 use super::light_cache::PlacedLights;
@@ -44,6 +45,8 @@ pub struct Renderer {
     /// Counts pictures.
     pub(super) clock: u64,
     pub(super) report: Report,
+    /// Made with the first picture that is timed; `None` inside where the adapter has none.
+    clock_of_gpu: Option<Option<Clock>>,
 }
 
 impl Renderer {
@@ -80,6 +83,7 @@ impl Renderer {
             rebuilds: Vec::new(),
             clock: 0,
             report: Report::default(),
+            clock_of_gpu: None,
         })
     }
 
@@ -293,12 +297,35 @@ impl Renderer {
         let start = Instant::now();
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if self.options.timed && self.clock_of_gpu.is_none() {
+            self.clock_of_gpu = Some(Clock::new(&self.context));
+        }
+        let clock = self.clock_of_gpu.take().flatten();
+        let timed = clock.as_ref().filter(|_| self.options.timed);
+        if let Some(clock) = timed {
+            clock.start(&mut encoder);
+        }
         self.encode(job, &step, &mut encoder)?;
+        if let Some(clock) = timed {
+            clock.stop(&mut encoder);
+        }
         self.context.queue.submit([encoder.finish()]);
         if self.options.timed {
             self.context.wait()?;
         }
         let took = milliseconds(start);
+        if let Some(clock) = timed {
+            let sum = match step.stage() {
+                Stage::LightMarch | Stage::LightBackproject | Stage::LightRaycast => {
+                    &mut self.report.light_gpu_ms
+                }
+                _ => &mut self.report.eye_gpu_ms,
+            };
+            if !matches!(step.stage(), Stage::Upload | Stage::Pyramid | Stage::Display) {
+                *sum = Some(sum.unwrap_or(0.0) + clock.read_ms(&self.context)?);
+            }
+        }
+        self.clock_of_gpu = Some(clock);
         match step.stage() {
             Stage::Upload | Stage::Pyramid => self.report.upload_ms += took,
             Stage::LightMarch => self.report.light_march_ms += took,

@@ -237,6 +237,8 @@ impl Renderer {
             EyePass::new(&gpu.volume.scene, settings, target.size, &found, collapsed, &self.options)
         });
         let slabs = eye.slab_count();
+        let size = target.size;
+        let divisor = found.iter().flatten().map(|light| light.divisor).max().unwrap_or(0);
         let mut peak = 0;
         match step {
             Step::ScatterEye(range) => {
@@ -257,6 +259,7 @@ impl Renderer {
             _ => {}
         }
         self.report.slabs = slabs;
+        (self.report.size, self.report.light_divisor) = (size, divisor);
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
         Ok(())
     }

@@ -2,13 +2,15 @@
 //!
 //! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
 //! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
-//! halves of the light pass of those frames); *growth* (light volumes of clouds of growing size, splatted
+//! halves of the light pass of those frames); *tf-edit* (a transfer function changes); *load* (from a file to
+//! its first picture) and *memory*; *growth* (light volumes of clouds of growing size, splatted
 //! and by rays, with everything that saves work and without);
 //! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms).
 
 use clap::Args;
 use serde_json::{Value, json};
 
+mod edit;
 mod growth;
 mod paper;
 mod report;
@@ -18,13 +20,17 @@ use report::{Samples, round};
 use super::scene::{Loaded, LookArgs, parse_size};
 use super::{CliError, print_line};
 use crate::gpu::{Context, RenderOptions, Renderer};
-use crate::model::{Settings, ShadowAlgorithm};
+use crate::model::{Kernel, Resolution, Settings, ShadowAlgorithm};
 
 /// Frames before the clock runs: pipelines are compiled, caches are warm.
 const WARM_UP: usize = 2;
 
 /// Degrees that camera or light move per frame.
 const STEP_DEG: f64 = 12.0;
+
+/// What there is to be measured.
+const CASES: [&str; 8] =
+    ["orbit", "light-drag", "light-build", "tf-edit", "load", "memory", "growth", "paper"];
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -42,8 +48,11 @@ pub(super) struct BenchArgs {
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
     /// Only the case of this name; growth runs only when asked for, since it takes minutes
-    #[arg(long, value_name = "CASE", value_parser = ["orbit", "light-drag", "light-build", "growth", "paper"])]
+    #[arg(long, value_name = "CASE", value_parser = CASES)]
     only: Option<String>,
+    /// Allow cases that are not rendered at full resolution and with an exact kernel
+    #[arg(long)]
+    reduced: bool,
     #[command(flatten)]
     look: LookArgs,
 }
@@ -54,8 +63,8 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let mut cases = Vec::new();
     let mut ratios = serde_json::Map::new();
     let context = Context::headless()?;
-    let of_volumes = ["orbit", "light-drag", "light-build", "paper"];
-    for volume in args.volumes.iter().filter(|_| of_volumes.into_iter().any(wants)) {
+    let mut orbits = Vec::new();
+    for volume in args.volumes.iter().filter(|_| args.only.as_deref() != Some("growth")) {
         let loaded = args.look.load(volume)?;
         let mut renderer = Renderer::new(&context)?;
         let settings = args.look.look(&loaded)?.settings(&mut renderer, &loaded)?;
@@ -63,6 +72,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         let mut found = serde_json::Map::new();
         if wants("orbit") || wants("light-drag") || wants("light-build") {
             let (with, without) = bench.orbit(&mut cases)?;
+            orbits.push(with.cost());
             found.insert(
                 "shadowed_over_unshadowed_frame".to_owned(),
                 json!(round(with.cost() / without.cost())),
@@ -73,6 +83,12 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
                 found.insert("light_build_over_unshadowed_frame".to_owned(), json!(round(ratio)));
             }
         }
+        if wants("tf-edit") {
+            bench.transfer_edit(&mut cases)?;
+        }
+        if wants("load") || wants("memory") {
+            bench.load(&context, volume, wants, &mut cases)?;
+        }
         if wants("paper") {
             bench.paper(&mut cases, &mut found)?;
         }
@@ -82,6 +98,18 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     }
     if wants("growth") {
         growth::run(&context, usize::from(args.frames), &mut cases, &mut ratios)?;
+    }
+    if let [first, .., last] = orbits[..] {
+        ratios.insert("orbit_frame_last_volume_over_first".to_owned(), json!(round(last / first)));
+    }
+    if let Some(case) = cases.iter().find(|case| case["full_quality"] == false)
+        && !args.reduced
+    {
+        return Err(CliError::Usage(format!(
+            "case {} was not rendered at full resolution and quality ({}): full settings help, or --reduced to \
+             time it all the same",
+            case["name"], case["rendered"],
+        )));
     }
     let result = json!({
         "adapter": context.info.name,
@@ -192,11 +220,21 @@ fn describe(
             "light_slab": settings.shadows.slab,
             "light_resolution": settings.shadows.resolution,
         },
+        "full_quality": is_full_quality(settings) && samples.were_whole(size),
     });
     if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
         case.extend(timings);
     }
     case
+}
+
+/// Whether settings ask for exact kernels, slabs no thicker than voxels and whole light volumes.
+fn is_full_quality(settings: &Settings) -> bool {
+    let (sampling, shadows) = (&settings.sampling, &settings.shadows);
+    let exact = |kernel: Kernel, slab: f64| kernel != Kernel::Prefiltered && slab <= 1.0;
+    exact(sampling.kernel, sampling.slab)
+        && exact(shadows.kernel, shadows.slab)
+        && shadows.resolution == Resolution::Full
 }
 
 fn print_table(result: &Value) {
@@ -218,6 +256,10 @@ fn print_table(result: &Value) {
             number(&case["stages"]["light_backproject"]),
             number(&case["stages"]["light_raycast"]),
         ));
+    }
+    let memory = |case: &&Value| case["name"] == "memory";
+    for case in result["cases"].as_array().into_iter().flatten().filter(memory) {
+        print_line(&format!("memory of {}: {} bytes per voxel", case["volume"], case["bytes_per_voxel"]));
     }
     for (name, ratio) in result["ratios"].as_object().into_iter().flatten() {
         print_line(&format!("{name:<40} {ratio}"));

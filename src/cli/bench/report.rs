@@ -7,7 +7,6 @@ use crate::gpu::Report;
 
 /// Timings of one case.
 #[derive(Debug, Default)]
-#[expect(clippy::struct_field_names, reason = "the unit belongs into the name")]
 pub(super) struct Samples {
     wall_ms: Vec<f64>,
     cpu_ms: Vec<f64>,
@@ -15,6 +14,12 @@ pub(super) struct Samples {
     light_march_ms: Vec<f64>,
     light_backproject_ms: Vec<f64>,
     light_raycast_ms: Vec<f64>,
+    bricks_ms: Vec<f64>,
+    upload_ms: Vec<f64>,
+    eye_gpu_ms: Vec<f64>,
+    light_gpu_ms: Vec<f64>,
+    /// Of the last frame: its pixels, and the coarsest light volume that it looked up.
+    rendered: ([u32; 2], usize),
 }
 
 impl Samples {
@@ -31,6 +36,11 @@ impl Samples {
         self.light_march_ms.push(report.light_march_ms);
         self.light_backproject_ms.push(report.light_backproject_ms);
         self.light_raycast_ms.push(report.light_raycast_ms);
+        self.bricks_ms.push(report.bricks_ms);
+        self.upload_ms.push(report.upload_ms);
+        self.eye_gpu_ms.extend(report.eye_gpu_ms);
+        self.light_gpu_ms.extend(report.light_gpu_ms);
+        self.rendered = (report.size, report.light_divisor);
         Ok(())
     }
 
@@ -56,6 +66,11 @@ impl Samples {
         median(&self.eye_ms)
     }
 
+    /// Whether the frames had so many pixels, and no light volume was coarser than the data.
+    pub(super) fn were_whole(&self, size: [u32; 2]) -> bool {
+        self.rendered.0 == size && self.rendered.1 <= 1
+    }
+
     /// Everything, as the JSON of a case.
     pub(super) fn json(&self) -> Value {
         let spread = |values: &[f64]| {
@@ -75,7 +90,10 @@ impl Samples {
                 "light_march": round(median(&self.light_march_ms)),
                 "light_backproject": round(median(&self.light_backproject_ms)),
                 "light_raycast": round(median(&self.light_raycast_ms)),
+                "bricks": round(median(&self.bricks_ms)),
+                "upload": round(median(&self.upload_ms)),
             },
+            "gpu_ms": { "eye": spread(&self.eye_gpu_ms), "light": spread(&self.light_gpu_ms) },
         })
     }
 }
