@@ -7,8 +7,9 @@ struct Display {
     transparent: u32,
     // 0: neutral, 1: clip.
     clip: u32,
+    // Multiplies all light.
+    exposure: f32,
     pad0: u32,
-    pad1: u32,
 }
 
 @group(0) @binding(0) var<uniform> display: Display;
@@ -42,7 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= size)) {
         return;
     }
-    let light = textureLoad(picture, id.xy, 0);
+    let light = textureLoad(picture, id.xy, 0) * vec4f(vec3f(display.exposure), 1.0);
     let straight = light.rgb / max(light.a, 1e-6);
     let mapped = select(neutral(straight), clamp(straight, vec3f(0.0), vec3f(1.0)), display.clip != 0u);
     // Uniforms are no conditions of branches: Mesa's software driver would make each shader anew for their

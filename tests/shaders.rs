@@ -356,7 +356,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         ("scatter_footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
         ("light_collapse.wgsl", layout!(Collapse { dims, bricks, voxel_step, pad0, pad1, pad2 })),
-        ("display.wgsl", layout!(Display { top, bottom, transparent, clip, pad0, pad1 })),
+        ("display.wgsl", layout!(Display { top, bottom, transparent, clip, exposure, pad0 })),
         ("prefilter.wgsl", layout!(Slices { first, end, spacing, pad0 })),
         ("downsample.wgsl", layout!(Slices { first, end, spacing, pad0 })),
         ("gradients.wgsl", layout!(Slices { first, end, spacing, pad0 })),

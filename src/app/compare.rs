@@ -54,14 +54,19 @@ impl Compare {
     /// The picture, or two of them.
     pub(super) fn shapes(&self, rect: Rect, pictures: &Pictures) -> Shape {
         let whole = Rect::from_min_size(Pos2::ZERO, Vec2::splat(1.0));
-        let part = |texture, part: Rect| {
+        let tinted = |texture, part: Rect, tint: Color32| {
             let place = |uv: Pos2| rect.min + uv.to_vec2() * rect.size();
             let mut mesh = Mesh::with_texture(texture);
-            mesh.add_rect_with_uv(Rect::from_min_max(place(part.min), place(part.max)), part, Color32::WHITE);
+            mesh.add_rect_with_uv(Rect::from_min_max(place(part.min), place(part.max)), part, tint);
             Shape::from(mesh)
         };
+        let part = |texture, part| tinted(texture, part, Color32::WHITE);
         let Some(left) = pictures.left else { return Shape::Noop };
-        let Some(other) = pictures.other.filter(|_| self.on) else { return part(left, whole) };
+        let Some(other) = pictures.other.filter(|_| self.on) else {
+            let faded =
+                pictures.fading.map(|(before, left)| tinted(before, whole, Color32::from_white_alpha(left)));
+            return Shape::Vec([part(left, whole)].into_iter().chain(faded).collect());
+        };
         if self.difference {
             return part(other.difference, whole);
         }

@@ -60,12 +60,12 @@ impl Target {
     }
 }
 
-/// Turns the linear picture into the shown one.
+/// Turns the linear picture into the shown one, with all light multiplied by an exposure.
 pub(super) fn display(
     context: &Context,
     shaders: &ShaderLibrary,
     output: &Output,
-    transparent: bool,
+    (transparent, exposure): (bool, f32),
     target: &Target,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
@@ -76,8 +76,8 @@ pub(super) fn display(
         bottom: opaque(output.background.bottom),
         transparent: u32::from(transparent),
         clip: u32::from(output.tone_map == ToneMap::Clip),
+        exposure,
         pad0: 0,
-        pad1: 0,
     };
     let uniform = context.buffer("Display::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let bind_group = pass::bind(

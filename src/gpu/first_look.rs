@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{GpuError, Picture, RenderOptions, Renderer};
+use super::{GpuError, RenderOptions, Renderer};
 use crate::data::{Bricks, Histogram, Volume};
 use crate::model::{Settings, ShadowAlgorithm, auto};
 
@@ -55,7 +55,7 @@ pub fn balance(
     }
     let mut brightness = |settings: &Settings| -> Result<f64, GpuError> {
         let picture = renderer.render(volume, bricks, settings, MEASURED_SIZE, &RenderOptions::default())?;
-        Ok(mean_luminance(&picture))
+        Ok(mean_luminance(&picture.light))
     };
     let with = brightness(&shadowed)?;
     let (without, ambient) = (brightness(&unshadowed)?, brightness(&dark)?);
@@ -68,8 +68,8 @@ pub fn balance(
 const NEARLY_BLACK: f64 = 0.01;
 
 /// Mean linear luminance (Rec. 709) of the pixels that show something; 0 when none does.
-pub fn mean_luminance(picture: &Picture) -> f64 {
-    mean(&picture.light, luminance)
+pub fn mean_luminance(light: &[[f32; 4]]) -> f64 {
+    mean(light, luminance)
 }
 
 /// The share of the pixels that show something in which that is nearly black; 0 when none shows any.

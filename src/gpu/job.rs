@@ -199,6 +199,8 @@ fn chunk_slabs(volume: &GpuVolume, view: &LightView) -> u32 {
 pub struct Job {
     pub(super) request: Request,
     pub(super) transparent: bool,
+    /// Multiplies all light of what is shown.
+    pub(super) exposure: f32,
     /// Key of every light's volume in this picture; `None` for lights without.
     pub(super) keys: Vec<Option<LightKey>>,
     pub(super) builds: Vec<LightBuild>,
@@ -231,6 +233,11 @@ impl Job {
     /// Whether the picture is complete.
     pub fn is_done(&self) -> bool {
         self.steps.is_empty()
+    }
+
+    /// Multiplies all light of what is shown, as previews need it; the light itself stays as it is.
+    pub fn set_exposure(&mut self, exposure: f32) {
+        self.exposure = exposure;
     }
 
     /// Cuts the rows that are still to be drawn into bands of `rows`.

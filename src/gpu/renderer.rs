@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::clock::Clock;
-use super::display::Target;
+use super::display::{Target, display};
 use super::job::{Job, Stage, Step};
 use super::light_cache::PlacedLights;
 use super::light_collapse::{self, CollapsedLight};
@@ -139,6 +139,21 @@ impl Renderer {
         read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.shown)
     }
 
+    /// Shows the picture of a finished job again with another exposure.
+    ///
+    /// # Errors
+    /// When there is no picture or the GPU cannot do it.
+    pub fn expose(&mut self, job: &Job, exposure: f32) -> Result<(), GpuError> {
+        let target =
+            self.front.as_ref().ok_or_else(|| GpuError::Refused("no picture was drawn".to_owned()))?;
+        let output = &job.request().settings.output;
+        let mut encoder =
+            self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        display(&self.context, &self.shaders, output, (job.transparent, exposure), target, &mut encoder)?;
+        self.context.queue.submit([encoder.finish()]);
+        self.context.wait()
+    }
+
     /// Reads back the light of what is shown now: linear, premultiplied RGBA before tone mapping, row by
     /// row from the top left.
     ///
@@ -244,6 +259,7 @@ impl Renderer {
         Ok(Job {
             request,
             transparent: options.transparent,
+            exposure: 1.0,
             keys,
             builds,
             collapsed,

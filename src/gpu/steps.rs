@@ -55,7 +55,8 @@ impl Renderer {
             Step::Display => {
                 let target = self.back.as_ref().ok_or_else(out_of_date)?;
                 let output = &job.request.settings.output;
-                display(&self.context, &self.shaders, output, job.transparent, target, encoder)
+                let how = (job.transparent, job.exposure);
+                display(&self.context, &self.shaders, output, how, target, encoder)
             }
         }
     }

@@ -300,6 +300,6 @@ pub struct Display {
     pub bottom: [f32; 4],
     pub transparent: u32,
     pub clip: u32,
+    pub exposure: f32,
     pub pad0: u32,
-    pub pad1: u32,
 }

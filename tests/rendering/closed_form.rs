@@ -467,12 +467,12 @@ fn balanced_pictures_are_as_bright_as_unshadowed_ones() {
     let loaded = Loaded::new(scenes::creature(48, DVec3::ONE));
     let mut renderer = renderer();
     let mut settings = scenes::look();
-    let plain = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]));
+    let plain = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).light);
     settings.shadows.balance =
         chiaroscuro::gpu::balance(&mut renderer, &loaded.volume, &loaded.bricks, &settings).expect("balance");
-    let with = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]));
+    let with = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).light);
     settings.shadows.algorithm = chiaroscuro::model::ShadowAlgorithm::Off;
-    let without = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]));
+    let without = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).light);
     println!("shadows, unbalanced {plain:.4}, balanced {with:.4}, none {without:.4}");
     assert!((with / without - 1.0).abs() < 0.02, "{with} against {without}");
     assert!(plain < without, "shadows take light away");

@@ -11,6 +11,7 @@ mod common;
 mod compare;
 mod gpu_vs_reference;
 mod mutations;
+mod preview;
 mod scatter;
 mod scenes;
 mod stretch;

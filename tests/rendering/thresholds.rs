@@ -100,3 +100,7 @@ pub(crate) const BYTES: Limit = Limit { max: 0.55 / 255.0 + 5e-4, rmse: 0.32 / 2
 /// Collapsed lights against the sum of all, evenly lit: 16-bit colours, and cures for darkness that are
 /// applied before the look-up instead of behind it (the cut at full light is no straight line).
 pub(crate) const COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };
+
+/// Mean luminance of previews, exposed as at the beginning of a drag, against whole pictures: above
+/// that a swap is seen.
+pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.03;

@@ -143,7 +143,7 @@ fn cures_brighten_and_splatting_is_slightly_darker() {
     let loaded = Loaded::new(volume);
     let mut renderer = renderer();
     let mut brightness =
-        |settings: &Settings| mean_luminance(&render(&mut renderer, &loaded, settings, [96, 96]));
+        |settings: &Settings| mean_luminance(&render(&mut renderer, &loaded, settings, [96, 96]).light);
     settings.shadows.algorithm = ShadowAlgorithm::Direct;
     let direct = brightness(&settings);
     settings.shadows.algorithm = ShadowAlgorithm::Splat;

@@ -10,10 +10,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, ColorImage};
 
 use super::difference::Difference;
+use super::exposure::{Exposures, Kind};
 use super::painter::{Figures, Frame, Shared};
 use super::{Scene, Wanted};
 use crate::app::refine::{Look, Missing, Refine};
-use crate::gpu::{Context, GpuError, Job, RenderOptions, Stage};
+use crate::gpu::{Context, GpuError, Job, RenderOptions, Renderer, Stage};
 use crate::model::Settings;
 use crate::plan::{LightKey, Request, plan};
 
@@ -23,6 +24,9 @@ const REST: Duration = Duration::from_millis(150);
 /// How often a refinement tells how far it is: each time the window is drawn, which takes a software
 /// driver some 40 ms of the same processors.
 const TELL_EVERY: Duration = Duration::from_millis(400);
+
+/// Largest previews whose brightness is measured: two milliseconds for a software adapter.
+const EXPOSED_PIXELS: u64 = 1 << 18;
 
 /// How often darkness is measured while something moves on an adapter that previews at full quality:
 /// it reads back sixteen bytes per pixel.
@@ -39,6 +43,18 @@ struct Running {
     total_ms: f64,
     light_ms: f64,
     rebuilds_before: u64,
+}
+
+impl Running {
+    /// Whether it is a preview whose brightness is compensated: not of two looks, whose difference counts.
+    fn is_exposed(&self) -> bool {
+        self.look != Look::FULL && self.wanted.other.is_none()
+    }
+}
+
+/// What decides how far the brightness of a preview is off that was just drawn.
+fn kind_of(look: Look, renderer: &Renderer) -> Kind {
+    Kind { scale: look.scale, quick_eye: look.quick_eye, light_divisor: renderer.report().light_divisor }
 }
 
 /// The thread's own side.
@@ -59,6 +75,9 @@ pub(super) struct Easel {
     told: Instant,
     /// When darkness was measured.
     measured: Instant,
+    exposures: Exposures,
+    /// What the last preview was of.
+    previewed: Option<Wanted>,
 }
 
 impl Easel {
@@ -79,6 +98,8 @@ impl Easel {
             failed: None,
             told: now,
             measured: now,
+            exposures: Exposures::default(),
+            previewed: None,
         }
     }
 
@@ -112,6 +133,7 @@ impl Easel {
                 self.scene = Some(scene);
                 (self.wanted, self.running) = (None, None);
                 (self.shown, self.settled, self.failed) = (None, None, None);
+                (self.exposures, self.previewed) = (Exposures::default(), None);
             }
             if let Some(wanted) = desk.wanted.take() {
                 self.changed = Instant::now();
@@ -198,6 +220,10 @@ impl Easel {
     fn step(&mut self) -> Result<(), GpuError> {
         let (Some(scene), Some(running)) = (&mut self.scene, &mut self.running) else { return Ok(()) };
         let stage = running.job.stage();
+        if stage == Some(Stage::Display) && running.is_exposed() {
+            let kind = kind_of(running.look, &scene.renderer);
+            running.job.set_exposure(self.exposures.of(kind).unwrap_or(1.0) as f32);
+        }
         let start = Instant::now();
         let more = scene.renderer.step(&mut running.job)?;
         scene.renderer.context().wait()?;
@@ -219,8 +245,31 @@ impl Easel {
         Ok(())
     }
 
+    /// Learns how bright a complete picture is, and keeps a preview as bright as those at full quality.
+    fn expose(&mut self) -> Result<(), GpuError> {
+        let (Some(scene), Some(running)) = (&mut self.scene, &self.running) else { return Ok(()) };
+        let [width, height] = running.job.request().size;
+        let is_settled = running.look == Look::FULL && running.wanted.other.is_none();
+        // It takes reading back sixteen bytes per pixel.
+        let is_due = !running.preview || u64::from(width) * u64::from(height) <= EXPOSED_PIXELS;
+        if !(is_due && (is_settled || running.is_exposed())) {
+            return Ok(());
+        }
+        let mean = crate::gpu::mean_luminance(&scene.renderer.read_light()?);
+        if is_settled {
+            self.exposures.settle(mean, self.previewed.as_ref() == Some(&running.wanted));
+            return Ok(());
+        }
+        self.previewed = Some(running.wanted.clone());
+        match self.exposures.preview(kind_of(running.look, &scene.renderer), mean) {
+            Some(exposure) => scene.renderer.expose(&running.job, exposure as f32),
+            None => Ok(()),
+        }
+    }
+
     /// Hands over the complete picture and learns from what it took.
     fn finish(&mut self) -> Result<(), GpuError> {
+        self.expose()?;
         let (Some(scene), Some(running)) = (&self.scene, self.running.take()) else { return Ok(()) };
         let Running { job, wanted, look, preview, left, total_ms, light_ms, rebuilds_before } = running;
         let start = Instant::now();

@@ -6,6 +6,7 @@
 
 mod difference;
 mod easel;
+mod exposure;
 mod facts;
 mod painter;
 
@@ -27,6 +28,9 @@ const PATIENCE: Duration = Duration::from_millis(12);
 /// delay it: what is left of the 50 ms that a window may be without answer.
 const SOFTWARE_PATIENCE: Duration = Duration::from_millis(40);
 
+/// How long a preview takes to fade into the picture at full quality.
+const FADE_S: f64 = 0.12;
+
 /// What is to be seen.
 #[derive(Debug, Clone, PartialEq)]
 struct Wanted {
@@ -44,6 +48,8 @@ struct Wanted {
 pub(super) struct Pictures {
     /// The picture, or the left one of two.
     pub left: Option<egui::TextureId>,
+    /// The preview that was shown before, and what is left of its opacity.
+    pub fading: Option<(egui::TextureId, u8)>,
     /// Where two looks are compared.
     pub other: Option<Other>,
 }
@@ -78,6 +84,9 @@ pub(super) struct Viewport {
     volume: Option<(Arc<Volume>, Arc<Bricks>)>,
     /// The picture, or of a comparison left, right and their difference.
     textures: [Option<Texture>; 3],
+    /// The preview that fades into the picture at full quality, and since when (egui's seconds).
+    fading: Option<(Texture, f64)>,
+    now_s: f64,
     /// How far the two are apart.
     differs: Option<Distance>,
     shown: Option<(Wanted, Look)>,
@@ -106,6 +115,8 @@ impl Viewport {
             generation: 0,
             volume: None,
             textures: [None, None, None],
+            fading: None,
+            now_s: 0.0,
             differs: None,
             shown: None,
             failed: None,
@@ -136,8 +147,13 @@ impl Viewport {
         let [left, right, difference] =
             self.textures.each_ref().map(|texture| texture.as_ref().map(|texture| texture.0.id()));
         let other = right.zip(difference).zip(self.differs);
+        let fading = self.fading.as_ref().map(|(texture, since_s)| {
+            let left = 1.0 - (self.now_s - since_s) / FADE_S;
+            (texture.0.id(), (left.clamp(0.0, 1.0) * 255.0) as u8)
+        });
         Pictures {
             left,
+            fading,
             other: other.map(|((right, difference), distance)| Other { right, difference, distance }),
         }
     }
@@ -152,6 +168,7 @@ impl Viewport {
     pub(super) fn is_idle(&self, (settings, other): &(Settings, Option<Settings>)) -> bool {
         self.shown.as_ref().is_some_and(|(shown, look)| {
             *look == Look::FULL
+                && self.fading.is_none()
                 && shown.settings == *settings
                 && shown.other == *other
                 && self.wanted.as_ref().is_some_and(|wanted| wanted == shown)
@@ -169,6 +186,12 @@ impl Viewport {
     ) -> Result<(), GpuError> {
         if self.lost || self.volume.is_none() {
             return Ok(());
+        }
+        self.now_s = ctx.input(|input| input.time);
+        if self.fading.take_if(|(_, since_s)| self.now_s - *since_s >= FADE_S).is_none()
+            && self.fading.is_some()
+        {
+            ctx.request_repaint();
         }
         let wanted = Wanted { generation: self.generation, settings, other, size };
         let mut patience = Duration::ZERO;
@@ -196,6 +219,13 @@ impl Viewport {
         // Pixel for pixel where there are enough of them.
         let exact = image.size == wanted.size.map(|n| n as usize);
         let options = if exact { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+        // A preview of the same fades away; anything else is replaced at once.
+        let is_same = self.shown.as_ref().is_some_and(|(shown, before)| *shown == wanted && *before != look);
+        self.fading =
+            self.textures[0].take_if(|_| is_same && other.is_none()).map(|texture| (texture, self.now_s));
+        if self.fading.is_some() {
+            ctx.request_repaint();
+        }
         self.place(0, image, options, ctx);
         match other {
             Some((right, difference)) => {
