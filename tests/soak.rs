@@ -72,7 +72,7 @@ impl Soak {
             size: if is_rest { [96, 72] } else { [48, 36] },
             coarse: (!is_rest).then_some(Resolution::Quarter),
         };
-        let options = RenderOptions { quick_normals: !is_rest, ..RenderOptions::default() };
+        let options = RenderOptions { preview: !is_rest, ..RenderOptions::default() };
         let mut job = self.renderer.begin(&self.volume, &self.bricks, request, &options).expect("a job");
         while self.renderer.step(&mut job).expect("a step") {}
         self.renderer.context().wait().expect("it is done");

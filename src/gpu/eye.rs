@@ -86,13 +86,13 @@ impl EyePass {
             pad2: 0.0,
             lights: packed,
         };
-        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature);
+        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
         if direct {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
         let dilation = if options.leaping { i32::from(seen) } else { EVERYWHERE };
         // Between levels of the pyramid differences and interpolation do not commute exactly.
-        let takes_gradients = stretch_level <= 0.0 || options.quick_normals;
+        let takes_gradients = stretch_level <= 0.0 || options.preview;
         Self { frame, uniform, dilation, takes_gradients, constants }
     }
 

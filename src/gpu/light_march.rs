@@ -20,6 +20,8 @@ pub(super) struct Sheets {
     pub chunk: u32,
     /// Light is followed until less than this is left.
     pub dark: f32,
+    /// For a preview.
+    pub preview: bool,
     /// Deposited transmittance, sheet by sheet.
     pub ring: wgpu::Texture,
     /// The same.
@@ -61,6 +63,7 @@ impl Sheets {
             layers,
             chunk,
             dark: RenderOptions::default().dark,
+            preview: false,
             ring_view: ring.create_view(&wgpu::TextureViewDescriptor::default()),
             ring,
             transmittance,
@@ -177,7 +180,7 @@ pub(super) fn march(
         &tables.light_distances,
     );
     let leaping = sheets.reach != EVERYWHERE;
-    let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature);
+    let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
     let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
     let of_volume = volume.bind_group(context, &pipeline, dilation);
     pass::dispatch(

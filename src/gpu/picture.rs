@@ -16,8 +16,9 @@ pub struct RenderOptions {
     pub chunk: Option<u32>,
     /// Pieces into which each chunk of the light pass is cut, for short submissions.
     pub light_parts: u32,
-    /// Take normals of stretched kernels from the texture of gradients, too: for previews.
-    pub quick_normals: bool,
+    /// Take shortcuts with stretched kernels that only previews may: normals from the texture of gradients,
+    /// and nothing of their outermost tails.
+    pub preview: bool,
     /// Wait after every step, so that a report's stages are true.
     pub timed: bool,
 }
@@ -32,7 +33,7 @@ impl Default for RenderOptions {
             dark: 1.0 / 4096.0,
             chunk: None,
             light_parts: 1,
-            quick_normals: false,
+            preview: false,
             timed: false,
         }
     }

@@ -18,19 +18,26 @@ pub fn stretch_reach(level: f64) -> u8 {
     }
 }
 
+/// The same for previews, which may miss the tails: beyond three quarters of a stretched B-spline's radius
+/// of 2 texels lies 1/1000 of its weight along an axis.
+pub(super) fn preview_stretch_reach(level: f64) -> u8 {
+    if level <= 0.0 { 0 } else { in_cells(1.5 * level.exp2()) }
+}
+
 /// Of samples that are means over a slab of `slab` scene units: how far its points lie from its middle.
 pub fn slab_reach(scene: &SceneSpace, slab: f64, obliquity: f64, quadrature: Quadrature) -> u8 {
     let farthest = quadrature.offsets().iter().fold(0.0_f64, |far, offset| far.max(offset.abs()));
     in_cells(farthest * slab * obliquity / scene.smallest_edge())
 }
 
-/// Of a frame's samples.
-pub fn sample_reach(frame: &SheetFrame, scene: &SceneSpace, quadrature: Quadrature) -> u8 {
+/// Of a frame's samples, in a preview or not.
+pub fn sample_reach(frame: &SheetFrame, scene: &SceneSpace, quadrature: Quadrature, preview: bool) -> u8 {
     let [width, height] = frame.size.map(f64::from);
     let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
     let obliquity = corners.map(|(i, j)| frame.obliquity(i, j)).into_iter().fold(1.0, f64::max);
-    stretch_reach(frame.max_stretch_level())
-        .saturating_add(slab_reach(scene, frame.slab, obliquity, quadrature))
+    let level = frame.max_stretch_level();
+    let stretch = if preview { preview_stretch_reach(level) } else { stretch_reach(level) };
+    stretch.saturating_add(slab_reach(scene, frame.slab, obliquity, quadrature))
 }
 
 /// Of samples of rays to lights, which are not stretched.
@@ -76,6 +83,7 @@ mod tests {
     #[test]
     fn reaches_are_rounded_outwards() {
         assert_eq!([0.0, 0.3, 1.0, 1.1, 2.0].map(stretch_reach), [0, 2, 2, 5, 5]);
+        assert_eq!([0.0, 0.3, 1.0, 1.1, 2.0].map(preview_stretch_reach), [0, 1, 2, 2, 3]);
         assert_eq!([1, 2, 4].map(lookup_reach), [1, 1, 2]);
         assert_eq!([0.0, 0.1, 2.0, 2.1].map(bias_reach), [0, 1, 1, 2]);
         let scene = SceneSpace::new([9; 3], DAffine3::IDENTITY);

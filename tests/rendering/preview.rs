@@ -20,7 +20,7 @@ fn brightness(
     coarse: Option<Resolution>,
 ) -> f64 {
     let (mut settings, options) =
-        (settings.clone(), RenderOptions { quick_normals: coarse.is_some(), ..RenderOptions::default() });
+        (settings.clone(), RenderOptions { preview: coarse.is_some(), ..RenderOptions::default() });
     if coarse.is_some() {
         settings.sampling.kernel = Kernel::Prefiltered;
         settings.sampling.slab = settings.sampling.slab.max(1.0);

@@ -204,7 +204,7 @@ impl Easel {
         let request = request_of(scene, settings, &wanted, look);
         let options = RenderOptions {
             light_parts: self.refine.light_parts(look),
-            quick_normals: look != Look::FULL,
+            preview: look != Look::FULL,
             ..RenderOptions::default()
         };
         let rebuilds_before = scene.renderer.light_rebuilds().iter().sum();
