@@ -8,10 +8,14 @@ fn value(texel: vec3i) -> f32 {
     return textureLoad(source, clamp(texel, vec3i(0), vec3i(textureDimensions(source)) - 1), 0).r;
 }
 
-@compute @workgroup_size(8, 4, 4)
-fn main(@builtin(global_invocation_id) invocation: vec3u) {
-    let texel = texel_of(invocation);
-    if (any(texel >= textureDimensions(gradients)) || texel.z >= slices.end) {
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let listed = listed_brick(group);
+    if (listed >= resample.bricks) {
+        return;
+    }
+    let texel = voxel_in(bricks[listed], group, local);
+    if (any(texel >= textureDimensions(gradients))) {
         return;
     }
     let at = vec3i(texel);
@@ -21,5 +25,5 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
         value(at + vec3i(0, 0, 1)) - value(at - vec3i(0, 0, 1)),
     );
     // Texels of the level are `spacing` voxels apart.
-    textureStore(gradients, texel, vec4f(differences / (2.0 * slices.spacing), 0.0));
+    textureStore(gradients, texel, vec4f(differences / (2.0 * resample.spacing), 0.0));
 }

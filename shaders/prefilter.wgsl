@@ -6,10 +6,14 @@
 
 const OFFSET = 1.0 / 6.0;
 
-@compute @workgroup_size(8, 4, 4)
-fn main(@builtin(global_invocation_id) invocation: vec3u) {
-    let texel = texel_of(invocation);
-    if (!is_filled(texel)) {
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let listed = listed_brick(group);
+    if (listed >= resample.bricks) {
+        return;
+    }
+    let texel = voxel_in(bricks[listed], group, local);
+    if (any(texel >= textureDimensions(level))) {
         return;
     }
     // The pyramid has four voxels of padding, the density texture one.

@@ -357,9 +357,9 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("scatter_footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
         ("light_collapse.wgsl", layout!(Collapse { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         ("display.wgsl", layout!(Display { top, bottom, transparent, clip, exposure, pad0 })),
-        ("prefilter.wgsl", layout!(Slices { first, end, spacing, pad0 })),
-        ("downsample.wgsl", layout!(Slices { first, end, spacing, pad0 })),
-        ("gradients.wgsl", layout!(Slices { first, end, spacing, pad0 })),
+        ("prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("downsample.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("gradients.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
     ]
 }
 
@@ -576,15 +576,15 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
 fn workgroups_have_the_size_that_the_dispatches_count_on() {
     let expected = [
         ("display.wgsl", [8, 8, 1]),
-        ("downsample.wgsl", [8, 4, 4]),
+        ("downsample.wgsl", [8, 8, 4]),
         ("eye.wgsl", [8, 8, 1]),
-        ("gradients.wgsl", [8, 4, 4]),
+        ("gradients.wgsl", [8, 8, 4]),
         ("light_around.wgsl", [8, 8, 4]),
         ("light_backproject.wgsl", [64, 1, 1]),
         ("light_collapse.wgsl", [8, 8, 4]),
         ("light_march.wgsl", [8, 8, 1]),
         ("light_raycast.wgsl", [8, 8, 4]),
-        ("prefilter.wgsl", [8, 4, 4]),
+        ("prefilter.wgsl", [8, 8, 4]),
         ("scatter_eye.wgsl", [8, 8, 1]),
         ("scatter_footprints.wgsl", [64, 1, 1]),
         ("scatter_light.wgsl", [8, 8, 1]),

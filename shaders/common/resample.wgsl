@@ -1,27 +1,21 @@
-// What the levels of the pyramid are made with: eight linear fetches around a texel, a part of the
-// slices at a time.
-struct Slices {
-    // First, and one beyond the last: a whole level could keep a slow adapter busy for seconds.
-    first: u32,
-    end: u32,
+// What the levels of the pyramid are made with: eight linear fetches around a texel, in listed bricks of 8³
+// texels. Elsewhere is nothing, as textures begin.
+#import "common/listed_bricks.wgsl"
+
+struct Resample {
+    // Bricks listed for this dispatch.
+    bricks: u32,
     // Of the level's texels, in voxels.
     spacing: f32,
     pad0: u32,
+    pad1: u32,
 }
 
 @group(0) @binding(0) var source: texture_3d<f32>;
 @group(0) @binding(1) var clamped: sampler;
 @group(0) @binding(2) var level: texture_storage_3d<STORAGE_FORMAT, write>;
-@group(0) @binding(3) var<uniform> slices: Slices;
-
-// The texel of the level that an invocation fills; beyond the level, or the slices, is none.
-fn texel_of(invocation: vec3u) -> vec3u {
-    return invocation + vec3u(0u, 0u, slices.first);
-}
-
-fn is_filled(texel: vec3u) -> bool {
-    return all(texel < textureDimensions(level)) && texel.z < slices.end;
-}
+@group(0) @binding(3) var<uniform> resample: Resample;
+@group(0) @binding(5) var<storage, read> bricks: array<u32>;
 
 // The mean of the fetches at the corners of a cube of half width `offset`, in texels of the source:
 // a product of the kernels that the shaders derive.

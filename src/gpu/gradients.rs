@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::listed_bricks;
 use super::pass;
-use super::uniforms;
+use super::prefilter::{level_of, uniform_and_list};
 use super::volume::{GpuVolume, entry};
 use super::{Context, GpuError, ShaderLibrary};
 
@@ -37,47 +38,32 @@ pub(super) fn bytes(texels: u64) -> u64 {
     texels * 64 / 7
 }
 
-/// Fills some slices of one level from the pyramid, which must be complete.
+/// Fills some bricks of one level from the pyramid, which must be complete.
 pub(super) fn fill(
     context: &Context,
     shaders: &ShaderLibrary,
     volume: &GpuVolume,
     level: u32,
-    slices: &Range<u32>,
+    range: &Range<usize>,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Some(gradients) = &volume.gradients else { return Ok(()) };
-    let view_of = |texture: &wgpu::Texture| {
-        texture.create_view(&wgpu::TextureViewDescriptor {
-            label: Some("Gradients::level"),
-            base_mip_level: level,
-            mip_level_count: Some(1),
-            ..Default::default()
-        })
-    };
+    let bricks = &volume.filled_levels[level as usize][range.clone()];
     let pipeline = shaders.pipeline("gradients.wgsl", &[])?;
-    let spacing = (1u32 << level) as f32;
-    let uniform = uniforms::Slices { first: slices.start, end: slices.end, spacing, pad0: 0 };
-    let uniform = context.buffer("Gradients::slices", &[uniform], wgpu::BufferUsages::UNIFORM);
+    let (uniform, list) = uniform_and_list(context, level, bricks);
     let bind_group = pass::bind(
         context,
         "Gradients::bind_group",
         &pipeline,
         0,
         &[
-            entry(0, wgpu::BindingResource::TextureView(&view_of(&volume.pyramid))),
+            entry(0, wgpu::BindingResource::TextureView(&level_of(&volume.pyramid, level))),
             entry(3, uniform.as_entire_binding()),
-            entry(4, wgpu::BindingResource::TextureView(&view_of(gradients))),
+            entry(4, wgpu::BindingResource::TextureView(&level_of(gradients, level))),
+            entry(5, list.as_entire_binding()),
         ],
     );
-    let size = gradients.size();
-    let [width, height] = [size.width, size.height].map(|n| (n >> level).max(1));
-    pass::dispatch(
-        encoder,
-        "Gradients::fill",
-        &pipeline,
-        &[&bind_group],
-        [width.div_ceil(8), height.div_ceil(4), (slices.end - slices.start).div_ceil(4)],
-    );
+    let groups = listed_bricks::workgroups(bricks.len().max(1) as u32);
+    pass::dispatch(encoder, "Gradients::fill", &pipeline, &[&bind_group], groups);
     Ok(())
 }

@@ -70,10 +70,10 @@ pub(super) struct LightStep {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
     Upload(Range<usize>),
-    /// Level, slices.
-    Pyramid(u32, Range<u32>),
-    /// Level, slices.
-    Gradients(u32, Range<u32>),
+    /// Level, which of its bricks.
+    Pyramid(u32, Range<usize>),
+    /// Level, which of its bricks.
+    Gradients(u32, Range<usize>),
     March(LightStep),
     Backproject(LightStep),
     /// Index of the light build, and which of its bricks.

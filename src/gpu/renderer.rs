@@ -370,10 +370,9 @@ impl Renderer {
             for first in (0..slices).step_by(fresh.slices_per_step()) {
                 steps.push(Step::Upload(first..slices.min(first + fresh.slices_per_step())));
             }
-            let levels = || (0..prefilter::levels(&fresh)).flat_map(|level| prefilter::steps(&fresh, level));
-            steps.extend(levels().map(|(level, slices)| Step::Pyramid(level, slices)));
+            steps.extend(prefilter::steps(&fresh).map(|(level, bricks)| Step::Pyramid(level, bricks)));
             if fresh.gradients.is_some() {
-                steps.extend(levels().map(|(level, slices)| Step::Gradients(level, slices)));
+                steps.extend(prefilter::steps(&fresh).map(|(level, bricks)| Step::Gradients(level, bricks)));
             }
             self.volume = Some(fresh);
             self.uploaded = false;

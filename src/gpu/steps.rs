@@ -35,15 +35,15 @@ impl Renderer {
                 self.volume.as_ref().ok_or_else(out_of_date)?.upload(&self.context, slices.clone());
                 Ok(())
             }
-            Step::Pyramid(level, slices) => {
+            Step::Pyramid(level, bricks) => {
                 let volume = self.volume.as_ref().ok_or_else(out_of_date)?;
-                prefilter::fill(&self.context, &self.shaders, volume, *level, slices, encoder)?;
+                prefilter::fill(&self.context, &self.shaders, volume, *level, bricks, encoder)?;
                 self.uploaded = job.steps.front().is_none_or(|next| next.stage() != Stage::Pyramid);
                 Ok(())
             }
-            Step::Gradients(level, slices) => {
+            Step::Gradients(level, bricks) => {
                 let volume = self.volume.as_ref().ok_or_else(out_of_date)?;
-                gradients::fill(&self.context, &self.shaders, volume, *level, slices, encoder)?;
+                gradients::fill(&self.context, &self.shaders, volume, *level, bricks, encoder)?;
                 self.uploaded = job.steps.front().is_none_or(|next| next.stage() != Stage::Pyramid);
                 Ok(())
             }

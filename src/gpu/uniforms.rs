@@ -90,11 +90,11 @@ pub struct Grid {
 /// `common/resample.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Slices {
-    pub first: u32,
-    pub end: u32,
+pub struct Resample {
+    pub bricks: u32,
     pub spacing: f32,
     pub pad0: u32,
+    pub pad1: u32,
 }
 
 /// `common/scatter.wgsl`.

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use half::f16;
 
-use super::gradients;
 use super::pass;
 use super::uniforms::Grid;
 use super::{Context, GpuError};
+use super::{gradients, prefilter};
 use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
 use crate::math::SceneSpace;
 use crate::plan::MAX_STRETCH_LEVEL;
@@ -15,8 +15,8 @@ use crate::plan::MAX_STRETCH_LEVEL;
 /// Voxels of nothing before the data in the pyramid: one texel of its coarsest level.
 const PYRAMID_PADDING: usize = 4;
 
-/// Voxels along an axis: brick coordinates are packed into ten bits each.
-const MAX_VOXELS: usize = 1024 * BRICK_EDGE;
+/// Voxels along an axis: brick coordinates are packed into ten bits each, and the pyramid has a brick more.
+const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
 
 /// Upload block: small enough that one takes a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;
@@ -44,6 +44,8 @@ pub(super) struct GpuVolume {
     pub density_view: wgpu::TextureView,
     pub pyramid: wgpu::Texture,
     pub pyramid_view: wgpu::TextureView,
+    /// The bricks of its levels that hold anything.
+    pub filled_levels: Vec<Vec<u32>>,
     /// Its gradients, while memory allows.
     pub gradients: Option<wgpu::Texture>,
     pub clamped: wgpu::Sampler,
@@ -107,6 +109,7 @@ impl GpuVolume {
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
+            filled_levels: prefilter::filled_levels(bricks, &pyramid),
             gradients: gradients::texture(context, &pyramid),
             pyramid_view: pyramid.create_view(&wgpu::TextureViewDescriptor::default()),
             pyramid,
