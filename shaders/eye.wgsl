@@ -6,6 +6,7 @@
 #import "common/shadow_ray.wgsl"
 #import "common/shade.wgsl"
 #import "common/gradient.wgsl"
+#import "common/tiles.wgsl"
 
 // r: distance to the nearest cell that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<f32>;
@@ -67,8 +68,12 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = vec2u(id.x, id.y + eye.first_row);
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+) {
+    let pixel = tile_of(group, groups.y, eye.row_stride) * 8u + local.xy + vec2u(0u, eye.first_row);
     if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
         return;
     }

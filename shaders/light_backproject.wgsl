@@ -47,17 +47,16 @@ override QUADRATURE: u32 = 1u;
 
 // Of a kernel close to a light inside the volume, in pixels (src/plan/light_frame.rs).
 const MAX_KERNEL_PIXELS = 4.0;
-// Pairs under its diameter of 16 pixels, which can cut 17 of them.
-const MAX_PAIRS = 9u;
 
 fn sheet(pixel: vec2f, slab: f32) -> f32 {
     let size = vec3f(vec2f(view.frame.size), f32(view.layers));
     return textureSampleLevel(ring, ring_sampler, (vec3f(pixel, slab) + 0.5) / size, 0.0).r;
 }
 
-// Layer of a slab in the ring, for the lower one of a pair.
+// Layer of a slab in the ring, for the lower one of a pair: modulo without a division of integers.
 fn layer(slab: i32) -> f32 {
-    return f32(slab % i32(view.layers));
+    let layers = f32(view.layers);
+    return f32(slab) - layers * floor((f32(slab) + 0.5) / layers);
 }
 
 // Exactly four pixels and four slabs: two linear fetches per axis (as in common/volume.wgsl).
@@ -104,32 +103,38 @@ fn slab_pair(first: i32, count: i32, at: f32, slabs: f32) -> vec2f {
     return vec2f(b / max(a + b, 1e-20), a + b);
 }
 
-// Any width: pairs over the whole footprint, divided by the sum of their weights.
+// A pair of slabs: x where between their layers to fetch, y their weight.
+fn layer_pair(first: i32, count: i32, at: f32, slabs: f32) -> vec2f {
+    let z = slab_pair(first, count, at, slabs);
+    return vec2f(layer(first) + z.x, z.y);
+}
+
+// Any width: pairs over the whole footprint, divided by the sum of their weights. The kernel is a product:
+// the pairs along the projection are the same for every pixel, and four of them, which suffice unless slabs
+// are thin, are kept while pixels are visited.
 fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
     let reach = kernel_radius() * vec3f(pixels, pixels, slabs) + vec3f(0.0, 0.0, point_offset());
     let first = vec3i(ceil(vec3f(pixel, slab) - reach));
     let last = vec3i(floor(vec3f(pixel, slab) + reach));
     let size = vec3i(vec2i(view.frame.size), i32(view.frame.slab_count));
-    // The kernel is a product: the pairs across are the same in every row and sheet.
-    var across: array<vec2f, MAX_PAIRS>;
-    var columns = 0u;
-    for (var i = first.x; i <= last.x && columns < MAX_PAIRS; i += 2) {
-        across[columns] = pair(i, size.x, pixel.x, pixels);
-        columns += 1u;
-    }
     var sum = 0.0;
     var weights = 0.0;
-    for (var k = max(first.z, 0); k <= last.z; k += 2) {
-        let z = slab_pair(k, size.z, slab, slabs);
-        let w = layer(k) + z.x;
-        for (var j = first.y; j <= last.y; j += 2) {
-            let y = pair(j, size.y, pixel.y, pixels);
-            let v = f32(j) + y.x;
-            let weight = y.y * z.y;
-            for (var c = 0u; c < columns; c += 1u) {
-                let x = across[c];
-                sum += weight * x.y * sheet(vec2f(f32(first.x + 2 * i32(c)) + x.x, v), w);
-                weights += weight * x.y;
+    for (var k = max(first.z, 0); k <= last.z; k += 8) {
+        let z0 = layer_pair(k, size.z, slab, slabs);
+        let z1 = layer_pair(k + 2, size.z, slab, slabs);
+        let z2 = layer_pair(k + 4, size.z, slab, slabs);
+        let z3 = layer_pair(k + 6, size.z, slab, slabs);
+        for (var i = first.x; i <= last.x; i += 2) {
+            let x = pair(i, size.x, pixel.x, pixels);
+            for (var j = first.y; j <= last.y; j += 2) {
+                let y = pair(j, size.y, pixel.y, pixels);
+                let at = vec2f(f32(i) + x.x, f32(j) + y.x);
+                let weight = x.y * y.y;
+                for (var c = 0; c < 4 && k + 2 * c <= last.z; c += 1) {
+                    let z = select(select(z0, z1, c == 1), select(z2, z3, c == 3), c > 1);
+                    sum += weight * z.y * sheet(at, z.x);
+                    weights += weight * z.y;
+                }
             }
         }
     }

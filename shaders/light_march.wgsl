@@ -6,22 +6,27 @@
 #import "common/classify.wgsl"
 #import "common/cells.wgsl"
 #import "common/march.wgsl"
+#import "common/tiles.wgsl"
 
 // Distances: r to the nearest cell whose light is looked up, g to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) invocation: vec3u) {
-    let id = invocation + vec3u(0u, march.first_row, 0u);
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+) {
+    let id = tile_of(group, groups.y, march.row_stride) * 8u + local.xy + vec2u(0u, march.first_row);
     if (id.x >= march.frame.size.x || id.y >= march.end_row) {
         return;
     }
-    let ray = ray_of(march.frame, vec2f(id.xy));
+    let ray = ray_of(march.frame, vec2f(id));
     let inside = slabs_inside(march.frame, ray);
     let pixel = id.y * march.frame.size.x + id.x;
     let end = i32(march.end);
     var k = i32(march.begin);
-    var t = select(transmittance[pixel], unattenuated(vec2f(id.xy)), march.begin == 0u);
+    var t = select(transmittance[pixel], unattenuated(vec2f(id)), march.begin == 0u);
     let walk = walk_along(march.frame, ray);
     loop {
         // Cheap steps in loops of their own: leap over what nobody reads, and pass the light on where
@@ -49,7 +54,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
                 if (attenuates || !is_read) {
                     break;
                 }
-                textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(t));
+                textureStore(ring, vec3u(id, u32(k) % march.layers), vec4f(t));
                 k += 1;
             }
             if (attenuates || k >= end) {
@@ -61,7 +66,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u) {
         }
         let extinction = slab_material(march.frame, ray, f32(k)).a;
         let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
-        textureStore(ring, vec3u(id.xy, u32(k) % march.layers), vec4f(deposited(t, tau)));
+        textureStore(ring, vec3u(id, u32(k) % march.layers), vec4f(deposited(t, tau)));
         t *= exp(-tau);
         k += 1;
     }

@@ -126,9 +126,9 @@ fn a_thousand_drags_leave_nothing_behind() {
         let share = start.elapsed().as_secs_f64() / (hours * 3600.0).max(1e-9);
         if !at.is_multiple_of(REST_EVERY) && at > WARM_UP {
             if share < 0.1 {
-                early.push(took)
+                early.push(took);
             } else if share > 0.9 {
-                late.push(took)
+                late.push(took);
             }
         }
         // A hundred drags end as they began: the picture at rest, the transfer function as it was.

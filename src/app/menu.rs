@@ -20,6 +20,8 @@ pub(super) struct Menu<'a> {
     pub handles: bool,
     /// Whether two looks are shown.
     pub compares: bool,
+    /// Milliseconds that a frame may take while something moves.
+    pub frame_ms: &'a mut Option<f64>,
     /// What the user asks for.
     pub commands: &'a mut Vec<Command>,
 }
@@ -92,6 +94,12 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         }
     }
     ui.separator();
+    ui.menu_button("While something moves", |ui| {
+        for (choice, name) in FRAME_MS {
+            ui.radio_value(menu.frame_ms, choice, name);
+        }
+    });
+    ui.separator();
     let mut theme = ui.ctx().options(|options| options.theme_preference);
     for (choice, name) in [
         (ThemePreference::Dark, "Dark"),
@@ -103,6 +111,15 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         }
     }
 }
+
+/// What a frame may take: 60, 30, 15 and 5 per second.
+const FRAME_MS: [(Option<f64>, &str); 5] = [
+    (None, "Automatic"),
+    (Some(16.0), "Smooth (16 ms)"),
+    (Some(33.0), "Balanced (33 ms)"),
+    (Some(66.0), "Sharp (66 ms)"),
+    (Some(200.0), "Sharpest (200 ms)"),
+];
 
 fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let room = menu.settings.lights.len() < MAX_LIGHTS;

@@ -300,6 +300,7 @@ impl App {
                 side,
                 handles,
                 compares,
+                frame_ms: &mut self.viewport.frame_ms,
                 commands,
             },
         );

@@ -7,8 +7,10 @@ use crate::model::{Engine, Kernel, Resolution, Settings};
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
-/// The same on a software adapter: of a frame of 66 ms the window itself takes about 25.
-const SOFTWARE_BUDGET_MS: f64 = 40.0;
+/// The same on a software adapter …
+const SOFTWARE_BUDGET_MS: f64 = 66.0;
+/// … where the window itself takes so much of each frame.
+const SOFTWARE_WINDOW_MS: f64 = 26.0;
 /// Bands into which a picture is cut on a software adapter, where one may take seconds: between
 /// them the painter looks whether something else is wanted.
 const SOFTWARE_BANDS: u32 = 16;
@@ -93,6 +95,8 @@ impl Estimate {
 #[derive(Debug, Clone)]
 pub(super) struct Refine {
     software: bool,
+    /// Milliseconds per frame that the user asked for.
+    frame_ms: Option<f64>,
     /// By resolution and by quick kernel.
     light_build: [[Estimate; 2]; 3],
     /// Milliseconds per pixel of whole pictures: exact and quick, by scale. Neighbouring rays share
@@ -121,6 +125,7 @@ impl Refine {
         let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
         Self {
             software,
+            frame_ms: None,
             light_build: [build(400.0), build(60.0), build(10.0)],
             eye_pixel: [[1.0, 1.5, 2.3], [0.4, 0.6, 0.9]]
                 .map(|row| row.map(|ms| Estimate::guess(ms * slow * 2e-5))),
@@ -128,9 +133,16 @@ impl Refine {
         }
     }
 
-    /// Milliseconds per frame while something moves.
+    /// Milliseconds per frame while something moves, instead of what suits the adapter.
+    pub(super) fn set_frame_ms(&mut self, frame_ms: Option<f64>) {
+        self.frame_ms = frame_ms;
+    }
+
+    /// Milliseconds of a preview.
     fn budget_ms(&self) -> f64 {
-        if self.software { SOFTWARE_BUDGET_MS } else { BUDGET_MS }
+        let usual = if self.software { SOFTWARE_BUDGET_MS } else { BUDGET_MS };
+        let window = if self.software { SOFTWARE_WINDOW_MS } else { 0.0 };
+        (self.frame_ms.unwrap_or(usual) - window).max(1.0)
     }
 
     /// Pieces into which a chunk of the light pass is cut.
@@ -253,6 +265,19 @@ mod tests {
         let moving = software.preview([1000, 700], ONE);
         assert_eq!(moving.coarse, Some(Resolution::Quarter));
         assert!(moving.quick_eye && moving.quick_light && moving.scale >= 2, "{moving:?}");
+    }
+
+    #[test]
+    fn a_larger_budget_makes_sharper_previews() {
+        let mut software = measured(true, 600.0, 1000.0);
+        let usual = software.preview([1000, 700], ONE);
+        software.set_frame_ms(Some(400.0));
+        let sharp = software.preview([1000, 700], ONE);
+        assert!(sharp.scale < usual.scale, "{sharp:?}");
+        software.set_frame_ms(Some(5.0));
+        assert_eq!(software.preview([1000, 700], ONE).scale, 4, "as little as there is");
+        software.set_frame_ms(None);
+        assert_eq!(software.preview([1000, 700], ONE), usual);
     }
 
     #[test]

@@ -80,7 +80,7 @@ impl EyePass {
             dark: options.dark,
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
-            pad0: 0,
+            row_stride: 1,
             pad1: 0,
             collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
             pad2: 0.0,
@@ -143,7 +143,9 @@ impl EyePass {
         constants.push(gradient_constant(gradients.is_some()));
         let pipeline = shaders.pipeline("eye.wgsl", &constants)?;
         let gradients = gradients.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-        let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, ..self.uniform };
+        let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
+        let row_stride = pass::row_stride(context, tiles);
+        let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, row_stride, ..self.uniform };
         let uniform = context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
         let own = pass::bind(
             context,
@@ -162,13 +164,7 @@ impl EyePass {
         );
         let of_volume = volume.bind_group(context, &pipeline, self.dilation);
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
-        pass::dispatch(
-            encoder,
-            "Eye::pass",
-            &pipeline,
-            &[&own, &of_volume, &of_lights],
-            pass::tiles([self.frame.size[0], rows.end - rows.start]),
-        );
+        pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
         Ok(())
     }
 }

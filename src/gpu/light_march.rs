@@ -147,7 +147,7 @@ pub(super) fn march_uniform(
         hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
         dark: sheets.dark,
         reach: sheets.reach,
-        pad0: 0,
+        row_stride: 1,
         pad1: 0,
         pad2: 0,
     }
@@ -170,7 +170,9 @@ pub(super) fn march(
     }
     let stretch = view.frame.max_stretch_level();
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, stretch > 0.0))?;
-    let uniform = march_uniform(light, view, sheets, slabs, rows.clone());
+    let tiles = pass::tiles([view.frame.size[0], rows.end - rows.start]);
+    let row_stride = pass::row_stride(context, tiles);
+    let uniform = uniforms::March { row_stride, ..march_uniform(light, view, sheets, slabs, rows.clone()) };
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let own = sheets.march_bind_group(
         context,
@@ -183,12 +185,6 @@ pub(super) fn march(
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
     let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
     let of_volume = volume.bind_group(context, &pipeline, dilation);
-    pass::dispatch(
-        encoder,
-        "March::pass",
-        &pipeline,
-        &[&own, &of_volume],
-        pass::tiles([view.frame.size[0], rows.end - rows.start]),
-    );
+    pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
 }

@@ -45,8 +45,8 @@ pub struct Renderer {
     /// Counts pictures.
     pub(super) clock: u64,
     pub(super) report: Report,
-    /// Made with the first picture that is timed; `None` inside where the adapter has none.
-    clock_of_gpu: Option<Option<Clock>>,
+    /// For pictures that are timed; where the adapter has one.
+    gpu_clock: Option<Clock>,
 }
 
 impl Renderer {
@@ -83,7 +83,7 @@ impl Renderer {
             rebuilds: Vec::new(),
             clock: 0,
             report: Report::default(),
-            clock_of_gpu: None,
+            gpu_clock: Clock::new(context),
         })
     }
 
@@ -313,16 +313,12 @@ impl Renderer {
         let start = Instant::now();
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        if self.options.timed && self.clock_of_gpu.is_none() {
-            self.clock_of_gpu = Some(Clock::new(&self.context));
-        }
-        let clock = self.clock_of_gpu.take().flatten();
-        let timed = clock.as_ref().filter(|_| self.options.timed);
-        if let Some(clock) = timed {
+        let timed = self.options.timed;
+        if let Some(clock) = self.gpu_clock.as_ref().filter(|_| timed) {
             clock.start(&mut encoder);
         }
         self.encode(job, &step, &mut encoder)?;
-        if let Some(clock) = timed {
+        if let Some(clock) = self.gpu_clock.as_ref().filter(|_| timed) {
             clock.stop(&mut encoder);
         }
         self.context.queue.submit([encoder.finish()]);
@@ -330,7 +326,7 @@ impl Renderer {
             self.context.wait()?;
         }
         let took = milliseconds(start);
-        if let Some(clock) = timed {
+        if let Some(clock) = self.gpu_clock.as_ref().filter(|_| timed) {
             let sum = match step.stage() {
                 Stage::LightMarch | Stage::LightBackproject | Stage::LightRaycast => {
                     &mut self.report.light_gpu_ms
@@ -341,7 +337,6 @@ impl Renderer {
                 *sum = Some(sum.unwrap_or(0.0) + clock.read_ms(&self.context)?);
             }
         }
-        self.clock_of_gpu = Some(clock);
         match step.stage() {
             Stage::Upload | Stage::Pyramid => self.report.upload_ms += took,
             Stage::LightMarch => self.report.light_march_ms += took,

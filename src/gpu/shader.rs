@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 35] = [
+pub const SHADERS: [(&str, &str); 36] = [
     ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
@@ -23,6 +23,7 @@ pub const SHADERS: [(&str, &str); 35] = [
     ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
     ("common/space.wgsl", include_str!("../../shaders/common/space.wgsl")),
     ("common/table.wgsl", include_str!("../../shaders/common/table.wgsl")),
+    ("common/tiles.wgsl", include_str!("../../shaders/common/tiles.wgsl")),
     ("common/volume.wgsl", include_str!("../../shaders/common/volume.wgsl")),
     ("common/voxels.wgsl", include_str!("../../shaders/common/voxels.wgsl")),
     ("display.wgsl", include_str!("../../shaders/display.wgsl")),

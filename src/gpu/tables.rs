@@ -73,8 +73,11 @@ pub(super) struct Tables {
     /// Distances to what either shows: an eye sample looks up its light not far from there.
     lit: Arc<CellDistances>,
     /// Cells of light volumes up to a distance from there, by that distance and the volumes' divisor.
-    needed: RefCell<Vec<((u8, usize), Arc<CellSet>)>>,
+    needed: RefCell<Vec<Needed>>,
 }
+
+/// Cells of a light volume up to a reach, for a divisor: ((reach, divisor), cells).
+type Needed = ((u8, usize), Arc<CellSet>);
 
 impl Tables {
     /// Bakes both and finds their cells.

@@ -7,7 +7,9 @@ use crate::model::{Quadrature, Shadows};
 /// Voxels along the edge of a cell.
 const CELL_EDGE: f64 = 2.0;
 
-/// Of samples whose kernel is stretched to at most a level of the pyramid. A texel of level 1 is made of
+/// Of samples whose kernel is stretched to at most a level of the pyramid.
+///
+/// A texel of level 1 is made of
 /// voxels up to 1.5 from its middle, one of level 2 of voxels up to 4.5; a fetch between texels sees those
 /// whose middles are less than 2 or 4 voxels away. Up to 3.5 voxels are two cells, up to 8.5 five.
 pub fn stretch_reach(level: f64) -> u8 {
@@ -56,8 +58,9 @@ pub fn bias_reach(bias_voxels: f64) -> u8 {
     in_cells(bias_voxels)
 }
 
-/// Of the reverse kernel, which has radius two, around the voxels of a light volume; and of linear fetches
-/// between sheet pixels, a voxel more. A cell of a light volume holds `divisor`³ cells, of which one is
+/// Of the reverse kernel around the voxels of a light volume.
+///
+/// It has radius two, and linear fetches between sheet pixels see a voxel more. A cell of a light volume holds `divisor`³ cells, of which one is
 /// what the cell is there for.
 pub fn reverse_reach(views: &[LightView], scene: &SceneSpace, divisor: usize) -> u8 {
     let widest = views

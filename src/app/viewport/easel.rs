@@ -135,6 +135,7 @@ impl Easel {
                 (self.shown, self.settled, self.failed) = (None, None, None);
                 (self.exposures, self.previewed) = (Exposures::default(), None);
             }
+            self.refine.set_frame_ms(desk.frame_ms);
             if let Some(wanted) = desk.wanted.take() {
                 self.changed = Instant::now();
                 self.wanted = Some(wanted);

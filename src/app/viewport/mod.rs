@@ -76,6 +76,8 @@ struct Scene {
 /// The picture on screen, and the way to the painter.
 #[derive(Debug)]
 pub(super) struct Viewport {
+    /// What a frame may take while something moves, in milliseconds; `None` for what suits the adapter.
+    pub frame_ms: Option<f64>,
     context: Context,
     painter: Painter,
     /// What the painter was last told.
@@ -109,6 +111,7 @@ impl Viewport {
     pub(super) fn new(context: Context, ctx: &egui::Context) -> std::io::Result<Self> {
         let painter = Painter::start(context.clone(), ctx.clone())?;
         Ok(Self {
+            frame_ms: None,
             context,
             painter,
             wanted: None,
@@ -193,6 +196,7 @@ impl Viewport {
         {
             ctx.request_repaint();
         }
+        self.painter.set_frame_ms(self.frame_ms);
         let wanted = Wanted { generation: self.generation, settings, other, size };
         let mut patience = Duration::ZERO;
         if self.wanted.as_ref() != Some(&wanted) {

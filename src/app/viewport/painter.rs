@@ -49,6 +49,8 @@ pub(super) struct Desk {
     pub(super) scene: Option<Scene>,
     pub(super) wanted: Option<Wanted>,
     pub(super) closed: bool,
+    /// Milliseconds per frame while something moves, if the user asked for other than usual.
+    pub(super) frame_ms: Option<f64>,
     pub(super) frame: Option<Frame>,
     pub(super) error: Option<GpuError>,
     pub(super) figures: Figures,
@@ -118,6 +120,11 @@ impl Painter {
     pub(super) fn set_wanted(&self, wanted: Wanted) {
         self.shared.desk().wanted = Some(wanted);
         self.shared.changed.notify_one();
+    }
+
+    /// What previews may take from now on.
+    pub(super) fn set_frame_ms(&self, frame_ms: Option<f64>) {
+        self.shared.desk().frame_ms = frame_ms;
     }
 
     /// The latest finished picture, once; waits for one at most so long.

@@ -33,7 +33,7 @@ impl Bench<'_> {
     /// From a file, or the numbers of a built-in volume, to its first picture at full quality, and the
     /// memory that it takes. Pipelines are there already.
     pub(super) fn load(
-        &mut self,
+        &self,
         context: &Context,
         name: &str,
         wants: impl Fn(&str) -> bool,
@@ -43,7 +43,7 @@ impl Bench<'_> {
         let mut samples = Samples::default();
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
         // Loading takes seconds: three are enough for a median.
-        for frame in 0..1 + usize::from(self.args.frames).min(3) {
+        for frame in 0..=usize::from(self.args.frames).min(3) {
             let settings = &self.settings;
             let load = || {
                 let loaded: Loaded = self.args.look.load(name)?;
