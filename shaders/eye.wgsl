@@ -73,7 +73,7 @@ fn main(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_id) local: vec3u,
 ) {
-    let pixel = tile_of(group, groups.y, eye.row_stride) * 8u + local.xy + vec2u(0u, eye.first_row);
+    let pixel = tile_of(group, groups.y, eye.runs) * 8u + local.xy + vec2u(0u, eye.first_row);
     if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
         return;
     }

@@ -17,7 +17,7 @@ fn main(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_id) local: vec3u,
 ) {
-    let id = tile_of(group, groups.y, march.row_stride) * 8u + local.xy + vec2u(0u, march.first_row);
+    let id = tile_of(group, groups.y, march.runs) * 8u + local.xy + vec2u(0u, march.first_row);
     if (id.x >= march.frame.size.x || id.y >= march.end_row) {
         return;
     }

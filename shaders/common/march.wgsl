@@ -21,8 +21,8 @@ struct March {
     dark: f32,
     // Cells beyond those whose light is looked up that the reverse kernel reads.
     reach: i32,
-    // Order of the rows of tiles (common/tiles.wgsl).
-    row_stride: u32,
+    // Runs of rows of tiles (common/tiles.wgsl).
+    runs: u32,
     pad1: i32,
     pad2: i32,
 }

@@ -23,8 +23,8 @@ struct Eye {
     // Gradients from sheets are differences between so many pixels and slabs to either side.
     gradient_pixels: i32,
     gradient_slabs: i32,
-    // Order of the rows of tiles (common/tiles.wgsl).
-    row_stride: u32,
+    // Runs of rows of tiles (common/tiles.wgsl).
+    runs: u32,
     pad1: i32,
     // Index space to texture coordinates of the volume into which lights have been collapsed.
     collapsed_lookup: vec3f,

@@ -1,8 +1,15 @@
 // Pictures and sheets in tiles of 8 × 8 pixels, a workgroup each.
 
-// The tile of a workgroup, row by row or, with a stride that has no common divisor with the number of rows,
-// with neighbouring rows far apart: a software driver gives each of its threads a run of workgroups, and
-// these runs should have the same share of what is costly.
-fn tile_of(group: vec3u, rows: u32, stride: u32) -> vec2u {
-    return vec2u(group.x, group.y * stride % rows);
+// The tile of a workgroup. A software driver gives each of its threads a run of workgroups: the rows of run b
+// of `runs` are b, b + runs, b + 2 runs …, so that all threads work on neighbouring rows at any time, and
+// have the same share of what is costly. With one run, rows come in their order.
+fn tile_of(group: vec3u, rows: u32, runs: u32) -> vec2u {
+    let each = rows / runs;
+    let longer = rows % runs;
+    let of_longer = longer * (each + 1u);
+    let is_longer = group.y < of_longer;
+    let at = select(group.y - of_longer, group.y, is_longer);
+    let length = max(select(each, each + 1u, is_longer), 1u);
+    let run = at / length + select(longer, 0u, is_longer);
+    return vec2u(group.x, at % length * runs + run);
 }

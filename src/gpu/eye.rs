@@ -80,7 +80,7 @@ impl EyePass {
             dark: options.dark,
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
-            row_stride: 1,
+            runs: 1,
             pad1: 0,
             collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
             pad2: 0.0,
@@ -144,8 +144,8 @@ impl EyePass {
         let pipeline = shaders.pipeline("eye.wgsl", &constants)?;
         let gradients = gradients.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
         let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
-        let row_stride = pass::row_stride(context, tiles);
-        let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, row_stride, ..self.uniform };
+        let runs = pass::runs(context, tiles);
+        let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
         let uniform = context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
         let own = pass::bind(
             context,

@@ -147,7 +147,7 @@ pub(super) fn march_uniform(
         hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
         dark: sheets.dark,
         reach: sheets.reach,
-        row_stride: 1,
+        runs: 1,
         pad1: 0,
         pad2: 0,
     }
@@ -171,8 +171,8 @@ pub(super) fn march(
     let stretch = view.frame.max_stretch_level();
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, stretch > 0.0))?;
     let tiles = pass::tiles([view.frame.size[0], rows.end - rows.start]);
-    let row_stride = pass::row_stride(context, tiles);
-    let uniform = uniforms::March { row_stride, ..march_uniform(light, view, sheets, slabs, rows.clone()) };
+    let runs = pass::runs(context, tiles);
+    let uniform = uniforms::March { runs, ..march_uniform(light, view, sheets, slabs, rows.clone()) };
     let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let own = sheets.march_bind_group(
         context,

@@ -39,39 +39,35 @@ pub(super) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(8), height.div_ceil(8), 1]
 }
 
-/// In which steps the rows of tiles are taken. A software driver gives each thread a run of workgroups: so
-/// that all have the same share of what is costly, neighbouring rows are far apart there. Graphics cards
-/// hand workgroups out one by one, and neighbours share what they read.
-pub(super) fn row_stride(context: &Context, [_, rows, _]: [u32; 3]) -> u32 {
-    if context.is_software() { spread(rows) } else { 1 }
-}
-
-/// A step near the golden section of `count` without a common divisor: multiples of it, modulo `count`, are
-/// all numbers below, and evenly spread at any time.
-fn spread(count: u32) -> u32 {
-    let golden = (f64::from(count) * 0.618) as u32;
-    (golden.max(1)..count).find(|&step| gcd(step, count) == 1).unwrap_or(1)
-}
-
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
+/// Into how many runs the rows of tiles are sorted (`common/tiles.wgsl`). A software driver gives each thread a
+/// run of workgroups: there as many as threads, so that all have the same share of what is costly. Graphics
+/// cards hand workgroups out one by one, in their order.
+pub(super) fn runs(context: &Context, [_, rows, _]: [u32; 3]) -> u32 {
+    let threads = || std::thread::available_parallelism().map_or(1, |threads| threads.get() as u32);
+    if context.is_software() { threads().clamp(1, rows.max(1)) } else { 1 }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    /// As in the shader.
+    fn row(group: u32, rows: u32, runs: u32) -> u32 {
+        let (each, longer) = (rows / runs, rows % runs);
+        let of_longer = longer * (each + 1);
+        let (at, length, first) =
+            if group < of_longer { (group, each + 1, 0) } else { (group - of_longer, each.max(1), longer) };
+        at % length * runs + at / length + first
+    }
 
     #[test]
-    fn rows_are_all_taken_once_and_halves_get_the_same_share() {
-        for count in 1..300u32 {
-            let stride = spread(count);
-            let rows: Vec<u32> = (0..count).map(|row| row * stride % count).collect();
-            let mut sorted = rows.clone();
-            sorted.sort_unstable();
-            assert!(sorted.iter().zip(0..).all(|(&row, at)| row == at), "{count}");
-            // Rows of the upper half in the first half of the workgroups.
-            let upper = rows[..count as usize / 2].iter().filter(|&&row| row < count / 2).count();
-            assert!(count < 16 || (upper as f64 / f64::from(count) - 0.25).abs() < 0.1, "{count}: {upper}");
+    fn every_row_is_taken_once() {
+        assert_eq!((0..5).map(|group| row(group, 5, 2)).collect::<Vec<_>>(), [0, 2, 4, 1, 3]);
+        assert_eq!((0..5).map(|group| row(group, 5, 1)).collect::<Vec<_>>(), [0, 1, 2, 3, 4]);
+        for rows in 1..200 {
+            for runs in 1..=rows.min(17) {
+                let mut taken: Vec<u32> = (0..rows).map(|group| row(group, rows, runs)).collect();
+                taken.sort_unstable();
+                assert!(taken.iter().zip(0..).all(|(&row, at)| row == at), "{rows} rows in {runs} runs");
+            }
         }
     }
 }

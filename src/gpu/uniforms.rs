@@ -158,7 +158,7 @@ pub struct March {
     pub hood_axis: [f32; 3],
     pub dark: f32,
     pub reach: i32,
-    pub row_stride: u32,
+    pub runs: u32,
     pub pad1: i32,
     pub pad2: i32,
 }
@@ -285,7 +285,7 @@ pub struct Eye {
     pub dark: f32,
     pub gradient_pixels: i32,
     pub gradient_slabs: i32,
-    pub row_stride: u32,
+    pub runs: u32,
     pub pad1: i32,
     pub collapsed_lookup: [f32; 3],
     pub pad2: f32,
