@@ -19,10 +19,11 @@ impl Clock {
     pub(super) const FEATURES: wgpu::Features =
         wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
 
-    /// A clock, if the device has one.
+    /// A clock, if the device has one. Software drivers stamp the time at which they read a command, not that
+    /// at which its work is done.
     pub(super) fn new(context: &Context) -> Option<Self> {
         let device = &context.device;
-        if !device.features().contains(Self::FEATURES) {
+        if context.is_software() || !device.features().contains(Self::FEATURES) {
             return None;
         }
         let buffer = |label, usage| {

@@ -93,6 +93,7 @@ impl Samples {
                 "bricks": round(median(&self.bricks_ms)),
                 "upload": round(median(&self.upload_ms)),
             },
+            // By the adapter's own clock.
             "gpu_ms": { "eye": spread(&self.eye_gpu_ms), "light": spread(&self.light_gpu_ms) },
         })
     }
