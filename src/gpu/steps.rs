@@ -92,8 +92,8 @@ impl Renderer {
             let reach = if self.options.leaping { i32::from(build.reach) } else { EVERYWHERE };
             let mut sheets = Sheets::new(&self.context, geometry, chunk, reach)?;
             sheets.dark = self.options.dark;
-            // A volume at full resolution may serve whole pictures, too.
-            sheets.preview = self.options.preview && light.divisor > 1;
+            // A volume as pictures have it serves them, too.
+            sheets.preview = self.options.preview && light.key.resolution() != settings.shadows.resolution;
             peak = self.gpu_bytes() + sheets.bytes();
             if build.scatters {
                 let of_light = (settings, light);

@@ -208,3 +208,28 @@ fn the_same_settings_give_the_same_bytes() {
     attenuation(&mut renderer, &loaded, &other, 1);
     assert_eq!(first, render(&mut renderer, &loaded, &settings, SIZE));
 }
+
+/// A preview takes shortcuts; a light volume that it shares with pictures must not have taken them.
+#[test]
+fn previews_leave_nothing_behind_that_pictures_would_not_make() {
+    let middle = |[x, y, z]: [usize; 3]| [x, y, z].iter().all(|c| (20..28).contains(c));
+    let (loaded, mut settings) = (Loaded::new(scenes::block(48, middle)), three_lights());
+    // Even the thinnest tail of a kernel attenuates light.
+    for (point, at) in settings.transfer.points.iter_mut().zip(1..) {
+        (point.value, point.opacity) = (f64::from(at) / 2.0, if at == 1 { 0.0 } else { 0.3 });
+    }
+    settings.shadows.resolution = Resolution::Quarter;
+    let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let request = Request {
+        volume: loaded.volume.content_id(),
+        settings: settings.clone(),
+        size: SIZE.map(|n| n / 4),
+        coarse: Some(Resolution::Quarter),
+    };
+    let options = RenderOptions { preview: true, ..RenderOptions::default() };
+    let mut job = renderer.begin(&loaded.volume, &loaded.bricks, request, &options).expect("a job");
+    while renderer.step(&mut job).expect("a step") {}
+    assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), fresh);
+    assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "the picture looks up what the preview filled");
+}
