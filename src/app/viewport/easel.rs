@@ -14,7 +14,7 @@ use super::exposure::{Exposures, Kind};
 use super::painter::{Figures, Frame, Shared};
 use super::{Scene, Wanted};
 use crate::app::refine::{Look, Missing, Refine};
-use crate::gpu::{Context, GpuError, Job, RenderOptions, Renderer, Stage};
+use crate::gpu::{Context, GpuError, Job, RenderOptions, Renderer, Stage, dark_share, mean_luminance};
 use crate::model::Settings;
 use crate::plan::{LightKey, Request, plan};
 
@@ -50,6 +50,16 @@ impl Running {
     fn is_exposed(&self) -> bool {
         self.look != Look::FULL && self.wanted.other.is_none()
     }
+}
+
+/// Whether only the camera and the places of lights differ.
+fn is_movement(from: &Settings, to: &Settings) -> bool {
+    let mut moved = from.clone();
+    moved.camera = to.camera.clone();
+    for (light, target) in moved.lights.iter_mut().zip(&to.lights) {
+        light.position = target.position;
+    }
+    moved == *to
 }
 
 /// What decides how far the brightness of a preview is off that was just drawn.
@@ -246,41 +256,48 @@ impl Easel {
         Ok(())
     }
 
-    /// Learns how bright a complete picture is, and keeps a preview as bright as those at full quality.
-    fn expose(&mut self) -> Result<(), GpuError> {
-        let (Some(scene), Some(running)) = (&mut self.scene, &self.running) else { return Ok(()) };
+    /// Learns from the light of a complete picture, and keeps a preview as bright as those at full quality.
+    /// Returns the share of a picture at full quality that is nearly black.
+    fn measure(&mut self) -> Result<Option<f64>, GpuError> {
+        let (Some(scene), Some(running)) = (&mut self.scene, &self.running) else { return Ok(None) };
+        if running.look == Look::FULL {
+            let is_due = !running.preview || self.measured.elapsed() >= MEASURE_EVERY;
+            if running.left.is_some() || !is_due {
+                return Ok(None);
+            }
+            self.measured = Instant::now();
+            let light = scene.renderer.read_light()?;
+            if running.wanted.other.is_none() {
+                let is_of_last_preview = self.previewed.as_ref() == Some(&running.wanted);
+                self.exposures.settle(mean_luminance(&light), is_of_last_preview);
+            }
+            return Ok(Some(dark_share(&light)));
+        }
         let [width, height] = running.job.request().size;
-        let is_settled = running.look == Look::FULL && running.wanted.other.is_none();
-        // It takes reading back sixteen bytes per pixel.
-        let is_due = !running.preview || u64::from(width) * u64::from(height) <= EXPOSED_PIXELS;
-        if !(is_due && (is_settled || running.is_exposed())) {
-            return Ok(());
+        // What changes more than a movement may change the brightness, and should be seen to.
+        let settled = self.settled.as_ref().map(|settled| &settled.settings);
+        let moves = settled.is_some_and(|settled| is_movement(settled, &running.wanted.settings));
+        if !(running.is_exposed() && moves && u64::from(width) * u64::from(height) <= EXPOSED_PIXELS) {
+            return Ok(None);
         }
-        let mean = crate::gpu::mean_luminance(&scene.renderer.read_light()?);
-        if is_settled {
-            self.exposures.settle(mean, self.previewed.as_ref() == Some(&running.wanted));
-            return Ok(());
-        }
+        let mean = mean_luminance(&scene.renderer.read_light()?);
         self.previewed = Some(running.wanted.clone());
-        match self.exposures.preview(kind_of(running.look, &scene.renderer), mean) {
-            Some(exposure) => scene.renderer.expose(&running.job, exposure as f32),
-            None => Ok(()),
+        if let Some(exposure) = self.exposures.preview(kind_of(running.look, &scene.renderer), mean) {
+            scene.renderer.expose(&running.job, exposure as f32)?;
         }
+        Ok(None)
     }
 
     /// Hands over the complete picture and learns from what it took.
     fn finish(&mut self) -> Result<(), GpuError> {
-        self.expose()?;
+        let start = Instant::now();
+        let dark_share = self.measure()?;
         let (Some(scene), Some(running)) = (&self.scene, self.running.take()) else { return Ok(()) };
         let Running { job, wanted, look, preview, left, total_ms, light_ms, rebuilds_before } = running;
-        let start = Instant::now();
         let size = job.request().size;
         let bytes = scene.renderer.read_shown()?;
         let image = ColorImage::from_rgba_premultiplied(size.map(|n| n as usize), &bytes);
         let is_settled = left.is_none() && look == Look::FULL;
-        let dark_share = (is_settled && !(preview && self.measured.elapsed() < MEASURE_EVERY))
-            .then(|| scene.renderer.read_light().map(|light| crate::gpu::dark_share(&light)))
-            .transpose()?;
         let splats = if is_settled { Some(scene.renderer.splats()?) } else { None };
         let total_ms = total_ms + start.elapsed().as_secs_f64() * 1000.0;
         log::debug!("{look:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
@@ -294,7 +311,6 @@ impl Easel {
             self.settled = Some(job.request().clone());
         }
         if let Some(dark_share) = dark_share {
-            self.measured = Instant::now();
             self.shared.desk().figures.dark_share = Some(dark_share);
         }
         if left.is_none() && wanted.other.is_some() {
@@ -350,4 +366,24 @@ fn missing(settled: Option<&Request>, full: &Request) -> Missing {
     let Some(settled) = settled else { return Missing::default() };
     let count = plan(Some(settled), full).lights.iter().filter(|&&rebuild| rebuild).count();
     Missing { count, others: needed > count }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_camera_and_lights_move() {
+        let home = Settings::default();
+        let changed = |change: fn(&mut Settings)| {
+            let mut settings = home.clone();
+            change(&mut settings);
+            is_movement(&home, &settings)
+        };
+        assert!(changed(|settings| settings.camera.orbit(20.0, 5.0)));
+        assert!(changed(|settings| settings.lights[0].position = [1.0, 2.0, 3.0]));
+        assert!(!changed(|settings| settings.lights[0].intensity = 0.1));
+        assert!(!changed(|settings| settings.shadows.gain = 2.0));
+        assert!(!changed(|settings| settings.lights.clear()));
+    }
 }
