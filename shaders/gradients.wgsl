@@ -10,11 +10,7 @@ fn value(texel: vec3i) -> f32 {
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    let listed = listed_brick(group);
-    if (listed >= resample.bricks) {
-        return;
-    }
-    let texel = voxel_in(bricks[listed], group, local);
+    let texel = texel_of(group, local);
     if (any(texel >= textureDimensions(gradients))) {
         return;
     }

@@ -17,6 +17,15 @@ struct Resample {
 @group(0) @binding(3) var<uniform> resample: Resample;
 @group(0) @binding(5) var<storage, read> bricks: array<u32>;
 
+// The texel that an invocation fills; beyond every level if there is none.
+fn texel_of(group: vec3u, local: vec3u) -> vec3u {
+    let listed = listed_brick(group);
+    if (listed >= resample.bricks) {
+        return vec3u(~0u);
+    }
+    return voxel_in(bricks[listed], group, local);
+}
+
 // The mean of the fetches at the corners of a cube of half width `offset`, in texels of the source:
 // a product of the kernels that the shaders derive.
 fn mean_around(centre: vec3f, offset: f32) -> f32 {

@@ -38,7 +38,7 @@ const WIDEST: f64 = MAX_STRETCH_LEVEL;
 /// How many cells from what the transfer functions show a picture looks up light: as far as its samples
 /// see, and a light bias further. The same for every direction to look from, so that orbiting refills
 /// nothing.
-fn sample_reach(volume: &GpuVolume, request: &Request) -> u8 {
+fn picture_reach(volume: &GpuVolume, request: &Request) -> u8 {
     let Request { settings, size, .. } = request;
     let scene = &volume.scene;
     let frame = eye_frame(&settings.camera, scene, *size, settings.sampling.slab);
@@ -86,7 +86,7 @@ impl Renderer {
             (0..request.settings.lights.len()).filter_map(|light| LightKey::of(request, light)).collect();
         let key = CollapsedKey::new(all, &request.settings, &volume.scene, &self.options);
         let Some(tables) = &self.tables else { return Err(GpuError::Refused("no volume".to_owned())) };
-        let reach = sample_reach(volume, request);
+        let reach = picture_reach(volume, request);
         let divisor = request.settings.shadows.resolution.divisor();
         let (needed, _) = needed_cells(volume, tables, &self.options, divisor, reach);
         let usable = |known: &CollapsedLight| known.key == key && is_within(&needed, &known.filled);
@@ -118,7 +118,7 @@ impl Renderer {
         };
         let count = request.settings.lights.len();
         self.rebuilds.resize(self.rebuilds.len().max(count), 0);
-        let reach = sample_reach(volume, request);
+        let reach = picture_reach(volume, request);
         let mut keys = vec![None; count];
         let mut builds: Vec<LightBuild> = Vec::new();
         for (light, slot) in keys.iter_mut().enumerate() {

@@ -7,8 +7,9 @@ use super::pass;
 use super::tables::view_entry;
 use super::volume::{Gpu, GpuVolume, entry, texture_3d};
 use super::{Context, GpuError};
+use crate::data::BRICK_EDGE;
 use crate::model::{MAX_LIGHTS, Precision};
-use crate::plan::{BrickSet, CellSet, LightKey, LightView};
+use crate::plan::{BrickSet, CellSet, LightKey, LightView, reverse_reach_voxels};
 
 /// One light's attenuation volume, complete or being filled.
 #[derive(Debug)]
@@ -120,15 +121,6 @@ pub(super) fn read_bricks(
     divisor: usize,
     views: &[LightView],
 ) -> BrickSet {
-    let widest = views
-        .iter()
-        .map(|view| {
-            let last = view.frame.first_depth + f64::from(view.frame.slab_count) * view.frame.slab;
-            view.frame.pitch_at(last).max(view.kernel_edge)
-        })
-        .fold(0.0, f64::max);
-    let reach_voxels = 2.0 * widest / volume.scene.smallest_edge();
-    // One voxel more, for pixels between voxels.
-    let reach_bricks = ((reach_voxels + 1.0) / 8.0).ceil() as usize;
+    let reach_bricks = (reverse_reach_voxels(views, &volume.scene) / BRICK_EDGE as f64).ceil() as usize;
     filled.to_bricks().refined(divisor, volume.bricks.dims).dilated(reach_bricks)
 }

@@ -21,7 +21,8 @@ pub use eye_frame::eye_frame;
 pub use light_frame::{LightView, MAX_KERNEL_PIXELS, SheetPosition, light_views};
 pub use occupancy::BrickSet;
 pub use reach::{
-    bias_reach, lookup_reach, ray_reach, reverse_reach, sample_reach, slab_reach, stretch_reach,
+    bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach, slab_reach,
+    stretch_reach,
 };
 pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use slice_order::SliceOrder;

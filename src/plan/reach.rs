@@ -63,6 +63,11 @@ pub fn bias_reach(bias_voxels: f64) -> u8 {
 /// It has radius two, and linear fetches between sheet pixels see a voxel more. A cell of a light volume holds `divisor`³ cells, of which one is
 /// what the cell is there for.
 pub fn reverse_reach(views: &[LightView], scene: &SceneSpace, divisor: usize) -> u8 {
+    in_cells(reverse_reach_voxels(views, scene)).saturating_add(divisor as u8 - 1)
+}
+
+/// The same in voxels.
+pub fn reverse_reach_voxels(views: &[LightView], scene: &SceneSpace) -> f64 {
     let widest = views
         .iter()
         .map(|view| {
@@ -70,7 +75,7 @@ pub fn reverse_reach(views: &[LightView], scene: &SceneSpace, divisor: usize) ->
             view.frame.pitch_at(last).max(view.kernel_edge)
         })
         .fold(0.0, f64::max);
-    in_cells(2.0 * widest / scene.smallest_edge() + 1.0).saturating_add(divisor as u8 - 1)
+    2.0 * widest / scene.smallest_edge() + 1.0
 }
 
 /// Cells between those of two points that are so many voxels apart, at most.

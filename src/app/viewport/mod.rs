@@ -191,9 +191,8 @@ impl Viewport {
             return Ok(());
         }
         self.now_s = ctx.input(|input| input.time);
-        if self.fading.take_if(|(_, since_s)| self.now_s - *since_s >= FADE_S).is_none()
-            && self.fading.is_some()
-        {
+        self.fading = self.fading.take().filter(|(_, since_s)| self.now_s - since_s < FADE_S);
+        if self.fading.is_some() {
             ctx.request_repaint();
         }
         self.painter.set_frame_ms(self.frame_ms);
