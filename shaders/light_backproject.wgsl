@@ -16,7 +16,7 @@ struct Backprojection {
     light_from_index_y: vec4f,
     light_from_index_z: vec4f,
     first_pixel: vec2f,
-    // Width of the reverse kernel where pixels are no wider: one voxel of the light volume.
+    // Width of the reverse kernel along the axis: one voxel of the light volume.
     kernel_edge: f32,
     // Data voxels per voxel of the light volume.
     voxel_step: f32,
@@ -25,6 +25,7 @@ struct Backprojection {
     cube_face: u32,
     begin: u32,
     end: u32,
+    // Of the ring.
     layers: u32,
     // Bricks listed for this chunk.
     bricks: u32,
@@ -32,53 +33,75 @@ struct Backprojection {
 
 @group(0) @binding(0) var<uniform> view: Backprojection;
 @group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
-@group(0) @binding(2) var ring: texture_3d<f32>;
-// Clamps across a sheet, repeats from sheet to sheet.
+// Four slabs to a texel.
+@group(0) @binding(2) var ring: texture_2d_array<f32>;
 @group(0) @binding(3) var ring_sampler: sampler;
 @group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
 // The first sheet that touches a voxel alone decides (the paper's mode without weight volume).
 override FIRST_TOUCH: bool = false;
-// Whether the kernel is anywhere wider than four pixels or four slabs.
+// Whether the kernel is anywhere wider than a pixel or a slab.
 override WIDE: bool = false;
 // Points per slab at which the kernel is evaluated, as in common/volume.wgsl: with two it is the
 // paper's h̄, the kernel averaged over the slab.
 override QUADRATURE: u32 = 1u;
 
-// Of a kernel close to a light inside the volume, in pixels (src/plan/light_frame.rs).
+// Of the kernel across the sheets: least width in voxels, and largest in pixels (src/plan/light_frame.rs).
+const MIN_KERNEL_VOXELS = 0.3125;
 const MAX_KERNEL_PIXELS = 4.0;
 
-fn sheet(pixel: vec2f, slab: f32) -> f32 {
-    let size = vec3f(vec2f(view.frame.size), f32(view.layers));
-    return textureSampleLevel(ring, ring_sampler, (vec3f(pixel, slab) + 0.5) / size, 0.0).r;
+// What the four slabs 4·layer … 4·layer + 3 deposit.
+fn four_sheets(pixel: vec2f, layer: i32) -> vec4f {
+    let at = (pixel + 0.5) / vec2f(view.frame.size);
+    return textureSampleLevel(ring, ring_sampler, at, in_ring(layer), 0.0);
 }
 
-// Layer of a slab in the ring, for the lower one of a pair: modulo without a division of integers.
-fn layer(slab: i32) -> f32 {
+// Modulo without a division of integers.
+fn in_ring(layer: i32) -> i32 {
     let layers = f32(view.layers);
-    return f32(slab) - layers * floor((f32(slab) + 0.5) / layers);
+    return i32(f32(layer) - layers * floor((f32(layer) + 0.5) / layers));
 }
 
-// Exactly four pixels and four slabs: two linear fetches per axis (as in common/volume.wgsl).
-fn gather_four(pixel: vec2f, slab: f32) -> f32 {
+// Weights of four slabs from some place of a texel on: those in the texel, and those in the next.
+fn in_texel(weights: vec4f, place: i32) -> vec4f {
+    let moved = select(vec4f(0.0, weights.xyz), vec4f(0.0, 0.0, weights.xy), place == 2);
+    return select(select(moved, vec4f(0.0, 0.0, 0.0, weights.x), place == 3), weights, place == 0);
+}
+
+fn in_next_texel(weights: vec4f, place: i32) -> vec4f {
+    let moved = select(vec4f(weights.w, 0.0, 0.0, 0.0), vec4f(weights.zw, 0.0, 0.0), place == 2);
+    return select(select(moved, vec4f(weights.yzw, 0.0), place == 3), vec4f(0.0), place == 0);
+}
+
+// A pixel wide and a slab deep: four pixels and four slabs. Across, two linear fetches per axis (as in
+// common/volume.wgsl), or one where the kernel is a tent.
+fn gather_narrow(pixel: vec2f, slab: f32) -> f32 {
     let cell = vec3f(floor(pixel), floor(slab));
     let f = vec3f(pixel, slab) - cell;
+    let first = i32(cell.z) - 1;
+    let place = first & 3;
+    let layer = first >> 2u;
+    if (KERNEL == KERNEL_PREFILTERED) {
+        let wz = vec4f(0.0, 1.0 - f.z, f.z, 0.0);
+        return dot(in_texel(wz, place), four_sheets(pixel, layer))
+            + dot(in_next_texel(wz, place), four_sheets(pixel, layer + 1));
+    }
     let wx = kernel_weights(f.x);
     let wy = kernel_weights(f.y);
     let wz = kernel_weights(f.z);
-    let low = vec3f(wx.x + wx.y, wy.x + wy.y, wz.x + wz.y);
+    let low = vec2f(wx.x + wx.y, wy.x + wy.y);
     let high = 1.0 - low;
-    let a = cell.xy + vec2f(wx.y, wy.y) / low.xy - 1.0;
-    let b = cell.xy + vec2f(wx.w, wy.w) / high.xy + 1.0;
-    let near = layer(i32(cell.z) - 1 + i32(view.layers)) + wz.y / low.z;
-    let far = layer(i32(cell.z) + 1) + wz.w / high.z;
-    return low.z * (low.y * (low.x * sheet(vec2f(a.x, a.y), near) + high.x * sheet(vec2f(b.x, a.y), near))
-            + high.y * (low.x * sheet(vec2f(a.x, b.y), near) + high.x * sheet(vec2f(b.x, b.y), near)))
-        + high.z * (low.y * (low.x * sheet(vec2f(a.x, a.y), far) + high.x * sheet(vec2f(b.x, a.y), far))
-            + high.y * (low.x * sheet(vec2f(a.x, b.y), far) + high.x * sheet(vec2f(b.x, b.y), far)));
+    let a = cell.xy + vec2f(wx.y, wy.y) / low - 1.0;
+    let b = cell.xy + vec2f(wx.w, wy.w) / high + 1.0;
+    let near = low.y * (low.x * four_sheets(vec2f(a.x, a.y), layer) + high.x * four_sheets(vec2f(b.x, a.y), layer))
+        + high.y * (low.x * four_sheets(vec2f(a.x, b.y), layer) + high.x * four_sheets(vec2f(b.x, b.y), layer));
+    let next = layer + 1;
+    let far = low.y * (low.x * four_sheets(vec2f(a.x, a.y), next) + high.x * four_sheets(vec2f(b.x, a.y), next))
+        + high.y * (low.x * four_sheets(vec2f(a.x, b.y), next) + high.x * four_sheets(vec2f(b.x, b.y), next));
+    return dot(in_texel(wz, place), near) + dot(in_next_texel(wz, place), far);
 }
 
-// Two neighbouring samples as one linear fetch: x where between them, y their weight.
+// Two neighbouring pixels as one linear fetch: x where between them, y their weight.
 fn pair(first: i32, count: i32, at: f32, width: f32) -> vec2f {
     let a = select(0.0, kernel_at((f32(first) - at) / width), first >= 0 && first < count);
     let b = select(0.0, kernel_at((f32(first + 1) - at) / width), first + 1 >= 0 && first + 1 < count);
@@ -96,22 +119,22 @@ fn slab_kernel(distance: f32, slabs: f32) -> f32 {
     return 0.5 * (kernel_at((distance - offset) / slabs) + kernel_at((distance + offset) / slabs));
 }
 
-// As pair(), along the axis of projection.
-fn slab_pair(first: i32, count: i32, at: f32, slabs: f32) -> vec2f {
-    let a = select(0.0, slab_kernel(f32(first) - at, slabs), first >= 0 && first < count);
-    let b = select(0.0, slab_kernel(f32(first + 1) - at, slabs), first + 1 >= 0 && first + 1 < count);
-    return vec2f(b / max(a + b, 1e-20), a + b);
+// Weights of the four slabs from `first` on.
+fn slab_weights(first: i32, count: i32, at: f32, slabs: f32) -> vec4f {
+    let k = vec4i(first) + vec4i(0, 1, 2, 3);
+    let d = vec4f(k) - at;
+    let weights = vec4f(
+        slab_kernel(d.x, slabs),
+        slab_kernel(d.y, slabs),
+        slab_kernel(d.z, slabs),
+        slab_kernel(d.w, slabs),
+    );
+    return select(vec4f(0.0), weights, k >= vec4i(0) & k < vec4i(count));
 }
 
-// A pair of slabs: x where between their layers to fetch, y their weight.
-fn layer_pair(first: i32, count: i32, at: f32, slabs: f32) -> vec2f {
-    let z = slab_pair(first, count, at, slabs);
-    return vec2f(layer(first) + z.x, z.y);
-}
-
-// Any width: pairs over the whole footprint, divided by the sum of their weights. The kernel is a product:
-// the pairs along the projection are the same for every pixel, and four of them, which suffice unless slabs
-// are thin, are kept while pixels are visited.
+// Any width: pairs of pixels and fours of slabs over the whole footprint, divided by the sum of their
+// weights. The kernel is a product: its weights along the projection are the same for every pixel, and
+// twelve of them, which suffice unless slabs are thin, are kept while pixels are visited.
 fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
     let reach = kernel_radius() * vec3f(pixels, pixels, slabs) + vec3f(0.0, 0.0, point_offset());
     let first = vec3i(ceil(vec3f(pixel, slab) - reach));
@@ -119,21 +142,21 @@ fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
     let size = vec3i(vec2i(view.frame.size), i32(view.frame.slab_count));
     var sum = 0.0;
     var weights = 0.0;
-    for (var k = max(first.z, 0); k <= last.z; k += 8) {
-        let z0 = layer_pair(k, size.z, slab, slabs);
-        let z1 = layer_pair(k + 2, size.z, slab, slabs);
-        let z2 = layer_pair(k + 4, size.z, slab, slabs);
-        let z3 = layer_pair(k + 6, size.z, slab, slabs);
+    for (var k = max(first.z, 0) & ~3; k <= last.z; k += 12) {
+        let z0 = slab_weights(k, size.z, slab, slabs);
+        let z1 = slab_weights(k + 4, size.z, slab, slabs);
+        let z2 = slab_weights(k + 8, size.z, slab, slabs);
+        let along = dot(z0 + z1 + z2, vec4f(1.0));
         for (var i = first.x; i <= last.x; i += 2) {
             let x = pair(i, size.x, pixel.x, pixels);
             for (var j = first.y; j <= last.y; j += 2) {
                 let y = pair(j, size.y, pixel.y, pixels);
                 let at = vec2f(f32(i) + x.x, f32(j) + y.x);
                 let weight = x.y * y.y;
-                for (var c = 0; c < 4 && k + 2 * c <= last.z; c += 1) {
-                    let z = select(select(z0, z1, c == 1), select(z2, z3, c == 3), c > 1);
-                    sum += weight * z.y * sheet(at, z.x);
-                    weights += weight * z.y;
+                weights += weight * along;
+                for (var c = 0; c < 3 && k + 4 * c <= last.z; c += 1) {
+                    let z = select(select(z0, z1, c == 1), z2, c == 2);
+                    sum += weight * dot(z, four_sheets(at, (k >> 2u) + c));
                 }
             }
         }
@@ -167,8 +190,8 @@ fn footprint_of(voxel: vec3u) -> Footprint {
         textureStore(attenuation, voxel, vec4f(1.0));
     }
     let pitch = view.frame.pitch * spread;
-    let pixels = clamp(view.kernel_edge / pitch, 1.0, MAX_KERNEL_PIXELS);
-    let slabs = pixels * pitch / view.frame.slab;
+    let pixels = clamp(MIN_KERNEL_VOXELS * view.kernel_edge / pitch, 1.0, MAX_KERNEL_PIXELS);
+    let slabs = view.kernel_edge / view.frame.slab;
     let slab = (depth - view.frame.first_depth) / view.frame.slab - 0.5;
     let last_slab = i32(view.frame.slab_count) - 1;
     let final_slab = clamp(i32(floor(slab + 2.0 * slabs + point_offset())), 0, last_slab);
@@ -213,11 +236,11 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         var value: f32;
         if (FIRST_TOUCH) {
             let first = clamp(i32(ceil(found.slab - 2.0 * found.slabs)), 0, i32(view.frame.slab_count) - 1);
-            value = sheet(found.pixel, layer(first));
+            value = four_sheets(found.pixel, first >> 2u)[first & 3];
         } else if (WIDE) {
             value = gather_wide(found.pixel, found.slab, found.pixels, found.slabs);
         } else {
-            value = gather_four(found.pixel, found.slab);
+            value = gather_narrow(found.pixel, found.slab);
         }
         textureStore(attenuation, voxel, vec4f(value));
     }

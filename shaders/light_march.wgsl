@@ -25,6 +25,7 @@ fn main(
     let inside = slabs_inside(march.frame, ray);
     let pixel = id.y * march.frame.size.x + id.x;
     let end = i32(march.end);
+    // The first of four slabs that share a texel of the ring.
     var k = i32(march.begin);
     var t = select(transmittance[pixel], unattenuated(vec2f(id)), march.begin == 0u);
     let walk = walk_along(march.frame, ray);
@@ -37,25 +38,27 @@ fn main(
                     break;
                 }
                 let cell = cell_at(walk, k);
-                let unread = near(distances, cell).x - march.reach;
-                if (unread <= 0) {
+                let next = leap(walk, k, cell, near(distances, cell).x - march.reach);
+                if (next < k + 4) {
                     break;
                 }
-                k = leap(walk, k, cell, unread);
+                k = next & ~3;
             }
             var attenuates = false;
             loop {
                 if (k >= end) {
                     break;
                 }
-                let found = near(distances, cell_at(walk, k));
-                let is_read = found.x <= march.reach;
-                attenuates = is_read && found.y <= grid.dilation && t > march.dark && k >= inside.x && k <= inside.y;
+                let cell = cell_at(walk, k);
+                let found = near(distances, cell);
+                let is_read = leap(walk, k, cell, found.x - march.reach) < k + 4;
+                attenuates = is_read && t > march.dark && k + 3 >= inside.x && k <= inside.y
+                    && leap(walk, k, cell, found.y - grid.dilation) < k + 4;
                 if (attenuates || !is_read) {
                     break;
                 }
-                textureStore(ring, vec3u(id, u32(k) % march.layers), vec4f(t));
-                k += 1;
+                keep(id, u32(k), vec4f(t));
+                k += 4;
             }
             if (attenuates || k >= end) {
                 break;
@@ -64,11 +67,32 @@ fn main(
         if (k >= end) {
             break;
         }
-        let extinction = slab_material(march.frame, ray, f32(k)).a;
-        let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
-        textureStore(ring, vec3u(id, u32(k) % march.layers), vec4f(deposited(t, tau)));
-        t *= exp(-tau);
-        k += 1;
+        let last = min(k + 4, end);
+        var deposits = vec4f(t);
+        var slab = k;
+        loop {
+            loop {
+                if (slab >= last) {
+                    break;
+                }
+                let attenuates = near(distances, cell_at(walk, slab)).y <= grid.dilation;
+                if (attenuates && t > march.dark && slab >= inside.x && slab <= inside.y) {
+                    break;
+                }
+                slab += 1;
+            }
+            if (slab >= last) {
+                break;
+            }
+            let extinction = slab_material(march.frame, ray, f32(slab)).a;
+            let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
+            deposits = with_deposit(deposits, u32(slab), deposited(t, tau));
+            t *= exp(-tau);
+            deposits = with_deposits_behind(deposits, u32(slab), t);
+            slab += 1;
+        }
+        keep(id, u32(k), deposits);
+        k += 4;
     }
     transmittance[pixel] = t;
 }

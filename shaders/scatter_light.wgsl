@@ -7,6 +7,9 @@
 // Distances in bricks: g to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 
+// What the slabs that share a texel of the ring deposit.
+@group(0) @binding(5) var<storage, read_write> deposits: array<vec4f>;
+
 // Bricks beyond an occupied one that a stretched kernel can see.
 override DILATION: i32 = 0;
 
@@ -28,6 +31,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
         }
     }
-    textureStore(ring, vec3u(id.xy, scatter.k % march.layers), vec4f(deposited(t, tau)));
+    let kept = with_deposit(deposits[pixel], scatter.k, deposited(t, tau));
+    deposits[pixel] = kept;
+    keep(id.xy, scatter.k, kept);
     transmittance[pixel] = t * exp(-tau);
 }

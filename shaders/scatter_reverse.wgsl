@@ -4,7 +4,8 @@
 
 // Distances in bricks: r to the nearest that is read.
 @group(0) @binding(0) var distances: texture_3d<u32>;
-@group(0) @binding(1) var ring: texture_3d<f32>;
+// Four slabs to a texel.
+@group(0) @binding(1) var ring: texture_2d_array<f32>;
 // Σ D·h, and the weight volume Σ h, in units of 2⁻²⁴.
 @group(0) @binding(2) var<storage, read_write> light: array<atomic<i32>>;
 @group(0) @binding(3) var<storage, read_write> weights: array<atomic<i32>>;
@@ -22,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (textureLoad(distances, brick, 0).r > 0u) {
         return;
     }
-    let deposit = textureLoad(ring, vec3u(id.xy, scatter.k % textureDimensions(ring).z), 0).r;
+    let deposit = textureLoad(ring, id.xy, (scatter.k / 4u) % textureNumLayers(ring), 0)[scatter.k % 4u];
     // Voxels whose kernel, stretched and as long as the slab, can reach the ray.
     let reach = scatter.stretch * kernel_extents(normalize(ray.direction))
         + 0.5 * scatter.frame.slab * abs(ray.direction);

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
 use chiaroscuro::gpu::{SHADERS, ShaderLibrary, uniforms};
 use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS};
-use chiaroscuro::plan::{MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL};
+use chiaroscuro::plan::{MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use wgpu::TextureFormat;
 
@@ -71,7 +71,7 @@ fn every_shader_is_valid_for_both_storage_formats() {
 #[test]
 fn storage_formats_reach_the_shader() {
     for (format, wgsl) in [(TextureFormat::R16Float, "r16float"), (TextureFormat::R32Float, "r32float")] {
-        let source = ShaderLibrary::source("light_march.wgsl", format, format).expect("the shader is there");
+        let source = ShaderLibrary::source("downsample.wgsl", format, format).expect("the shader is there");
         assert!(source.contains(&format!("texture_storage_3d<{wgsl}, write>")), "{format:?}");
         assert!(!source.contains("STORAGE_FORMAT"), "{format:?}");
     }
@@ -496,9 +496,10 @@ fn constant(source: &str, name: &str) -> Option<f64> {
 
 #[test]
 fn constants_are_the_same_in_rust_and_in_the_shaders() {
-    let expected: [(&str, f64, &[&str]); 4] = [
+    let expected: [(&str, f64, &[&str]); 5] = [
         ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye.wgsl"]),
         ("TABLE_SIZE", LUT_SIZE as f64, &["eye.wgsl", "light_march.wgsl"]),
+        ("MIN_KERNEL_VOXELS", MIN_KERNEL_VOXELS, &["light_backproject.wgsl"]),
         ("MAX_KERNEL_PIXELS", MAX_KERNEL_PIXELS, &["light_backproject.wgsl"]),
         ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye.wgsl", "light_march.wgsl"]),
     ];

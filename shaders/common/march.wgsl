@@ -7,6 +7,7 @@ struct March {
     // Slabs of this chunk: first, and one beyond the last.
     begin: u32,
     end: u32,
+    // Of the ring.
     layers: u32,
     // Rows of this dispatch: first, and one beyond the last.
     first_row: u32,
@@ -30,7 +31,8 @@ struct March {
 @group(0) @binding(0) var<uniform> march: March;
 // Transmittance in front of the next slab, per pixel.
 @group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;
-@group(0) @binding(4) var ring: texture_storage_3d<STORAGE_FORMAT, write>;
+// Four slabs to a texel: a quarter of the stores here, and of the fetches behind.
+@group(0) @binding(4) var ring: texture_storage_2d_array<rgba16float, write>;
 
 // P eq. 10 read literally takes the transmittance in front of the slab.
 override DEPOSIT_FRONT: bool = false;
@@ -51,4 +53,19 @@ fn unattenuated(pixel: vec2f) -> f32 {
 // What a slab of optical depth tau deposits, with the transmittance t in front of it.
 fn deposited(t: f32, tau: f32) -> f32 {
     return select(t * slab_mean(tau), t, DEPOSIT_FRONT);
+}
+
+// Keeps what four slabs deposit, of which slab k is one.
+fn keep(pixel: vec2u, k: u32, deposits: vec4f) {
+    textureStore(ring, pixel, (k / 4u) % march.layers, deposits);
+}
+
+// Deposits with that of slab k replaced.
+fn with_deposit(deposits: vec4f, k: u32, deposit: f32) -> vec4f {
+    return select(deposits, vec4f(deposit), vec4u(0u, 1u, 2u, 3u) == vec4u(k % 4u));
+}
+
+// The same for all slabs of the texel behind slab k.
+fn with_deposits_behind(deposits: vec4f, k: u32, deposit: f32) -> vec4f {
+    return select(deposits, vec4f(deposit), vec4u(0u, 1u, 2u, 3u) > vec4u(k % 4u));
 }

@@ -201,7 +201,13 @@ impl Context {
             wgpu::TextureDimension::D2 | wgpu::TextureDimension::D1 => limits.max_texture_dimension_2d,
         };
         let wgpu::Extent3d { width, height, depth_or_array_layers } = descriptor.size;
-        let size = width.max(height).max(depth_or_array_layers);
+        let size = match descriptor.dimension {
+            // Layers have a limit of their own, below that of the axes.
+            wgpu::TextureDimension::D2 if depth_or_array_layers > limits.max_texture_array_layers => {
+                limit + 1
+            }
+            _ => width.max(height).max(depth_or_array_layers),
+        };
         if size > limit {
             let help = "a smaller picture or a volume with fewer voxels helps";
             return Err(GpuError::OverLimit { what, size: u64::from(size), limit: u64::from(limit), help });
@@ -231,11 +237,10 @@ impl Context {
         })
     }
 
-    /// A sampler that filters linearly: clamped, but for the z axis as said.
-    pub fn sampler(&self, label: &str, along_z: wgpu::AddressMode) -> wgpu::Sampler {
+    /// A sampler that filters linearly and clamps.
+    pub fn sampler(&self, label: &str) -> wgpu::Sampler {
         self.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some(label),
-            address_mode_w: along_z,
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,

@@ -92,8 +92,13 @@ impl Renderer {
             march(gpu, tables, lamp, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
         }
         self.context.queue.submit([encoder.finish()]);
-        let mut values = read_floats(&self.context, &sheets.ring)?;
-        values.truncate((count * geometry.frame.size[0] * geometry.frame.size[1]) as usize);
-        Ok(values)
+        // Four slabs to a texel.
+        let pixels = (geometry.frame.size[0] * geometry.frame.size[1]) as usize;
+        let texels = read_floats(&self.context, &sheets.ring)?;
+        let of_slab = |k: usize| {
+            let layer = texels[k / 4 * 4 * pixels..][..4 * pixels].iter();
+            layer.skip(k % 4).step_by(4).copied()
+        };
+        Ok((0..count as usize).flat_map(of_slab).collect())
     }
 }

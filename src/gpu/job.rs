@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::eye::EyePass;
 use super::light_backproject::Schedule;
-use super::light_march::Sheets;
+use super::light_march::{SLABS_PER_TEXEL, Sheets};
 use super::light_raycast::BRICKS_PER_STEP;
 use super::light_volume::{LightVolume, read_bricks};
 use super::listed_bricks::{Listed, listed};
@@ -144,7 +144,9 @@ impl LightBuild {
         let splats = shadows.algorithm == ShadowAlgorithm::Splat;
         let views = if splats { light_views(&lamp, &shadows, &volume.scene) } else { Vec::new() };
         let usual = |view| if settings.scatters() { SLABS_PER_STEP } else { chunk_slabs(volume, view) };
-        let chunks = views.iter().map(|view| chunk.unwrap_or_else(|| usual(view))).collect();
+        // Whole texels of the ring.
+        let whole = |chunk: u32| chunk.next_multiple_of(SLABS_PER_TEXEL);
+        let chunks = views.iter().map(|view| whole(chunk.unwrap_or_else(|| usual(view)))).collect();
         let scatters = splats && settings.scatters();
         let read = scatters.then(|| read_bricks(volume, &fresh.filled, fresh.divisor, &views));
         let reach = fresh.reach.saturating_add(reverse_reach(&views, &volume.scene, fresh.divisor));
@@ -187,10 +189,11 @@ impl LightBuild {
     }
 }
 
-/// Slabs per chunk so that the ring takes no more than a byte per voxel of the volume.
+/// Slabs per chunk so that the ring takes no more than two bytes per voxel of the volume.
 fn chunk_slabs(volume: &GpuVolume, view: &LightView) -> u32 {
-    let sheet_bytes = 2 * u64::from(view.frame.size[0]) * u64::from(view.frame.size[1]);
-    let fits = volume.volume.voxel_count() as u64 / sheet_bytes.max(1);
+    let pixels = u64::from(view.frame.size[0]) * u64::from(view.frame.size[1]);
+    // Two bytes each, too.
+    let fits = volume.volume.voxel_count() as u64 / pixels.max(1);
     fits.clamp(*CHUNK_SLABS.start(), *CHUNK_SLABS.end()) as u32
 }
 

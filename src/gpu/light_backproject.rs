@@ -13,7 +13,7 @@ use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
 use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
-use crate::model::{Kernel, Quadrature, Shadows};
+use crate::model::{Quadrature, Shadows};
 use crate::plan::LightView;
 
 /// The bricks of a light volume, by the chunk of slabs that completes them.
@@ -51,19 +51,12 @@ fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick:
     let depths = (0..8).map(|side| (corner(side) - view.anchor).dot(view.axes.z_axis));
     let (near, far) =
         depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
-    // The kernel's reach grows with depth, so both ends follow the depth; one slab of slack each for
-    // the quadrature points and the rounding of the shader.
-    let final_slab = |depth: f64| {
-        let width = frame.pitch_at(depth).max(view.kernel_edge.min(MAX_WIDENING * frame.pitch_at(depth)));
-        (depth - frame.first_depth + 2.0 * width.max(0.0)) / frame.slab - 0.5
-    };
+    // One slab of slack each for the quadrature points and the rounding of the shader.
+    let final_slab = |depth: f64| (depth - frame.first_depth) / frame.slab + 2.0 * view.kernel_slabs() - 0.5;
     let last = f64::from(frame.slab_count.max(1) - 1);
     let clamp = |slab: f64| slab.clamp(0.0, last) as u32;
     (clamp(final_slab(near).floor() - 1.0), clamp(final_slab(far).floor() + 1.0))
 }
-
-/// As `MAX_KERNEL_PIXELS` of the plan.
-const MAX_WIDENING: f64 = crate::plan::MAX_KERNEL_PIXELS;
 
 /// Light axes from index space: x and y in pixels of the anchor plane, z in scene units.
 fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
@@ -72,7 +65,7 @@ fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
     DAffine3 { matrix3: to_light, translation: -(to_light * view.anchor) } * scene.scene_from_index
 }
 
-/// The variant of the shader for a kernel, wider than four pixels and slabs or not.
+/// The variant of the shader for a kernel, anywhere wider than a pixel or a slab or not.
 pub(super) fn constants(shadows: &Shadows, wide: bool) -> [(&'static str, f64); 5] {
     let [kernel, sigma] = kernel_constants(shadows.kernel);
     let flag = |on: bool| f64::from(u8::from(on));
@@ -103,13 +96,10 @@ pub(super) fn backproject(
     if bricks.is_empty() {
         return Ok(());
     }
-    let four_taps = view.frame.inverse_distance == 0.0
-        && (view.kernel_edge / view.frame.slab - 1.0).abs() < 1e-9
-        && shadows.quadrature == Quadrature::One
-        && shadows.kernel != Kernel::Prefiltered;
+    let is_wide = !view.kernel_is_narrow() || shadows.quadrature == Quadrature::Two;
     let pipeline = shaders.pipeline_into(
         "light_backproject.wgsl",
-        &constants(shadows, !four_taps),
+        &constants(shadows, is_wide),
         light.texture.format(),
     )?;
     let [x, y, z] = rows(&light_from_index(&volume.scene, view));
@@ -130,7 +120,7 @@ pub(super) fn backproject(
     };
     let uniform = context.buffer("Backprojection::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let list = listed_bricks::upload(context, bricks);
-    let sampler = context.sampler("Backprojection::ring_sampler", wgpu::AddressMode::Repeat);
+    let sampler = context.sampler("Backprojection::ring_sampler");
     let bind_group = pass::bind(
         context,
         "Backprojection::bind_group",

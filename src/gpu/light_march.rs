@@ -6,15 +6,18 @@ use super::kernel::{classification_constant, kernel_constants, quadrature_consta
 use super::pass;
 use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
-use super::volume::{Gpu, entry, texture_3d};
+use super::volume::{Gpu, entry};
 use super::{Context, GpuError, RenderOptions};
 use crate::model::{Deposit, Light, Settings};
 use crate::plan::{LightView, sample_reach};
 
+/// Slabs that share a texel of the ring.
+pub(super) const SLABS_PER_TEXEL: u32 = 4;
+
 /// The sheets of one view of a light: a ring of layers through which the slabs stream.
 #[derive(Debug)]
 pub(super) struct Sheets {
-    /// Layers of the ring.
+    /// Layers of the ring, of [`SLABS_PER_TEXEL`] slabs each.
     pub layers: u32,
     /// Slabs marched at a time.
     pub chunk: u32,
@@ -22,7 +25,7 @@ pub(super) struct Sheets {
     pub dark: f32,
     /// For a preview.
     pub preview: bool,
-    /// Deposited transmittance, sheet by sheet.
+    /// Deposited transmittance, four sheets in a texel.
     pub ring: wgpu::Texture,
     /// The same.
     pub ring_view: wgpu::TextureView,
@@ -38,21 +41,24 @@ impl Sheets {
     /// Sheets are read up to `reach` cells from what either transfer function shows.
     pub(super) fn new(context: &Context, view: &LightView, chunk: u32, reach: i32) -> Result<Self, GpuError> {
         let frame = &view.frame;
-        let last = frame.first_depth + f64::from(frame.slab_count) * frame.slab;
-        // Radius 2 on both sides of a voxel, rounded outwards, and one for the pairs of fetches.
-        let kernel_slabs = frame.pitch_at(last).max(view.kernel_edge) / frame.slab;
-        let kept = (4.0 * kernel_slabs).ceil() as u32 + 2;
-        let chunk = chunk.min(frame.slab_count).max(1);
-        let layers = chunk + kept;
+        // Radius 2 on both sides of a voxel, rounded outwards, and one for the quadrature points; the first
+        // of them may be the last of its texel.
+        let kept = ((4.0 * view.kernel_slabs()).ceil() as u32 + 2).div_ceil(SLABS_PER_TEXEL) + 1;
+        let chunk = chunk.min(frame.slab_count).next_multiple_of(SLABS_PER_TEXEL).max(SLABS_PER_TEXEL);
+        let layers = chunk / SLABS_PER_TEXEL + kept;
         let [width, height] = frame.size;
-        let ring = context.texture(&texture_3d(
-            "Sheets::ring",
-            [width as usize, height as usize, layers as usize],
-            context.storage_format,
-            wgpu::TextureUsages::TEXTURE_BINDING
+        let ring = context.texture(&wgpu::TextureDescriptor {
+            label: Some("Sheets::ring"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba16Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::STORAGE_BINDING
                 | wgpu::TextureUsages::COPY_SRC,
-        ))?;
+            view_formats: &[],
+        })?;
         let transmittance = context.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("Sheets::transmittance"),
             size: u64::from(width) * u64::from(height) * 4,
@@ -64,7 +70,11 @@ impl Sheets {
             chunk,
             dark: RenderOptions::default().dark,
             preview: false,
-            ring_view: ring.create_view(&wgpu::TextureViewDescriptor::default()),
+            // An array even where it has one layer.
+            ring_view: ring.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            }),
             ring,
             transmittance,
             reach,
@@ -79,20 +89,17 @@ impl Sheets {
         uniform: &wgpu::Buffer,
         table: &wgpu::Buffer,
         distances: &wgpu::TextureView,
+        deposits: Option<&wgpu::Buffer>,
     ) -> wgpu::BindGroup {
-        pass::bind(
-            context,
-            "March::bind_group",
-            pipeline,
-            0,
-            &[
-                entry(0, uniform.as_entire_binding()),
-                entry(1, table.as_entire_binding()),
-                view_entry(2, distances),
-                entry(3, self.transmittance.as_entire_binding()),
-                view_entry(4, &self.ring_view),
-            ],
-        )
+        let mut entries = vec![
+            entry(0, uniform.as_entire_binding()),
+            entry(1, table.as_entire_binding()),
+            view_entry(2, distances),
+            entry(3, self.transmittance.as_entire_binding()),
+            view_entry(4, &self.ring_view),
+        ];
+        entries.extend(deposits.map(|deposits| entry(5, deposits.as_entire_binding())));
+        pass::bind(context, "March::bind_group", pipeline, 0, &entries)
     }
 
     /// Bytes of the ring and of the running transmittance.
@@ -100,7 +107,7 @@ impl Sheets {
         let size = self.ring.size();
         let pixels = u64::from(size.width) * u64::from(size.height);
         pixels
-            * (4 + u64::from(self.layers) * u64::from(self.ring.format().block_copy_size(None).unwrap_or(4)))
+            * (4 + u64::from(self.layers) * u64::from(self.ring.format().block_copy_size(None).unwrap_or(8)))
     }
 }
 
@@ -180,6 +187,7 @@ pub(super) fn march(
         &uniform,
         &tables.lighting.buffer,
         &tables.light_distances,
+        None,
     );
     let leaping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);

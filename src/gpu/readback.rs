@@ -84,11 +84,11 @@ pub(super) fn read_word(context: &Context, source: &wgpu::Buffer) -> Result<u32,
     Ok(u32::from_le_bytes([view[0], view[1], view[2], view[3]]))
 }
 
-/// The texels of a one-channel float texture.
+/// The channels of a float texture's texels.
 pub(super) fn read_floats(context: &Context, texture: &wgpu::Texture) -> Result<Vec<f32>, GpuError> {
     let bytes = read_texture(context, texture)?;
     Ok(match texture.format() {
-        wgpu::TextureFormat::R16Float => {
+        wgpu::TextureFormat::R16Float | wgpu::TextureFormat::Rgba16Float => {
             bytes.chunks_exact(2).map(|pair| half::f16::from_le_bytes([pair[0], pair[1]]).to_f32()).collect()
         }
         wgpu::TextureFormat::R8Unorm => bytes.into_iter().map(|byte| f32::from(byte) / 255.0).collect(),

@@ -73,7 +73,7 @@ impl EyeScatter {
             distances,
             // Four 32-bit floats per ray.
             rays: sums(gpu.context, "EyeScatter::rays", 4, frame.size)?,
-            clamped: gpu.context.sampler("EyeScatter::clamped", wgpu::AddressMode::ClampToEdge),
+            clamped: gpu.context.sampler("EyeScatter::clamped"),
             ahead,
         })
     }

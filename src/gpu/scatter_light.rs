@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::light_march::{Sheets, constants as march_constants, march_uniform};
+use super::light_march::{SLABS_PER_TEXEL, Sheets, constants as march_constants, march_uniform};
 use super::light_volume::LightVolume;
 use super::listed_bricks::{self, Listed};
 use super::pass;
@@ -27,6 +27,8 @@ pub(super) struct LightScatter {
     /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
     distances: wgpu::TextureView,
     dilation: i32,
+    /// What the slabs that share a texel of the ring deposit.
+    deposits: wgpu::Buffer,
     /// Data voxels per light voxel.
     divisor: usize,
 }
@@ -71,6 +73,7 @@ impl LightScatter {
             light: sums(gpu.context, "LightScatter::light", nz, [nx, ny])?,
             weights: sums(gpu.context, "LightScatter::weights", nz, [nx, ny])?,
             dilation: scatter_dilation(&view.frame),
+            deposits: sums(gpu.context, "LightScatter::deposits", SLABS_PER_TEXEL, view.frame.size)?,
             divisor: target.divisor,
         })
     }
@@ -97,7 +100,14 @@ impl LightScatter {
         let rows = 0..view.frame.size[1];
         let uniform = march_uniform(lamp, view, sheets, (slabs.start, slabs.end), rows);
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let own = sheets.march_bind_group(context, &pipeline, &uniform, table, &self.distances);
+        let own = sheets.march_bind_group(
+            context,
+            &pipeline,
+            &uniform,
+            table,
+            &self.distances,
+            Some(&self.deposits),
+        );
         for k in slabs {
             if self.scatterer.is_filled(k) {
                 self.scatterer.splat(gpu, voxels, counter, k, encoder)?;
@@ -200,6 +210,6 @@ impl LightScatter {
 
     /// Bytes of sheets, light and weights.
     pub(super) fn bytes(&self) -> u64 {
-        self.scatterer.bytes() + self.light.size() + self.weights.size()
+        self.scatterer.bytes() + self.light.size() + self.weights.size() + self.deposits.size()
     }
 }

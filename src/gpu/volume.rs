@@ -113,7 +113,7 @@ impl GpuVolume {
             gradients: gradients::texture(context, &pyramid),
             pyramid_view: pyramid.create_view(&wgpu::TextureViewDescriptor::default()),
             pyramid,
-            clamped: context.sampler("Volume::clamped", wgpu::AddressMode::ClampToEdge),
+            clamped: context.sampler("Volume::clamped"),
             nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("Volume::nearest"),
                 ..Default::default()

@@ -15,8 +15,16 @@ const SPLIT_RADII: f64 = 1.5;
 /// pixels wider than their smallest edge instead.
 const MAX_PIXELS: f64 = 2000.0;
 
+/// Least width of the reverse kernel across the sheets, in light voxels.
+///
+/// Sheets are drawn with kernels no
+/// narrower than a voxel and hold nothing finer, however many pixels they have per voxel: one pixel's
+/// kernel, which takes 4² of them, will do. It does so for all lights that are not split into six views:
+/// what is nearest to a light 1.5 radii away has a third of its distance, and pixels a third of a voxel wide.
+pub const MIN_KERNEL_VOXELS: f64 = 0.3125;
+
 /// Largest width of the reverse kernel in pixels: close to a light inside the volume pixels become
-/// arbitrarily small, and there the kernel is narrower than a voxel instead of ever more fetches.
+/// arbitrarily small, and there the kernel gets narrower still instead of ever more fetches.
 pub const MAX_KERNEL_PIXELS: f64 = 4.0;
 
 /// One view of a light: a stack of sheets and where a point of the volume lies on them.
@@ -30,8 +38,8 @@ pub struct LightView {
     pub anchor: DVec3,
     /// Position of pixel (0, 0) on the anchor plane, in pixels from the axis.
     pub first_pixel: DVec2,
-    /// Width of the reverse kernel, in scene units, where pixels are no wider than that: one voxel
-    /// of the light volume (its smallest edge).
+    /// Width of the reverse kernel along the axis, in scene units: one voxel of the light volume (its
+    /// smallest edge).
     pub kernel_edge: f64,
     /// Whether this view owns only the quarter-space where its axis dominates (a cube's face).
     pub cube_face: bool,
@@ -69,13 +77,28 @@ impl LightView {
             return None;
         }
         let pitch = self.frame.pitch * spread;
-        let kernel_pixels = (self.kernel_edge / pitch).clamp(1.0, MAX_KERNEL_PIXELS);
         Some(SheetPosition {
             pixel: DVec2::new(local.x, local.y) / pitch - self.first_pixel,
             slab: (local.z - self.frame.first_depth) / self.frame.slab - 0.5,
-            kernel_pixels,
-            kernel_slabs: kernel_pixels * pitch / self.frame.slab,
+            kernel_pixels: self.kernel_pixels(pitch),
+            kernel_slabs: self.kernel_slabs(),
         })
+    }
+
+    /// Width of the reverse kernel in pixels where these are `pitch` wide.
+    fn kernel_pixels(&self, pitch: f64) -> f64 {
+        (MIN_KERNEL_VOXELS * self.kernel_edge / pitch).clamp(1.0, MAX_KERNEL_PIXELS)
+    }
+
+    /// Width of the reverse kernel in slabs: slabs do not widen with depth, nor does it.
+    pub fn kernel_slabs(&self) -> f64 {
+        self.kernel_edge / self.frame.slab
+    }
+
+    /// Whether the reverse kernel is a pixel wide at every depth, and a slab deep.
+    pub fn kernel_is_narrow(&self) -> bool {
+        self.kernel_pixels(self.frame.pitch_at(self.frame.first_depth)) < 1.0 + 1e-9
+            && (self.kernel_slabs() - 1.0).abs() < 1e-9
     }
 }
 
@@ -242,6 +265,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_pixels_kernel_does_for_all_lights_outside() {
+        let nearest = SPLIT_RADII * scene().support_radius();
+        for direction in [DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 1.0), DVec3::new(-1.0, 2.0, 0.3)] {
+            let position = (direction.normalize() * nearest * 1.000_001).to_array();
+            for view in views(LightKind::Perspective, position) {
+                assert!(view.kernel_is_narrow(), "{position:?}");
+            }
+        }
+        assert!(!views(LightKind::Perspective, [0.1, 0.2, 0.0])[0].kernel_is_narrow());
     }
 
     #[test]

@@ -18,7 +18,7 @@ mod tests;
 pub use cell_distances::{CellDistances, FARTHEST};
 pub use cell_set::CellSet;
 pub use eye_frame::eye_frame;
-pub use light_frame::{LightView, MAX_KERNEL_PIXELS, SheetPosition, light_views};
+pub use light_frame::{LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views};
 pub use occupancy::BrickSet;
 pub use reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach, slab_reach,
