@@ -29,6 +29,10 @@ struct Backprojection {
     layers: u32,
     // Bricks listed for this chunk.
     bricks: u32,
+    // One over the ring's columns and rows, which may be more than the sheets'.
+    ring_scale: vec2f,
+    pad0: f32,
+    pad1: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: Backprojection;
@@ -52,8 +56,7 @@ const MAX_KERNEL_PIXELS = 4.0;
 
 // What the four slabs 4·layer … 4·layer + 3 deposit.
 fn four_sheets(pixel: vec2f, layer: i32) -> vec4f {
-    let at = (pixel + 0.5) / vec2f(view.frame.size);
-    return textureSampleLevel(ring, ring_sampler, at, in_ring(layer), 0.0);
+    return textureSampleLevel(ring, ring_sampler, (pixel + 0.5) * view.ring_scale, in_ring(layer), 0.0);
 }
 
 // Modulo without a division of integers.

@@ -32,7 +32,7 @@ struct March {
 // Transmittance in front of the next slab, per pixel.
 @group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;
 // Four slabs to a texel: a quarter of the stores here, and of the fetches behind.
-@group(0) @binding(4) var ring: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(4) var ring: texture_storage_2d_array<RING_FORMAT, write>;
 
 // P eq. 10 read literally takes the transmittance in front of the slab.
 override DEPOSIT_FRONT: bool = false;

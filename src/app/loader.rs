@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use eframe::egui;
 
+use super::APP_ID;
 use super::work::Work;
 use crate::data::load::{self, LoadControl, LoadOptions};
 use crate::data::{Bricks, Histogram, Volume};
@@ -66,11 +67,17 @@ const PHASES: [&str; 4] = ["reading", "counting values", "uploading", "finding a
 impl Loader {
     /// A loader for volumes that a device will show. Begins to make its pipelines.
     pub(super) fn new(context: Context, options: LoadOptions) -> std::io::Result<Self> {
-        let shaders = ShaderLibrary::new(&context);
+        let shaders = eframe::storage_dir(APP_ID).map_or_else(
+            || ShaderLibrary::new(&context),
+            |folder| ShaderLibrary::with_cache(&context, &folder.join("pipelines")),
+        );
         let ahead = shaders.clone();
         std::thread::Builder::new().name("warm-up".to_owned()).spawn(move || {
             if let Err(err) = ahead.warm_up() {
                 log::error!("pipelines could not be made ahead of time: {err}");
+            }
+            if let Err(err) = ahead.save_cache() {
+                log::warn!("pipelines could not be kept for the next start: {err}");
             }
         })?;
         Ok(Self { context, shaders, options, running: None })

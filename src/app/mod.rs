@@ -11,6 +11,7 @@ mod export;
 mod files;
 mod help;
 mod history;
+mod icon;
 mod light_handles;
 mod light_slice;
 mod loader;
@@ -97,6 +98,9 @@ pub enum AppError {
     Thread(#[from] std::io::Error),
 }
 
+/// Names our window to the desktop, and the folder in which we keep things.
+const APP_ID: &str = "chiaroscuro";
+
 /// How the window's device is opened: with the limits and features that the renderer can use.
 pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
     let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
@@ -111,38 +115,16 @@ pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
 pub fn run(options: Options) -> Result<(), AppError> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("Chiaroscuro")
-        .with_app_id("chiaroscuro")
+        .with_app_id(APP_ID)
         .with_inner_size([1280.0, 800.0])
         .with_min_inner_size([560.0, 420.0])
-        .with_icon(icon());
+        .with_icon(icon::icon());
     let wgpu_options =
         eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup().into(), ..Default::default() };
     // Without dithering the picture reaches the screen byte for byte.
     let native = eframe::NativeOptions { viewport, wgpu_options, dithering: false, ..Default::default() };
     eframe::run_native("Chiaroscuro", native, Box::new(|cc| Ok(Box::new(App::new(cc, options)?))))?;
     Ok(())
-}
-
-/// A ball half in the light.
-fn icon() -> egui::IconData {
-    const SIZE: u32 = 64;
-    let texel = |i: u32| {
-        let at = |n: u32| (f64::from(n) + 0.5) / f64::from(SIZE) * 2.2 - 1.1;
-        let (x, y) = (at(i % SIZE), at(i / SIZE));
-        let depth = 1.0 - x * x - y * y;
-        if depth <= 0.0 {
-            return [0; 4];
-        }
-        let light = (0.75 * (-0.65 * x - 0.6 * y + 0.47 * depth.sqrt())).max(0.0) + 0.08;
-        [255.0, 222.0, 176.0]
-            .map(|c: f64| (c * light.min(1.0).powf(1.0 / 2.2)) as u8)
-            .into_iter()
-            .chain([255])
-            .collect::<Vec<_>>()
-            .try_into()
-            .unwrap_or([0; 4])
-    };
-    egui::IconData { rgba: (0..SIZE * SIZE).flat_map(texel).collect(), width: SIZE, height: SIZE }
 }
 
 /// The window's state.

@@ -33,6 +33,7 @@ pub struct Context {
 const WANTED: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
     .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
     .union(wgpu::Features::FLOAT32_FILTERABLE)
+    .union(wgpu::Features::PIPELINE_CACHE)
     .union(Clock::FEATURES);
 
 /// What to ask of an adapter: the features we can use and its real limits instead of the defaults

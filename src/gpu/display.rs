@@ -1,6 +1,7 @@
 //! The display pass: tone map, background and sRGB.
 
 use super::pass;
+use super::recycled::Recycled;
 use super::tables::view_entry;
 use super::uniforms;
 use super::volume::entry;
@@ -62,7 +63,7 @@ impl Target {
 
 /// Turns the linear picture into the shown one, with all light multiplied by an exposure.
 pub(super) fn display(
-    context: &Context,
+    (context, recycled): (&Context, &Recycled),
     shaders: &ShaderLibrary,
     output: &Output,
     (transparent, exposure): (bool, f32),
@@ -79,8 +80,8 @@ pub(super) fn display(
         exposure,
         pad0: 0,
     };
-    let uniform = context.buffer("Display::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let bind_group = pass::bind(
+    let uniform = recycled.buffer(context, "Display::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
+    let bind_group = recycled.bind(
         context,
         "Display::bind_group",
         &pipeline,

@@ -138,17 +138,15 @@ impl EyePass {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, volume, .. } = gpu;
-        let gradients = volume.gradients.as_ref().filter(|_| self.takes_gradients);
+        let gradients = volume.gradients_view.as_ref().filter(|_| self.takes_gradients);
         let mut constants = self.constants.clone();
         constants.push(gradient_constant(gradients.is_some()));
         let pipeline = shaders.pipeline("eye.wgsl", &constants)?;
-        let gradients = gradients.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
         let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
         let runs = pass::runs(context, tiles);
         let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
-        let uniform = context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let own = pass::bind(
-            context,
+        let uniform = gpu.uniform("Eye::uniform", uniform);
+        let own = gpu.bind(
             "Eye::bind_group",
             &pipeline,
             0,
@@ -159,10 +157,10 @@ impl EyePass {
                 view_entry(3, picture),
                 entry(4, tables.lighting.buffer.as_entire_binding()),
                 view_entry(5, &tables.light_distances),
-                view_entry(6, gradients.as_ref().unwrap_or(gpu.nothing)),
+                view_entry(6, gradients.unwrap_or(gpu.nothing)),
             ],
         );
-        let of_volume = volume.bind_group(context, &pipeline, self.dilation);
+        let of_volume = gpu.bind_volume(&pipeline, self.dilation);
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
         Ok(())

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::light_march::{Sheets, march};
 use super::readback::{Attenuation, read_floats};
+use super::recycled::Recycled;
 use super::scatter_light::LightScatter;
 use super::{GpuError, RenderOptions, Renderer};
 use crate::data::{Bricks, Volume};
@@ -67,7 +68,7 @@ impl Renderer {
         let lamp = settings.lights[light].in_world(&settings.camera);
         let geometry = &light_views(&lamp, &settings.shadows, &gpu.volume.scene)[view];
         let count = geometry.frame.slab_count;
-        let sheets = Sheets::new(&self.context, geometry, count, i32::from(FARTHEST))?;
+        let sheets = Sheets::new(&self.context, &Recycled::default(), geometry, count, i32::from(FARTHEST))?;
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let lamp = (&lamp, settings);
@@ -92,12 +93,14 @@ impl Renderer {
             march(gpu, tables, lamp, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
         }
         self.context.queue.submit([encoder.finish()]);
-        // Four slabs to a texel.
-        let pixels = (geometry.frame.size[0] * geometry.frame.size[1]) as usize;
+        // Four slabs to a texel, and room beside the sheets.
         let texels = read_floats(&self.context, &sheets.ring)?;
+        let (columns, rows) = (sheets.ring.width() as usize, sheets.ring.height() as usize);
+        let [width, height] = geometry.frame.size.map(|n| n as usize);
+        let texels = texels.as_slice();
         let of_slab = |k: usize| {
-            let layer = texels[k / 4 * 4 * pixels..][..4 * pixels].iter();
-            layer.skip(k % 4).step_by(4).copied()
+            let row = move |j: usize| &texels[(k / 4 * rows + j) * columns * 4..][..4 * width];
+            (0..height).map(row).flat_map(move |row| row.iter().skip(k % 4).step_by(4).copied())
         };
         Ok((0..count as usize).flat_map(of_slab).collect())
     }

@@ -89,7 +89,7 @@ pub(super) fn backproject(
     (slabs, part): ((u32, u32), (u32, u32)),
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let Gpu { context, shaders, volume, nothing: _ } = gpu;
+    let Gpu { shaders, volume, .. } = gpu;
     let bricks = &schedule.chunks[(slabs.0 / sheets.chunk) as usize];
     let cut = |at: u32| bricks.len() * at as usize / part.1 as usize;
     let bricks = &bricks[cut(part.0)..cut(part.0 + 1)];
@@ -117,12 +117,13 @@ pub(super) fn backproject(
         end: slabs.1,
         layers: sheets.layers,
         bricks: bricks.len() as u32,
+        ring_scale: [sheets.ring.width(), sheets.ring.height()].map(|n| 1.0 / n as f32),
+        pad0: 0.0,
+        pad1: 0.0,
     };
-    let uniform = context.buffer("Backprojection::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let list = listed_bricks::upload(context, bricks);
-    let sampler = context.sampler("Backprojection::ring_sampler");
-    let bind_group = pass::bind(
-        context,
+    let uniform = gpu.uniform("Backprojection::uniform", uniform);
+    let list = listed_bricks::upload(gpu, bricks);
+    let bind_group = gpu.bind(
         "Backprojection::bind_group",
         &pipeline,
         0,
@@ -130,7 +131,7 @@ pub(super) fn backproject(
             entry(0, uniform.as_entire_binding()),
             entry(1, list.as_entire_binding()),
             view_entry(2, &sheets.ring_view),
-            entry(3, wgpu::BindingResource::Sampler(&sampler)),
+            entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
             view_entry(4, &light.view),
         ],
     );

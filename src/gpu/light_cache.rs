@@ -94,6 +94,7 @@ impl Renderer {
             return Ok(PlacedLights { collapsed: true, ..PlacedLights::default() });
         }
         self.collapsed = None;
+        self.recycled.forget_groups();
         let (keys, builds) = self.place_lights(request)?;
         let first = keys.iter().flatten().next();
         let like = self.lights.iter().find(|light| Some(&light.key) == first);
@@ -106,6 +107,7 @@ impl Renderer {
     /// Forgets the light volumes of a picture, which have been collapsed.
     pub(super) fn forget_collapsed(&mut self, keys: &[Option<LightKey>]) {
         self.lights.retain(|light| !keys.iter().flatten().any(|key| *key == light.key));
+        self.recycled.forget_groups();
     }
 
     /// Finds or makes the light volumes of a request and forgets the oldest of the others.
@@ -139,10 +141,17 @@ impl Renderer {
                 .find(|key| self.lights.iter().any(|known| usable(known, key)));
             let key = found.clone().or(coarse).unwrap_or(full);
             if found.is_none() {
-                self.lights.retain(|known| known.key != key);
+                self.unwanted.extend(self.lights.extract_if(.., |known| known.key == key));
+                // One that would be forgotten afterwards.
+                if self.lights.len() >= count + SPARE_LIGHT_VOLUMES.max(count) {
+                    let clock = self.clock;
+                    let oldest = (0..self.lights.len()).min_by_key(|&at| self.lights[at].last_used);
+                    let free = oldest.filter(|&at| self.lights[at].last_used < clock);
+                    self.unwanted.extend(free.map(|at| self.lights.swap_remove(at)));
+                }
                 let filled = needed(&key, reach);
                 let around = needed(&key, reach.max(stretch_reach(WIDEST))).0.without(&filled.0);
-                let fresh = LightVolume::new(&self.context, volume, key.clone(), filled)?;
+                let fresh = LightVolume::new(&self.context, volume, key.clone(), filled, &mut self.unwanted)?;
                 let mut build = LightBuild::new(volume, request, light, &fresh, self.options.chunk);
                 build.around = around.bricks().map(listed).collect();
                 self.lights.push(fresh);
@@ -156,7 +165,8 @@ impl Renderer {
         let clock = self.clock;
         self.lights.sort_by_key(|light| std::cmp::Reverse(light.last_used));
         let current = self.lights.iter().filter(|light| light.last_used == clock).count();
-        self.lights.truncate(current + SPARE_LIGHT_VOLUMES.max(current));
+        let kept = self.lights.len().min(current + SPARE_LIGHT_VOLUMES.max(current));
+        self.unwanted.extend(self.lights.drain(kept..));
         Ok((keys, builds))
     }
 }

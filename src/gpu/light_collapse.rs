@@ -111,9 +111,9 @@ impl CollapsedLight {
         if bricks.is_empty() {
             return Ok(());
         }
-        let Gpu { context, shaders, volume, .. } = gpu;
+        let Gpu { shaders, .. } = gpu;
         let pipeline = shaders.pipeline("light_collapse.wgsl", &pass.scatter_constants())?;
-        let eye = context.buffer("Collapse::eye", &[pass.uniform()], wgpu::BufferUsages::UNIFORM);
+        let eye = gpu.uniform("Collapse::eye", pass.uniform());
         let uniform = uniforms::Collapse {
             dims: self.dims.map(|n| n as u32),
             bricks: bricks.len() as u32,
@@ -122,10 +122,9 @@ impl CollapsedLight {
             pad1: 0.0,
             pad2: 0.0,
         };
-        let uniform = context.buffer("Collapse::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let list = listed_bricks::upload(context, bricks);
-        let own = pass::bind(
-            context,
+        let uniform = gpu.uniform("Collapse::uniform", uniform);
+        let list = listed_bricks::upload(gpu, bricks);
+        let own = gpu.bind(
             "Collapse::bind_group",
             &pipeline,
             0,
@@ -136,7 +135,7 @@ impl CollapsedLight {
                 view_entry(4, &self.view),
             ],
         );
-        let of_volume = volume.pyramid_bind_group(context, &pipeline);
+        let of_volume = gpu.bind_pyramid(&pipeline);
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         pass::dispatch(
             encoder,

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
 use super::pass;
+use super::recycled::Recycled;
+use super::shader::ring_format;
 use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
@@ -13,6 +15,14 @@ use crate::plan::{LightView, sample_reach};
 
 /// Slabs that share a texel of the ring.
 pub(super) const SLABS_PER_TEXEL: u32 = 4;
+
+/// Columns and rows of the ring come in so many, because sheets get larger and smaller as the light moves.
+const ROOM: u32 = 32;
+
+/// A ring has at most so many times the texels that are needed …
+const MOST_ROOM: u64 = 2;
+/// … or so many, 8 MiB: coarse previews and small volumes.
+const SMALL_RING: u64 = 1 << 20;
 
 /// The sheets of one view of a light: a ring of layers through which the slabs stream.
 #[derive(Debug)]
@@ -35,25 +45,39 @@ pub(super) struct Sheets {
 }
 
 impl Sheets {
-    /// Makes a ring that streams `chunk` slabs at a time and keeps what the reverse kernel still
-    /// needs of the ones before.
+    /// A ring that streams `chunk` slabs at a time and keeps what the reverse kernel still needs of the ones
+    /// before: one that was left behind, if it is large enough.
     ///
     /// Sheets are read up to `reach` cells from what either transfer function shows.
-    pub(super) fn new(context: &Context, view: &LightView, chunk: u32, reach: i32) -> Result<Self, GpuError> {
+    pub(super) fn new(
+        context: &Context,
+        recycled: &Recycled,
+        view: &LightView,
+        chunk: u32,
+        reach: i32,
+    ) -> Result<Self, GpuError> {
         let frame = &view.frame;
         // Radius 2 on both sides of a voxel, rounded outwards, and one for the quadrature points; the first
         // of them may be the last of its texel.
         let kept = ((4.0 * view.kernel_slabs()).ceil() as u32 + 2).div_ceil(SLABS_PER_TEXEL) + 1;
         let chunk = chunk.min(frame.slab_count).next_multiple_of(SLABS_PER_TEXEL).max(SLABS_PER_TEXEL);
         let layers = chunk / SLABS_PER_TEXEL + kept;
-        let [width, height] = frame.size;
+        let needed = [frame.size[0].next_multiple_of(ROOM), frame.size[1].next_multiple_of(ROOM), layers];
+        let dark = RenderOptions::default().dark;
+        let size = match recycled.take_sheets().map(|known| known.or_larger(needed)) {
+            Some(Ok(known)) => return Ok(Self { chunk, reach, dark, preview: false, ..known }),
+            Some(Err(larger)) => larger,
+            None => needed,
+        };
+        recycled.count();
+        let [width, height, layers] = size;
         let ring = context.texture(&wgpu::TextureDescriptor {
             label: Some("Sheets::ring"),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba16Float,
+            format: ring_format(context.storage_format),
             usage: wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::STORAGE_BINDING
                 | wgpu::TextureUsages::COPY_SRC,
@@ -68,7 +92,7 @@ impl Sheets {
         Ok(Self {
             layers,
             chunk,
-            dark: RenderOptions::default().dark,
+            dark,
             preview: false,
             // An array even where it has one layer.
             ring_view: ring.create_view(&wgpu::TextureViewDescriptor {
@@ -81,10 +105,26 @@ impl Sheets {
         })
     }
 
+    /// The same, if so many columns, rows and layers fit and are not much less; otherwise the size of sheets to
+    /// take their place, which hold both if they can.
+    fn or_larger(self, needed: [u32; 3]) -> Result<Self, [u32; 3]> {
+        let size = self.ring.size();
+        let held = [size.width, size.height, size.depth_or_array_layers];
+        let texels = |[a, b, c]: [u32; 3]| u64::from(a) * u64::from(b) * u64::from(c);
+        let both = [0, 1, 2].map(|axis| held[axis].max(needed[axis]));
+        if texels(both) > (MOST_ROOM * texels(needed)).max(SMALL_RING) {
+            Err(needed)
+        } else if both == held {
+            Ok(self)
+        } else {
+            Err(both)
+        }
+    }
+
     /// Bind group 0 of the passes that march.
     pub(super) fn march_bind_group(
         &self,
-        context: &Context,
+        gpu: Gpu<'_>,
         pipeline: &wgpu::ComputePipeline,
         uniform: &wgpu::Buffer,
         table: &wgpu::Buffer,
@@ -99,7 +139,7 @@ impl Sheets {
             view_entry(4, &self.ring_view),
         ];
         entries.extend(deposits.map(|deposits| entry(5, deposits.as_entire_binding())));
-        pass::bind(context, "March::bind_group", pipeline, 0, &entries)
+        gpu.bind("March::bind_group", pipeline, 0, &entries)
     }
 
     /// Bytes of the ring and of the running transmittance.
@@ -170,7 +210,7 @@ pub(super) fn march(
     (slabs, part): ((u32, u32), (u32, u32)),
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let Gpu { context, shaders, volume, nothing: _ } = gpu;
+    let Gpu { context, shaders, volume, .. } = gpu;
     let rows = rows_of(view.frame.size[1], part);
     if rows.is_empty() {
         return Ok(());
@@ -180,9 +220,9 @@ pub(super) fn march(
     let tiles = pass::tiles([view.frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
     let uniform = uniforms::March { runs, ..march_uniform(light, view, sheets, slabs, rows.clone()) };
-    let uniform = context.buffer("March::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
+    let uniform = gpu.uniform("March::uniform", uniform);
     let own = sheets.march_bind_group(
-        context,
+        gpu,
         &pipeline,
         &uniform,
         &tables.lighting.buffer,
@@ -192,7 +232,7 @@ pub(super) fn march(
     let leaping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
     let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
-    let of_volume = volume.bind_group(context, &pipeline, dilation);
+    let of_volume = gpu.bind_volume(&pipeline, dilation);
     pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
 }

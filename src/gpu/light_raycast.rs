@@ -36,7 +36,7 @@ pub(super) fn raycast(
     if bricks.is_empty() {
         return Ok(());
     }
-    let Gpu { context, shaders, volume, nothing: _ } = gpu;
+    let Gpu { shaders, volume, .. } = gpu;
     let pipeline = shaders.pipeline_into(
         "light_raycast.wgsl",
         &constants(&settings.shadows),
@@ -52,10 +52,9 @@ pub(super) fn raycast(
         dark: options.dark_depth(),
         pad0: 0,
     };
-    let uniform = context.buffer("Raycast::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let list = listed_bricks::upload(context, bricks);
-    let own = pass::bind(
-        context,
+    let uniform = gpu.uniform("Raycast::uniform", uniform);
+    let list = listed_bricks::upload(gpu, bricks);
+    let own = gpu.bind(
         "Raycast::bind_group",
         &pipeline,
         0,
@@ -69,7 +68,7 @@ pub(super) fn raycast(
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
     let dilation = if options.leaping { seen } else { EVERYWHERE };
-    let of_volume = volume.bind_group(context, &pipeline, dilation);
+    let of_volume = gpu.bind_volume(&pipeline, dilation);
     pass::dispatch(
         encoder,
         "Raycast::pass",

@@ -35,7 +35,7 @@ pub(super) struct LightVolume {
 }
 
 impl LightVolume {
-    /// Makes the texture; nothing is filled yet.
+    /// Makes the texture, or takes that of a volume that is not wanted any more; nothing is filled yet.
     ///
     /// # Errors
     /// When memory is out.
@@ -44,6 +44,7 @@ impl LightVolume {
         volume: &GpuVolume,
         key: LightKey,
         (filled, reach): (Arc<CellSet>, u8),
+        unwanted: &mut Vec<Self>,
     ) -> Result<Self, GpuError> {
         let divisor = key.resolution().divisor();
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
@@ -52,6 +53,21 @@ impl LightVolume {
             Precision::Byte if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
             Precision::Byte | Precision::Half => context.storage_format,
         };
+        let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
+        if let Some(at) = unwanted.iter().position(fits) {
+            let Self { texture, view, .. } = unwanted.swap_remove(at);
+            return Ok(Self {
+                key,
+                dims,
+                divisor,
+                texture,
+                view,
+                filled,
+                reach,
+                complete: false,
+                last_used: 0,
+            });
+        }
         let texture = context.texture(&texture_3d(
             "LightVolume::attenuation",
             dims,
@@ -75,15 +91,14 @@ impl LightVolume {
         if bricks.is_empty() {
             return Ok(());
         }
-        let Gpu { context, shaders, .. } = gpu;
+        let Gpu { shaders, .. } = gpu;
         let pipeline = shaders.pipeline_into("light_around.wgsl", &[], self.texture.format())?;
-        let list = listed_bricks::upload(context, bricks);
-        let own = pass::bind(
-            context,
+        let list = listed_bricks::upload(gpu, bricks);
+        let own = gpu.bind(
             "LightVolume::around",
             &pipeline,
             0,
-            &[entry(0, list.as_entire_binding()), view_entry(1, &self.view)],
+            &[entry(0, listed_bricks::exactly(&list, bricks)), view_entry(1, &self.view)],
         );
         pass::dispatch(
             encoder,
@@ -110,7 +125,7 @@ pub(super) fn light_bind_group(
 ) -> wgpu::BindGroup {
     let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.nothing);
     let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
-    pass::bind(gpu.context, "LightVolume::bind_group", pipeline, 2, &views)
+    gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
 }
 
 /// The data bricks whose scattered sheets are splatted back into `filled`: within the reverse kernel of

@@ -1,6 +1,6 @@
 //! Dispatches over listed bricks, as `shaders/common/listed_bricks.wgsl` takes them apart.
 
-use super::Context;
+use super::volume::Gpu;
 
 /// Bricks per row of a dispatch: at most two workgroups each, within the 65535 that all adapters allow.
 const BRICKS_PER_ROW: u32 = 16384;
@@ -18,9 +18,15 @@ pub(super) fn listed((brick, cells): ([usize; 3], u64)) -> Listed {
     [packed(brick), cells as u32, (cells >> 32) as u32, 0]
 }
 
-/// The list as a storage buffer.
-pub(super) fn upload(context: &Context, bricks: &[Listed]) -> wgpu::Buffer {
-    context.buffer("listed_bricks", bricks, wgpu::BufferUsages::STORAGE)
+/// The list as a storage buffer, which may be longer.
+pub(super) fn upload(gpu: Gpu<'_>, bricks: &[Listed]) -> wgpu::Buffer {
+    gpu.list("listed_bricks", bricks)
+}
+
+/// Binds a list at its true length, for shaders that ask for it.
+pub(super) fn exactly<'a>(buffer: &'a wgpu::Buffer, bricks: &[Listed]) -> wgpu::BindingResource<'a> {
+    let size = wgpu::BufferSize::new(size_of_val(bricks) as u64);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
 }
 
 /// Two workgroups for each of so many bricks.

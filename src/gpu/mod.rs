@@ -5,6 +5,7 @@
 
 mod clock;
 mod context;
+mod counts;
 mod display;
 mod distance;
 mod error;
@@ -26,8 +27,10 @@ mod light_volume;
 mod listed_bricks;
 mod pass;
 mod picture;
+mod pipeline_cache;
 mod prefilter;
 mod readback;
+mod recycled;
 mod renderer;
 mod scatter_eye;
 mod scatter_footprints;

@@ -10,7 +10,8 @@ use super::light_cache::PlacedLights;
 use super::light_collapse::{self, CollapsedLight};
 use super::light_volume::LightVolume;
 use super::picture::{Picture, RenderOptions, Report};
-use super::readback::{read_texture, read_word};
+use super::readback::read_texture;
+use super::recycled::Recycled;
 use super::scatter_eye::SLABS_PER_STEP;
 use super::scatter_voxels::ScatterVoxels;
 use super::tables::Tables;
@@ -29,10 +30,12 @@ pub struct Renderer {
     pub(super) uploaded: bool,
     pub(super) tables: Option<Tables>,
     pub(super) lights: Vec<LightVolume>,
+    /// Light volumes whose textures serve those that a picture needs; empty in between.
+    pub(super) unwanted: Vec<LightVolume>,
     /// The diffuse light of all of them in one.
     pub(super) collapsed: Option<CollapsedLight>,
     /// What is shown, and a spare one to draw into.
-    front: Option<Target>,
+    pub(super) front: Option<Target>,
     pub(super) back: Option<Target>,
     /// The volume's voxels for scattering, once a picture has asked for them.
     pub(super) voxels: Option<ScatterVoxels>,
@@ -40,6 +43,7 @@ pub struct Renderer {
     pub(super) splats: Option<wgpu::Buffer>,
     /// Bound where a light has no volume.
     pub(super) nothing: wgpu::TextureView,
+    pub(super) recycled: Recycled,
     pub(super) options: RenderOptions,
     pub(super) rebuilds: Vec<u64>,
     /// Counts pictures.
@@ -73,12 +77,14 @@ impl Renderer {
             uploaded: false,
             tables: None,
             lights: Vec::new(),
+            unwanted: Vec::new(),
             collapsed: None,
             front: None,
             back: None,
             voxels: None,
             splats: None,
             nothing: nothing.create_view(&wgpu::TextureViewDescriptor::default()),
+            recycled: Recycled::default(),
             options: RenderOptions::default(),
             rebuilds: Vec::new(),
             clock: 0,
@@ -90,39 +96,6 @@ impl Renderer {
     /// The device.
     pub fn context(&self) -> &Context {
         &self.context
-    }
-
-    /// How often the light volume of each light of the settings was filled; counted where its first
-    /// march is submitted.
-    pub fn light_rebuilds(&self) -> &[u64] {
-        &self.rebuilds
-    }
-
-    /// Light volumes that are complete and kept.
-    pub fn cached_light_volumes(&self) -> usize {
-        self.lights.iter().filter(|light| light.complete).count()
-    }
-
-    /// Bytes of our textures on the GPU now.
-    pub fn gpu_bytes(&self) -> u64 {
-        let targets = self.front.iter().chain(&self.back).map(Target::bytes).sum::<u64>();
-        let lights = self.light_bytes();
-        let voxels = self.voxels.as_ref().map_or(0, ScatterVoxels::bytes);
-        targets + lights + voxels + self.volume.as_ref().map_or(0, GpuVolume::bytes)
-    }
-
-    /// Bytes of light volumes, of which pictures look up those of their lights, or one for all.
-    pub fn light_bytes(&self) -> u64 {
-        let collapsed = self.collapsed.as_ref().map_or(0, CollapsedLight::bytes);
-        collapsed + self.lights.iter().map(LightVolume::bytes).sum::<u64>()
-    }
-
-    /// How many footprints the last picture has splatted; 0 of one that gathers. Waits for it.
-    ///
-    /// # Errors
-    /// When the GPU cannot do it.
-    pub fn splats(&self) -> Result<u64, GpuError> {
-        self.splats.as_ref().map_or(Ok(0), |counter| read_word(&self.context, counter).map(u64::from))
     }
 
     /// What the last picture took.
@@ -149,7 +122,9 @@ impl Renderer {
         let output = &job.request().settings.output;
         let mut encoder =
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        display(&self.context, &self.shaders, output, (job.transparent, exposure), target, &mut encoder)?;
+        self.recycled.next_submission();
+        let with = (&self.context, &self.recycled);
+        display(with, &self.shaders, output, (job.transparent, exposure), target, &mut encoder)?;
         self.context.queue.submit([encoder.finish()]);
         self.context.wait()
     }
@@ -228,17 +203,28 @@ impl Renderer {
         self.options = options.clone();
         self.clock += 1;
         self.report = Report { peak_gpu_bytes: self.report.peak_gpu_bytes, ..Report::default() };
-        self.lights.retain(|light| light.complete);
+        self.unwanted = self.lights.extract_if(.., |light| !light.complete).collect();
         let mut steps = Vec::new();
         self.place_volume(volume, bricks, &mut steps)?;
         let start = Instant::now();
         let Some(gpu_volume) = &self.volume else { return Err(GpuError::Refused("no volume".to_owned())) };
         match &mut self.tables {
-            Some(tables) => tables.refresh(&self.context, gpu_volume, &request.settings)?,
+            Some(tables) => {
+                if tables.refresh(&self.context, gpu_volume, &request.settings)? {
+                    self.recycled.forget_groups();
+                }
+            }
             tables => *tables = Some(Tables::new(&self.context, gpu_volume, &request.settings)?),
         }
         self.report.bricks_ms = milliseconds(start);
         let PlacedLights { keys, builds, collapsed, to_collapse } = self.place_all_light(&request)?;
+        if !self.unwanted.is_empty() {
+            self.unwanted.clear();
+            self.recycled.forget_groups();
+        }
+        if builds.is_empty() {
+            self.recycled.drop_sheets();
+        }
         for (at, build) in builds.iter().enumerate() {
             steps.extend(build.steps(at, options.light_parts.max(1)));
         }
@@ -250,6 +236,7 @@ impl Renderer {
         }
         if self.back.as_ref().is_none_or(|target| target.size != request.size) {
             self.back = None;
+            self.recycled.forget_groups();
             self.back = Some(Target::new(&self.context, request.size)?);
         }
         steps.extend(self.eye_steps(&request)?);
@@ -317,6 +304,7 @@ impl Renderer {
         if let Some(clock) = self.gpu_clock.as_ref().filter(|_| timed) {
             clock.start(&mut encoder);
         }
+        self.recycled.next_submission();
         self.encode(job, &step, &mut encoder)?;
         if let Some(clock) = self.gpu_clock.as_ref().filter(|_| timed) {
             clock.stop(&mut encoder);
@@ -375,6 +363,7 @@ impl Renderer {
             self.voxels = None;
             self.collapsed = None;
             self.lights.clear();
+            self.recycled.clear();
         }
         Ok(())
     }

@@ -100,14 +100,8 @@ impl LightScatter {
         let rows = 0..view.frame.size[1];
         let uniform = march_uniform(lamp, view, sheets, (slabs.start, slabs.end), rows);
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let own = sheets.march_bind_group(
-            context,
-            &pipeline,
-            &uniform,
-            table,
-            &self.distances,
-            Some(&self.deposits),
-        );
+        let own =
+            sheets.march_bind_group(gpu, &pipeline, &uniform, table, &self.distances, Some(&self.deposits));
         for k in slabs {
             if self.scatterer.is_filled(k) {
                 self.scatterer.splat(gpu, voxels, counter, k, encoder)?;
@@ -180,7 +174,7 @@ impl LightScatter {
         }
         let Gpu { context, shaders, .. } = gpu;
         let pipeline = shaders.pipeline_into("scatter_normalise.wgsl", &[], target.texture.format())?;
-        let list = listed_bricks::upload(context, bricks);
+        let list = listed_bricks::upload(gpu, bricks);
         let mut uniform = self.scatterer.uniform(0, 1.0);
         uniform.count = bricks.len() as u32;
         let uniform = context.buffer("LightScatter::normalise", &[uniform], wgpu::BufferUsages::UNIFORM);

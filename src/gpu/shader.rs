@@ -1,8 +1,10 @@
 //! Shader sources: embedded, joined by `#import "path"` (each file once), turned into pipelines.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::pipeline_cache::PipelineCache;
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
@@ -45,6 +47,14 @@ pub const SHADERS: [(&str, &str); 36] = [
     ("scatter_splat.wgsl", include_str!("../../shaders/scatter_splat.wgsl")),
 ];
 
+/// The format of the ring of sheets where single channels are stored in `format`.
+pub(super) fn ring_format(format: wgpu::TextureFormat) -> wgpu::TextureFormat {
+    match format {
+        wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rgba32Float,
+        _ => wgpu::TextureFormat::Rgba16Float,
+    }
+}
+
 /// Joins sources and makes pipelines, each once.
 #[derive(Debug, Clone)]
 pub struct ShaderLibrary {
@@ -52,12 +62,27 @@ pub struct ShaderLibrary {
     /// Replacements in the joined source; see [`Self::with_mutation`].
     mutation: Option<(String, String)>,
     pipelines: Arc<Mutex<HashMap<String, wgpu::ComputePipeline>>>,
+    cache: Option<PipelineCache>,
 }
 
 impl ShaderLibrary {
     /// An empty library for a device.
     pub fn new(context: &Context) -> Self {
-        Self { context: context.clone(), mutation: None, pipelines: Arc::default() }
+        Self { context: context.clone(), mutation: None, pipelines: Arc::default(), cache: None }
+    }
+
+    /// A library that keeps what the driver makes of its shaders in a folder, where the backend can.
+    #[must_use]
+    pub fn with_cache(context: &Context, folder: &Path) -> Self {
+        Self { cache: PipelineCache::open(context, folder), ..Self::new(context) }
+    }
+
+    /// Writes what is to be found by the next start.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn save_cache(&self) -> std::io::Result<()> {
+        self.cache.as_ref().map_or(Ok(()), PipelineCache::save)
     }
 
     /// A library that replaces a text in every shader that has it. Tests use it to prove that they
@@ -84,7 +109,14 @@ impl ShaderLibrary {
             wgpu::TextureFormat::R8Unorm => "r8unorm",
             _ => "r16float",
         };
-        Ok(joined.replace("STORAGE_FORMAT", wgsl(format)).replace("ATTENUATION_FORMAT", wgsl(attenuation)))
+        let ring = match ring_format(format) {
+            wgpu::TextureFormat::Rgba32Float => "rgba32float",
+            _ => "rgba16float",
+        };
+        Ok(joined
+            .replace("STORAGE_FORMAT", wgsl(format))
+            .replace("ATTENUATION_FORMAT", wgsl(attenuation))
+            .replace("RING_FORMAT", ring))
     }
 
     /// The pipeline of a shader with these override constants, made on first use.
@@ -130,7 +162,7 @@ impl ShaderLibrary {
                 constants,
                 zero_initialize_workgroup_memory: false,
             },
-            cache: None,
+            cache: self.cache.as_ref().map(|known| &known.cache),
         });
         if let Some(err) = pollster::block_on(scope.pop()) {
             return Err(GpuError::Refused(format!("{name}: {err}")));

@@ -56,7 +56,7 @@ impl Renderer {
                 let target = self.back.as_ref().ok_or_else(out_of_date)?;
                 let output = &job.request.settings.output;
                 let how = (job.transparent, job.exposure);
-                display(&self.context, &self.shaders, output, how, target, encoder)
+                display((&self.context, &self.recycled), &self.shaders, output, how, target, encoder)
             }
         }
     }
@@ -64,7 +64,13 @@ impl Renderer {
     /// What all passes over the volume work with.
     pub(super) fn gpu(&self) -> Result<(Gpu<'_>, &Tables), GpuError> {
         let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else { return Err(out_of_date()) };
-        let gpu = Gpu { context: &self.context, shaders: &self.shaders, volume, nothing: &self.nothing };
+        let gpu = Gpu {
+            context: &self.context,
+            shaders: &self.shaders,
+            volume,
+            nothing: &self.nothing,
+            recycled: &self.recycled,
+        };
         Ok((gpu, tables))
     }
 
@@ -90,7 +96,7 @@ impl Renderer {
                 light.light_up(gpu, &build.around, encoder)?;
             }
             let reach = if self.options.leaping { i32::from(build.reach) } else { EVERYWHERE };
-            let mut sheets = Sheets::new(&self.context, geometry, chunk, reach)?;
+            let mut sheets = Sheets::new(&self.context, &self.recycled, geometry, chunk, reach)?;
             sheets.dark = self.options.dark;
             // A volume as pictures have it serves them, too.
             sheets.preview = self.options.preview && light.key.resolution() != settings.shadows.resolution;
@@ -161,10 +167,14 @@ impl Renderer {
                 backproject(gpu, shadows, geometry, current, light, slabs, encoder)?;
             }
         }
+        if ends_view {
+            if let Some((sheets, _)) = build.current.take() {
+                self.recycled.leave_sheets(sheets);
+            }
+            build.scatter = None;
+        }
         if ends_view && view + 1 == build.views.len() {
             self.lights[at].complete = true;
-            build.current = None;
-            build.scatter = None;
         }
         Ok(())
     }

@@ -155,21 +155,22 @@ impl Tables {
         self.eye.shows_nothing() || self.lighting.shows_nothing()
     }
 
-    /// Brings the tables up to date with changed settings.
+    /// Brings the tables up to date with changed settings. Whether there was anything to do.
     pub(super) fn refresh(
         &mut self,
         context: &Context,
         volume: &GpuVolume,
         settings: &Settings,
-    ) -> Result<(), GpuError> {
+    ) -> Result<bool, GpuError> {
         let range = volume.volume.value_range();
         let eye = settings.baked_eye(range, &volume.scene);
         let lighting = settings.baked_lighting(range, &volume.scene);
         let bounded = settings.cells_are_bounds();
-        if eye != self.eye.baked || lighting != self.lighting.baked || bounded != self.bounded {
+        let is_stale = eye != self.eye.baked || lighting != self.lighting.baked || bounded != self.bounded;
+        if is_stale {
             *self = Self::after(Some(self), context, volume, settings)?;
         }
-        Ok(())
+        Ok(is_stale)
     }
 }
 

@@ -180,6 +180,9 @@ pub struct Backprojection {
     pub end: u32,
     pub layers: u32,
     pub bricks: u32,
+    pub ring_scale: [f32; 2],
+    pub pad0: f32,
+    pub pad1: f32,
 }
 
 /// `light_raycast.wgsl`.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use half::f16;
 
-use super::pass;
+use super::recycled::Recycled;
 use super::uniforms::Grid;
 use super::{Context, GpuError};
 use super::{gradients, prefilter};
@@ -29,6 +29,64 @@ pub(super) struct Gpu<'a> {
     pub volume: &'a GpuVolume,
     /// Bound where a light has no volume.
     pub nothing: &'a wgpu::TextureView,
+    pub recycled: &'a Recycled,
+}
+
+impl Gpu<'_> {
+    /// A uniform for what is being recorded.
+    pub(super) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
+        self.recycled.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// A list for what is being recorded; the buffer may be longer.
+    pub(super) fn list<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
+        self.recycled.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Binds resources to a group of a pipeline.
+    pub(super) fn bind(
+        &self,
+        label: &str,
+        pipeline: &wgpu::ComputePipeline,
+        group: u32,
+        entries: &[wgpu::BindGroupEntry<'_>],
+    ) -> wgpu::BindGroup {
+        self.recycled.bind(self.context, label, pipeline, group, entries)
+    }
+
+    /// Bind group 1 of passes that look at the pyramid alone.
+    pub(super) fn bind_pyramid(&self, pipeline: &wgpu::ComputePipeline) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(0));
+        self.bind(
+            "Volume::pyramid_bind_group",
+            pipeline,
+            1,
+            &[
+                entry(0, grid.as_entire_binding()),
+                entry(2, wgpu::BindingResource::TextureView(&volume.pyramid_view)),
+                entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
+            ],
+        )
+    }
+
+    /// Bind group 1 of the passes that sample density.
+    pub(super) fn bind_volume(&self, pipeline: &wgpu::ComputePipeline, dilation: i32) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(dilation));
+        self.bind(
+            "Volume::bind_group",
+            pipeline,
+            1,
+            &[
+                entry(0, grid.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&volume.density_view)),
+                entry(2, wgpu::BindingResource::TextureView(&volume.pyramid_view)),
+                entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
+                entry(4, wgpu::BindingResource::Sampler(&volume.nearest)),
+            ],
+        )
+    }
 }
 
 /// A volume's textures and bricks.
@@ -48,6 +106,8 @@ pub(super) struct GpuVolume {
     pub filled_levels: Vec<Vec<u32>>,
     /// Its gradients, while memory allows.
     pub gradients: Option<wgpu::Texture>,
+    /// The same.
+    pub gradients_view: Option<wgpu::TextureView>,
     pub clamped: wgpu::Sampler,
     nearest: wgpu::Sampler,
     unorm: bool,
@@ -103,6 +163,8 @@ impl GpuVolume {
             cell_scale: reciprocal(bricks.dims.map(|n| n * BRICK_EDGE / CELL_EDGE)),
             pad2: 0.0,
         };
+        let gradients = gradients::texture(context, &pyramid);
+        let whole = wgpu::TextureViewDescriptor::default();
         Ok(Self {
             volume: Arc::clone(volume),
             bricks: Arc::clone(bricks),
@@ -110,7 +172,8 @@ impl GpuVolume {
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
             filled_levels: prefilter::filled_levels(bricks, &pyramid),
-            gradients: gradients::texture(context, &pyramid),
+            gradients_view: gradients.as_ref().map(|texture| texture.create_view(&whole)),
+            gradients,
             pyramid_view: pyramid.create_view(&wgpu::TextureViewDescriptor::default()),
             pyramid,
             clamped: context.sampler("Volume::clamped"),
@@ -175,49 +238,6 @@ impl GpuVolume {
         // The coarser levels of the pyramid add a seventh.
         let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
         2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + gradients
-    }
-
-    /// Bind group 1 of passes that look at the pyramid alone.
-    pub(super) fn pyramid_bind_group(
-        &self,
-        context: &Context,
-        pipeline: &wgpu::ComputePipeline,
-    ) -> wgpu::BindGroup {
-        let grid = context.buffer("Volume::grid", &[self.grid(0)], wgpu::BufferUsages::UNIFORM);
-        pass::bind(
-            context,
-            "Volume::pyramid_bind_group",
-            pipeline,
-            1,
-            &[
-                entry(0, grid.as_entire_binding()),
-                entry(2, wgpu::BindingResource::TextureView(&self.pyramid_view)),
-                entry(3, wgpu::BindingResource::Sampler(&self.clamped)),
-            ],
-        )
-    }
-
-    /// Bind group 1 of the passes that sample density.
-    pub(super) fn bind_group(
-        &self,
-        context: &Context,
-        pipeline: &wgpu::ComputePipeline,
-        dilation: i32,
-    ) -> wgpu::BindGroup {
-        let grid = context.buffer("Volume::grid", &[self.grid(dilation)], wgpu::BufferUsages::UNIFORM);
-        pass::bind(
-            context,
-            "Volume::bind_group",
-            pipeline,
-            1,
-            &[
-                entry(0, grid.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(&self.density_view)),
-                entry(2, wgpu::BindingResource::TextureView(&self.pyramid_view)),
-                entry(3, wgpu::BindingResource::Sampler(&self.clamped)),
-                entry(4, wgpu::BindingResource::Sampler(&self.nearest)),
-            ],
-        )
     }
 }
 

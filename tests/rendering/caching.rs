@@ -41,6 +41,30 @@ fn orbiting_a_hundred_frames_rebuilds_no_light() {
 }
 
 #[test]
+fn dragging_makes_nothing_anew() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let drag = |renderer: &mut Renderer, settings: &mut Settings, at: u32| {
+        // Back and forth, so that sheets and lists have had every size.
+        let turn = glam::DQuat::from_rotation_z(0.1 * f64::from(at % 8));
+        settings.lights[0].position = (turn * DVec3::new(1.3, -0.8, 1.7)).into();
+        settings.lights[1].position = (turn * DVec3::new(-1.8, 1.5, 2.0)).into();
+        settings.camera.orbit(3.6, 0.3);
+        render(renderer, &loaded, settings, SIZE);
+    };
+    for at in 0..24 {
+        drag(&mut renderer, &mut settings, at);
+    }
+    let (made, bytes) = (renderer.made(), renderer.gpu_bytes());
+    assert!(made > 10, "the count must see what was made: {made}");
+    for at in 0..24 {
+        drag(&mut renderer, &mut settings, at);
+    }
+    assert_eq!(renderer.made(), made, "buffers, bind groups and sheets");
+    assert_eq!(renderer.gpu_bytes(), bytes);
+}
+
+#[test]
 fn live_controls_rebuild_no_light_and_change_the_picture() {
     let (loaded, settings) = (loaded(), three_lights());
     let mut renderer = Renderer::new(&context()).expect("a renderer");

@@ -1,0 +1,50 @@
+//! What a renderer keeps and what it has done, in numbers.
+
+use super::display::Target;
+use super::light_collapse::CollapsedLight;
+use super::light_volume::LightVolume;
+use super::readback::read_word;
+use super::scatter_voxels::ScatterVoxels;
+use super::volume::GpuVolume;
+use super::{GpuError, Renderer};
+
+impl Renderer {
+    /// How often the light volume of each light of the settings was filled; counted where its first
+    /// march is submitted.
+    pub fn light_rebuilds(&self) -> &[u64] {
+        &self.rebuilds
+    }
+
+    /// Light volumes that are complete and kept.
+    pub fn cached_light_volumes(&self) -> usize {
+        self.lights.iter().filter(|light| light.complete).count()
+    }
+
+    /// Bytes of our textures on the GPU now.
+    pub fn gpu_bytes(&self) -> u64 {
+        let targets = self.front.iter().chain(&self.back).map(Target::bytes).sum::<u64>();
+        let lights = self.light_bytes();
+        let voxels = self.voxels.as_ref().map_or(0, ScatterVoxels::bytes) + self.recycled.bytes();
+        targets + lights + voxels + self.volume.as_ref().map_or(0, GpuVolume::bytes)
+    }
+
+    /// Bytes of light volumes, of which pictures look up those of their lights, or one for all.
+    pub fn light_bytes(&self) -> u64 {
+        let collapsed = self.collapsed.as_ref().map_or(0, CollapsedLight::bytes);
+        collapsed + self.lights.iter().map(LightVolume::bytes).sum::<u64>()
+    }
+
+    /// How many footprints the last picture has splatted; 0 of one that gathers. Waits for it.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    pub fn splats(&self) -> Result<u64, GpuError> {
+        self.splats.as_ref().map_or(Ok(0), |counter| read_word(&self.context, counter).map(u64::from))
+    }
+
+    /// How many buffers, bind groups and sheets were made for passes so far: while the same things are drawn
+    /// again and again, none.
+    pub fn made(&self) -> u64 {
+        self.recycled.made()
+    }
+}
