@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Camera, ControlPoint, Interpolation, Length, Light, Sampling, Settings, TransferFunction};
+use super::{Camera, ControlPoint, Interpolation, Length, Rig, Sampling, Settings, TransferFunction};
 use crate::data::{Histogram, Volume};
 
 /// Histogram bins used here: fine enough for 12-bit data whose object spans a tenth of the range.
@@ -30,7 +30,7 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
         ..Settings::default()
     };
     frame_object(&mut settings, volume);
-    settings.lights = lights(&settings.camera);
+    settings.lights = Rig::KeyAndFill.lights(&settings.camera);
     settings
 }
 
@@ -200,34 +200,6 @@ fn frame_object(settings: &mut Settings, volume: &Volume) {
         camera.distance = (camera.distance * factor).clamp(0.3, 20.0);
     }
     camera.target = target.into();
-}
-
-/// A warm key light 40° to the upper left of the viewer and a faint cool fill from the right that
-/// casts no shadow.
-fn lights(camera: &Camera) -> Vec<Light> {
-    let view = camera.scene_from_view();
-    // Length 3 lies outside the volume's half diagonal of at most √3.
-    let place = |right: f64, up: f64, back: f64| {
-        ((view.x_axis * right + view.y_axis * up + view.z_axis * back).normalize_or(DVec3::Z) * 3.0).into()
-    };
-    // cos 40° back, sin 40° shared equally between left and up.
-    let side = 40f64.to_radians().sin() / std::f64::consts::SQRT_2;
-    vec![
-        Light {
-            name: "Key".to_owned(),
-            position: place(-side, side, 40f64.to_radians().cos()),
-            color: [1.0, 0.95, 0.87],
-            ..Light::default()
-        },
-        Light {
-            name: "Fill".to_owned(),
-            position: place(0.8, 0.1, 0.6),
-            color: [0.74, 0.85, 1.0],
-            intensity: 0.18,
-            casts_shadows: false,
-            ..Light::default()
-        },
-    ]
 }
 
 #[cfg(test)]

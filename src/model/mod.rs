@@ -8,17 +8,20 @@ mod camera;
 mod length;
 mod light;
 mod preset;
+mod rig;
 mod sampling;
 mod sanitise;
 mod settings;
 mod shadows;
 mod transfer;
 mod variant;
+mod view;
 
 pub use camera::{Camera, Projection};
 pub use length::Length;
 pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
+pub use rig::Rig;
 pub use sampling::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
 pub use shadows::{Deposit, LightStorage, MAX_BIAS_VOXELS, Precision, Resolution, ShadowAlgorithm, Shadows};
@@ -26,3 +29,4 @@ pub use transfer::{
     BakedTransfer, ControlPoint, Interpolation, LUT_SIZE, MAX_OPACITY, TransferFunction, linear_from_srgb,
 };
 pub use variant::Variant;
+pub use view::StandardView;

@@ -9,6 +9,7 @@ mod cell_set;
 mod eye_frame;
 mod light_frame;
 mod occupancy;
+mod probe;
 mod reach;
 mod sheet_frame;
 mod slice_order;
@@ -20,6 +21,7 @@ pub use cell_set::CellSet;
 pub use eye_frame::eye_frame;
 pub use light_frame::{LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views};
 pub use occupancy::BrickSet;
+pub use probe::{Arrival, Probe, probe};
 pub use reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach, slab_reach,
     stretch_reach,

@@ -1,0 +1,123 @@
+//! Lights that are known to work together, placed around the viewer.
+
+use glam::DVec3;
+
+use super::{Camera, Light, LightLock};
+
+/// Distance of the lights from the middle of the volume: outside its half diagonal of at most √3.
+const DISTANCE: f64 = 3.0;
+
+/// A set of lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rig {
+    /// A warm key to the upper left, and a cool fill that casts no shadow: what a volume is opened with.
+    KeyAndFill,
+    /// Key, fill and a light from behind that draws the outline: the portrait photographer's three.
+    KeyFillBack,
+    /// One hard light from far to the side: relief.
+    ThreeQuarter,
+    /// Two lights from behind: edges shine, the front stays dark.
+    Rim,
+    /// The sun at noon.
+    FromAbove,
+    /// A lamp at the eye, which turns with it: everything seen is lit, shadows hide.
+    Headlight,
+}
+
+impl Rig {
+    /// All of them, in the order of menus.
+    pub const ALL: [Self; 6] = [
+        Self::KeyAndFill,
+        Self::KeyFillBack,
+        Self::ThreeQuarter,
+        Self::Rim,
+        Self::FromAbove,
+        Self::Headlight,
+    ];
+
+    /// What menus call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::KeyAndFill => "Key and fill",
+            Self::KeyFillBack => "Key, fill and back",
+            Self::ThreeQuarter => "From the side",
+            Self::Rim => "Rim",
+            Self::FromAbove => "From above",
+            Self::Headlight => "Headlight",
+        }
+    }
+
+    /// Its lights, as seen from a camera. All but the headlight then keep their places in the scene.
+    pub fn lights(self, camera: &Camera) -> Vec<Light> {
+        let view = camera.scene_from_view();
+        // Right, up and towards the eye.
+        let at = |place: [f64; 3]| (view * (DVec3::from(place).normalize_or(DVec3::Z) * DISTANCE)).into();
+        // 40° from the line of sight, shared equally between left and up.
+        let side = 40f64.to_radians().sin() / std::f64::consts::SQRT_2;
+        let key = Light {
+            name: "Key".to_owned(),
+            position: at([-side, side, 40f64.to_radians().cos()]),
+            color: [1.0, 0.95, 0.87],
+            ..Light::default()
+        };
+        let fill = Light {
+            name: "Fill".to_owned(),
+            position: at([0.8, 0.1, 0.6]),
+            color: [0.74, 0.85, 1.0],
+            intensity: 0.18,
+            casts_shadows: false,
+            ..Light::default()
+        };
+        let named = |name: &str, position, intensity| Light {
+            name: name.to_owned(),
+            position,
+            intensity,
+            ..Light::default()
+        };
+        match self {
+            Self::KeyAndFill => vec![key, fill],
+            Self::KeyFillBack => {
+                let back = Light { color: [0.86, 0.92, 1.0], ..named("Back", at([0.55, 0.75, -0.8]), 0.7) };
+                vec![Light { intensity: 0.9, ..key }, fill, back]
+            }
+            Self::ThreeQuarter => {
+                vec![named("Side", at([-0.9, 0.35, 0.3]), 1.1), Light { intensity: 0.1, ..fill }]
+            }
+            Self::Rim => vec![
+                named("Rim left", at([-0.8, 0.35, -0.6]), 1.0),
+                Light { color: [0.8, 0.88, 1.0], ..named("Rim right", at([0.85, 0.2, -0.6]), 0.8) },
+                Light { intensity: 0.1, ..fill },
+            ],
+            // Down in the scene, whatever the view; a little towards the viewer, so that fronts are not black.
+            Self::FromAbove => {
+                let towards = view.z_axis.reject_from(DVec3::Z).normalize_or(DVec3::ZERO);
+                let place = (DVec3::Z + 0.35 * towards).normalize_or(DVec3::Z) * DISTANCE;
+                vec![named("Sun", place.into(), 1.1), Light { intensity: 0.15, ..fill }]
+            }
+            Self::Headlight => {
+                vec![Light { lock: LightLock::Camera, ..named("Headlight", [0.0, 0.0, DISTANCE], 1.0) }]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rigs_follow_the_camera_they_were_made_for() {
+        let (front, side) = (Camera::default(), Camera { azimuth_deg: 40.0, ..Camera::default() });
+        for rig in Rig::ALL {
+            let lights = [rig.lights(&front), rig.lights(&side)];
+            assert!(!lights[0].is_empty());
+            for (a, b) in lights[0].iter().zip(&lights[1]) {
+                let seen = |light: &Light, camera: &Camera| {
+                    camera.scene_from_view().transpose() * DVec3::from(light.in_world(camera).position)
+                };
+                assert!((seen(a, &front) - seen(b, &side)).length() < 1e-9, "{rig:?} {}", a.name);
+                assert!((DVec3::from(a.position).length() - DISTANCE).abs() < 1e-9, "{rig:?} {}", a.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! What is at a point of the picture, and what light gets there: answers for a pointer, on the CPU, by
+//! single rays.
+
+use glam::DVec3;
+
+use crate::data::Volume;
+use crate::math::SceneSpace;
+use crate::model::{BakedTransfer, LightKind, Settings};
+
+/// Share of the light to the eye that must have been met for something to count as seen: half.
+const SEEN: f64 = 0.5;
+
+/// Less than this share of a ray's light met: nothing is seen.
+const NOTHING: f64 = 0.03;
+
+/// Voxel edges (the smallest) per step of a ray.
+const STEP: f64 = 0.5;
+
+/// What is seen somewhere in the picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    /// In scene space.
+    pub point: DVec3,
+    /// In index space.
+    pub index: DVec3,
+    /// In millimetres, as the file places it.
+    pub world_mm: DVec3,
+    /// The value there, in data units.
+    pub value: f64,
+    /// Opacity there, per opacity unit of the eye's transfer function.
+    pub opacity: f64,
+    /// What gets there, for every light of the settings.
+    pub lights: Vec<Arrival>,
+}
+
+/// What of a light arrives at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// Share that material lets through, 0 … 1; 1 for lights that cast no shadows.
+    pub transmittance: f64,
+    /// Share that the hood lets through.
+    pub hood: f64,
+    /// Cosine between the surface's normal and the direction to the light; `None` where nothing is a surface.
+    pub facing: Option<f64>,
+}
+
+/// A volume and what makes it visible, for single rays.
+struct Rays<'a> {
+    volume: &'a Volume,
+    scene: SceneSpace,
+}
+
+/// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
+pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
+    let rays = Rays { volume, scene: volume.scene() };
+    let scene = &rays.scene;
+    let eye = settings.baked_eye(volume.value_range(), scene);
+    let point = rays.first_seen(&eye, origin, direction)?;
+    let index = scene.index_from_scene.transform_point3(point);
+    let value = volume.value_of(rays.density(index));
+    let lighting = settings.baked_lighting(volume.value_range(), scene);
+    let gradient = rays.gradient(point);
+    let normal = -gradient.normalize_or_zero();
+    let lights = settings
+        .lights
+        .iter()
+        .map(|light| {
+            let light = light.in_world(&settings.camera);
+            let position = DVec3::from(light.position);
+            let (towards, distance) = match light.kind {
+                LightKind::Parallel => (light.direction(), f64::INFINITY),
+                LightKind::Perspective => {
+                    ((position - point).normalize_or(DVec3::Z), (position - point).length())
+                }
+            };
+            let cone = light.cone();
+            let depth = if light.needs_volume() && settings.shadows.algorithm.is_on() {
+                rays.optical_depth(&lighting, point, towards, distance) * light.density_scale
+            } else {
+                0.0
+            };
+            Arrival {
+                transmittance: (-depth).exp(),
+                hood: cone.share(cone.axis.dot(-towards)),
+                facing: (normal != DVec3::ZERO).then(|| normal.dot(towards)),
+            }
+        })
+        .collect();
+    Some(Probe {
+        point,
+        index,
+        world_mm: volume.world_from_index().transform_point3(index),
+        value,
+        opacity: settings.transfer.opacity_at(value),
+        lights,
+    })
+}
+
+impl Rays<'_> {
+    fn step(&self) -> f64 {
+        STEP * self.scene.smallest_edge()
+    }
+
+    /// Where a ray enters the grid and where it leaves it, from its origin on.
+    fn span(&self, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+        let origin = self.scene.index_from_scene.transform_point3(origin);
+        let direction = self.scene.index_from_scene.transform_vector3(direction);
+        let dims = DVec3::from(self.volume.dims().map(|n| n as f64));
+        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+        for axis in 0..3 {
+            let (low, high) = (-0.5, dims[axis] - 0.5);
+            if direction[axis].abs() < 1e-12 {
+                if origin[axis] < low || origin[axis] > high {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((low - origin[axis]) / direction[axis], (high - origin[axis]) / direction[axis]);
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        (enter < leave).then_some((enter, leave))
+    }
+
+    /// Where half of what a ray meets has been met.
+    fn first_seen(&self, table: &BakedTransfer, origin: DVec3, direction: DVec3) -> Option<DVec3> {
+        let (enter, leave) = self.span(origin, direction)?;
+        let step = self.step();
+        let mut met = Vec::new();
+        let mut transmittance = 1.0;
+        let mut at = enter + 0.5 * step;
+        while at < leave && transmittance > 0.01 {
+            let tau = self.extinction(table, origin + direction * at) * step;
+            transmittance *= (-tau).exp();
+            met.push((at, 1.0 - transmittance));
+            at += step;
+        }
+        let all = 1.0 - transmittance;
+        if all < NOTHING {
+            return None;
+        }
+        let (at, _) = met.into_iter().find(|&(_, opacity)| opacity >= SEEN * all)?;
+        Some(origin + direction * at)
+    }
+
+    /// ∫ extinction from a step beyond a point towards a light: what is seen does not shade itself.
+    fn optical_depth(&self, table: &BakedTransfer, point: DVec3, towards: DVec3, distance: f64) -> f64 {
+        let Some((_, leave)) = self.span(point, towards) else { return 0.0 };
+        let step = self.step();
+        let count = (leave.min(distance) / step).floor().max(1.0) as usize;
+        let sum: f64 =
+            (1..count).map(|k| self.extinction(table, point + towards * ((k as f64 + 0.5) * step))).sum();
+        sum * step
+    }
+
+    fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {
+        let index = self.scene.index_from_scene.transform_point3(point);
+        table.sample(self.density(index))[3]
+    }
+
+    /// The density between voxels, linearly; that of the border beyond it.
+    fn density(&self, index: DVec3) -> f64 {
+        let dims = self.volume.dims();
+        let last = DVec3::from(dims.map(|n| (n - 1) as f64));
+        let at = index.clamp(DVec3::ZERO, last);
+        let low = at.floor();
+        let f = at - low;
+        let voxel = |side: usize| {
+            let place = |axis: usize| {
+                let far = side >> axis & 1;
+                (low[axis] as usize + far).min(dims[axis] - 1)
+            };
+            let weight: f64 =
+                (0..3).map(|axis| if side >> axis & 1 == 1 { f[axis] } else { 1.0 - f[axis] }).product();
+            weight * self.volume.density_of(self.volume.value(place(0), place(1), place(2)))
+        };
+        (0..8).map(voxel).sum()
+    }
+
+    /// ∇ density in scene space, by central differences over a voxel.
+    fn gradient(&self, point: DVec3) -> DVec3 {
+        let edge = self.scene.smallest_edge();
+        let at =
+            |offset: DVec3| self.density(self.scene.index_from_scene.transform_point3(point + offset * edge));
+        DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Samples;
+    use crate::model::{ControlPoint, Length, Light, TransferFunction};
+
+    /// A slab of stuff at z = 10 … 13 over a block at z = 0 … 5.
+    fn slab_over_block() -> (Volume, Settings) {
+        let n = 16;
+        let values = (0..n * n * n)
+            .map(|at| match at / (n * n) {
+                0..=5 => 1.0,
+                10..=13 => 0.5,
+                _ => 0.0_f32,
+            })
+            .collect();
+        let volume = Volume::with_spacing("layers", [n; 3], DVec3::ONE, Samples::F32(values)).unwrap();
+        let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+        let transfer = TransferFunction {
+            points: vec![point(0.4, 0.0), point(0.5, 0.3), point(1.0, 0.9)],
+            ..TransferFunction::default()
+        };
+        let settings = Settings {
+            transfer,
+            opacity_unit: Length::Voxels(1.0),
+            lights: vec![
+                Light { position: [0.0, 0.0, 3.0], ..Light::default() },
+                Light { position: [3.0, 0.0, 0.0], casts_shadows: false, ..Light::default() },
+            ],
+            ..Settings::default()
+        };
+        (volume, settings)
+    }
+
+    #[test]
+    fn the_first_thing_met_is_what_is_seen() {
+        let (volume, settings) = slab_over_block();
+        let from_below = probe(&volume, &settings, DVec3::new(0.0, 0.0, -3.0), DVec3::Z).unwrap();
+        assert!((from_below.index.z - 0.0).abs() < 1.0, "{from_below:?}");
+        assert!((from_below.value - 1.0).abs() < 1e-6);
+        let from_above = probe(&volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).unwrap();
+        assert!((9.0..14.5).contains(&from_above.index.z), "{from_above:?}");
+        assert_eq!(probe(&volume, &settings, DVec3::new(0.0, 3.0, -3.0), DVec3::Z), None, "beside it");
+        assert_eq!(
+            probe(&volume, &settings, DVec3::new(-3.0, 0.0, 0.0), DVec3::X).map(|seen| seen.index.z > 5.0),
+            None,
+            "between the layers there is nothing"
+        );
+    }
+
+    #[test]
+    fn light_is_attenuated_by_what_lies_between() {
+        let (volume, settings) = slab_over_block();
+        let seen = probe(&volume, &settings, DVec3::new(-3.0, 0.0, -0.375), DVec3::X);
+        let seen = seen.expect("the block's side");
+        // Four voxels of opacity 0.3 above: 0.7⁴, and the ramps of linear interpolation at both ends.
+        let wanted = 0.7_f64.powi(4);
+        let [above, beside] = seen.lights[..] else { panic!("two lights") };
+        assert!(above.transmittance < wanted && above.transmittance > 0.0, "{above:?}, less than {wanted}");
+        assert_eq!(beside.transmittance, 1.0, "it casts no shadows");
+        assert_eq!(above.hood, 1.0);
+    }
+}
