@@ -33,6 +33,14 @@ fn window() -> Harness<'static, App> {
     harness
 }
 
+/// The same without marks over the picture, whose bytes can be compared.
+fn bare_window() -> Harness<'static, App> {
+    let mut harness = window();
+    harness.key_press(egui::Key::G);
+    harness.run_steps(3);
+    harness
+}
+
 /// Lets frames pass until a condition holds.
 fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: impl Fn(&App) -> bool) {
     let start = Instant::now();
@@ -110,7 +118,7 @@ fn click(harness: &mut Harness<'_, App>, label: &str) {
 
 #[test]
 fn the_window_shows_what_the_renderer_makes() {
-    let mut harness = window();
+    let mut harness = bare_window();
     assert_eq!(harness.state().volume_name(), Some("chair"));
     harness.check_accessibility();
     let (shown, size) = picture(&mut harness);
@@ -119,7 +127,7 @@ fn the_window_shows_what_the_renderer_makes() {
 
 #[test]
 fn lights_and_camera_follow_the_mouse() {
-    let mut harness = window();
+    let mut harness = bare_window();
     let (before, _) = picture(&mut harness);
     let rebuilds = harness.state().light_rebuilds();
 
@@ -184,7 +192,7 @@ fn the_transfer_function_is_edited_in_its_plot() {
 
 #[test]
 fn panels_change_settings() {
-    let mut harness = window();
+    let mut harness = bare_window();
     click(&mut harness, "Perspective");
     assert_eq!(harness.state().settings().lights[0].kind, LightKind::Perspective);
     click(&mut harness, "Parallel");
@@ -217,17 +225,173 @@ fn exports_are_what_the_renderer_makes() {
     let ctx = harness.ctx.clone();
     harness.state_mut().export(&exported, [200, 150], &ctx);
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
-    export_png(&render(&harness, [200, 150]), false, &expected).unwrap();
-    assert!(std::fs::read(&exported).unwrap() == std::fs::read(&expected).unwrap());
+    export_png(&render(&harness, [200, 150]), false, None, &expected).unwrap();
+    let pixels = |path: &PathBuf| image::open(path).expect("a picture").to_rgba8().into_raw();
+    assert!(pixels(&exported) == pixels(&expected));
 
     // The open export window, with its box ticked.
     click(&mut harness, "Transparent background");
     click(&mut harness, "Export");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let options = RenderOptions { transparent: true, ..RenderOptions::default() };
-    export_png(&render_with(&harness, [200, 150], &options), true, &expected).unwrap();
-    assert!(std::fs::read(&exported).unwrap() == std::fs::read(&expected).unwrap());
+    export_png(&render_with(&harness, [200, 150], &options), true, None, &expected).unwrap();
+    assert!(pixels(&exported) == pixels(&expected));
     assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn a_dropped_picture_brings_its_look_back() {
+    let mut harness = bare_window();
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) = (folder.path().join("first.png"), folder.path().join("second.png"));
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&first, [120, 90], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let before = harness.state().settings().clone();
+
+    // Another look at another volume.
+    harness.state_mut().open("builtin:sphere:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere"));
+    wait_until_idle(&mut harness);
+    assert_ne!(harness.state().settings(), &before);
+
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(first.clone())));
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair"));
+    wait_until_idle(&mut harness);
+    assert_eq!(harness.state().settings(), &before);
+    harness.state_mut().export(&second, [120, 90], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    assert!(std::fs::read(&first).unwrap() == std::fs::read(&second).unwrap(), "all bytes, record included");
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn lights_are_set_by_the_keyboard() {
+    let mut harness = window();
+    let lights = |harness: &Harness<'_, App>| harness.state().settings().lights.clone();
+    let before = lights(&harness);
+    let press = |harness: &mut Harness<'_, App>, key| {
+        harness.key_press(key);
+        harness.run_steps(2);
+    };
+    press(&mut harness, egui::Key::ArrowRight);
+    let turned = lights(&harness);
+    let angle = glam::DVec3::from(before[0].position).angle_between(turned[0].position.into()).to_degrees();
+    assert!(angle > 0.1 && angle < 1.001, "one degree about the axis, {angle} between directions");
+    assert_eq!(turned[1], before[1]);
+    harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::ArrowUp);
+    harness.run_steps(2);
+    let far = lights(&harness);
+    let angle = glam::DVec3::from(turned[0].position).angle_between(far[0].position.into()).to_degrees();
+    assert!(angle > 2.0, "ten degrees about the axis, {angle} between directions");
+
+    press(&mut harness, egui::Key::Period);
+    press(&mut harness, egui::Key::CloseBracket);
+    assert!(lights(&harness)[1].intensity > before[1].intensity, "the fill is selected and brighter");
+    press(&mut harness, egui::Key::S);
+    assert_eq!(lights(&harness).iter().map(|light| light.on).collect::<Vec<_>>(), [false, true]);
+    press(&mut harness, egui::Key::M);
+    assert!(!lights(&harness)[1].on);
+
+    // The chip selects, as its handle would.
+    click(&mut harness, "Light Key, off");
+    press(&mut harness, egui::Key::M);
+    assert!(lights(&harness)[0].on);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn views_are_found_kept_and_found_again() {
+    let mut harness = window();
+    let camera = |harness: &Harness<'_, App>| harness.state().settings().camera.clone();
+    let first = camera(&harness);
+    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), egui::Key::Num4);
+    harness.run_steps(2);
+    for (key, azimuth_deg, elevation_deg) in
+        [(egui::Key::Num1, 270.0, 0.0), (egui::Key::Num3, 0.0, 0.0), (egui::Key::Num7, 270.0, 90.0)]
+    {
+        harness.key_press(key);
+        harness.run_steps(2);
+        let seen = camera(&harness);
+        assert_eq!((seen.azimuth_deg, seen.elevation_deg), (azimuth_deg, elevation_deg));
+    }
+    harness.key_press(egui::Key::Num5);
+    harness.run_steps(2);
+    assert_ne!(camera(&harness).projection, first.projection);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Num4);
+    harness.run_steps(2);
+    assert_eq!(camera(&harness), first);
+
+    // The pointer stays on what it is on while the wheel brings it nearer.
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    harness.hover_at(rect.center() + vec2(60.0, 40.0));
+    harness.step();
+    let scroll = Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        source: egui::MouseWheelSource::Wheel,
+        delta: vec2(0.0, 80.0),
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(scroll);
+    harness.run_steps(6);
+    let nearer = camera(&harness);
+    assert!(nearer.distance < first.distance && nearer.target != first.target, "{nearer:?}");
+    harness.key_press(egui::Key::F);
+    harness.run_steps(2);
+    assert_eq!(camera(&harness), first, "all of it, from the same side");
+
+    // A double click makes what is there the middle.
+    let at = rect.center() + vec2(0.0, 30.0);
+    harness.hover_at(at);
+    harness.step();
+    for pressed in [true, false, true, false] {
+        harness.event(Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.step();
+    }
+    assert_ne!(camera(&harness).target, first.target, "there is something there");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn commands_are_found_by_name() {
+    let mut harness = window();
+    let lights = harness.state().settings().lights.len();
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+    harness.run_steps(3);
+    harness.event(Event::Text("key fill back".to_owned()));
+    harness.run_steps(3);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings().lights.len(), lights + 1, "three lights instead of two");
+    assert!(harness.query_by_label("Find a command").is_none(), "it has closed");
+    wait_until_idle(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings().lights.len(), lights);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn the_probe_says_what_light_arrives() {
+    let mut harness = bare_window();
+    let (before, _) = picture(&mut harness);
+    harness.key_press(egui::Key::I);
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    harness.hover_at(rect.center());
+    harness.run_steps(3);
+    let shown = harness.render().expect("a picture of the window");
+    harness.key_press(egui::Key::I);
+    harness.run_steps(3);
+    let hidden = harness.render().expect("a picture of the window");
+    assert!(shown.as_raw() != hidden.as_raw(), "the answer is painted over the picture");
+    let (after, _) = picture(&mut harness);
+    assert!(before == after, "and gone again");
 }
 
 /// A file that the mouse has brought.
@@ -271,7 +435,7 @@ fn a_missing_file_leaves_the_volume_alone() {
 
 #[test]
 fn two_looks_share_the_picture() {
-    let mut harness = window();
+    let mut harness = bare_window();
     let (rect, size) = harness.state().viewport_rect().expect("a picture");
     let (before, _) = picture(&mut harness);
     let fills = harness.state().light_rebuilds();

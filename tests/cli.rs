@@ -1,6 +1,6 @@
 //! The command line as scripts see it: exit codes, messages, and what is written and what is not.
 //!
-//! Exit codes: 0 ok, 2 usage, 3 bad input, 4 no usable graphics adapter, 5 out of memory or over a
+//! Exit codes: 0 ok, 1 a check that does not hold, 2 usage, 3 bad input, 4 no usable graphics adapter, 5 out of memory or over a
 //! limit, 6 input or output.
 
 use std::fs;
@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use chiaroscuro::gpu::{Picture, export_png, read_record};
 use serde_json::Value;
 
 /// Longest that any command may take here; most take well under a second.
@@ -665,6 +666,45 @@ fn unknown_names_in_a_preset_are_warnings() {
 }
 
 #[test]
+fn pictures_can_be_made_again_from_themselves() {
+    let folder = Folder::new();
+    folder.write("x_8x8x8_uint8.raw", small_ball());
+    folder.succeed("render x_8x8x8_uint8.raw -o shot.png --size 48x36 --transparent --set shadows.gain=1.3");
+    assert!(folder.succeed("replay shot.png --check").contains("identical"));
+    folder.succeed("replay shot.png -o again.png");
+    assert!(folder.read("again.png") == folder.read("shot.png"), "all bytes, the record included");
+
+    // Another look is noticed, and only a failure when that was asked for.
+    let text = read_record(&folder.path("shot.png")).expect("a picture").expect("a record");
+    let changed = text.replace("\"gain\": 1.3", "\"gain\": 0.4");
+    assert_ne!(changed, text);
+    let pixels = image::open(folder.path("shot.png")).expect("a picture").to_rgba8().into_raw();
+    let picture = Picture { size: [48, 36], light: Vec::new(), shown: pixels };
+    export_png(&picture, true, Some(&changed), &folder.path("changed.png")).expect("written");
+    assert!(folder.succeed("replay changed.png").contains("different"));
+    let outcome = folder.run("replay changed.png --check");
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.stderr.contains("RMSE"), "{outcome:?}");
+
+    // Another volume, a moved one, and pictures that carry nothing.
+    folder.write(
+        "y_8x8x8_uint8.raw",
+        vec![7; 512].iter().zip(0..).map(|(a, b): (&u8, i32)| a ^ b as u8).collect::<Vec<_>>(),
+    );
+    let outcome = folder.run("replay shot.png --volume y_8x8x8_uint8.raw");
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    assert!(outcome.stderr.contains("another volume"), "{outcome:?}");
+    std::fs::rename(folder.path("x_8x8x8_uint8.raw"), folder.path("z_8x8x8_uint8.raw")).expect("moved");
+    assert_ne!(folder.run("replay shot.png").code, Some(0));
+    assert!(folder.succeed("replay shot.png --check --volume z_8x8x8_uint8.raw").contains("identical"));
+    export_png(&picture, true, None, &folder.path("plain.png")).expect("written");
+    let outcome = folder.run("replay plain.png");
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    assert!(outcome.stderr.contains("carries no settings"), "{outcome:?}");
+    assert_eq!(folder.run("replay nothing.png").code, Some(6));
+}
+
+#[test]
 fn raw_files_say_their_format_in_the_name_or_in_options() {
     let folder = Folder::new();
     folder.write("x_8x8x8_uint8.raw", small_ball());
@@ -674,7 +714,8 @@ fn raw_files_say_their_format_in_the_name_or_in_options() {
     let render = |file: &str, out: &str| {
         folder.succeed(&format!("render {file} -o {out} --size 32x24"));
         assert_shows_something(&folder.path(out), [32, 24]);
-        folder.read(out)
+        // The pixels: beside them, a picture says of which file it is.
+        image::open(folder.path(out)).expect("a picture").to_rgba8().into_raw()
     };
     let named = render("x_8x8x8_uint8.raw", "named.png");
     assert!(named == render("x.bin --dims 8x8x8 --type uint8", "options.png"));

@@ -2,11 +2,15 @@
 
 use eframe::egui::{self, Rect, Role, Sense, Shape, WidgetInfo, pos2};
 
+use super::commands::Command;
 use super::compare::Compare;
 use super::light_handles::LightHandles;
-use super::orbit;
-use super::viewport::Viewport;
+use super::light_probe::LightProbe;
+use super::marks::Marks;
+use super::viewport::{Facts, Viewport};
+use super::{light_chips, light_probe, orbit, theme};
 use crate::gpu::GpuError;
+use crate::math::SceneSpace;
 use crate::model::Settings;
 
 /// The picture's rectangle in points and its size in physical pixels, on the pixel grid.
@@ -48,28 +52,50 @@ pub(super) struct Stage<'a> {
     pub selected_light: &'a mut usize,
     /// Two looks in one picture.
     pub compare: &'a mut Compare,
-    /// Of the open volume, in scene units; `None` without a volume.
-    pub support_radius: Option<f64>,
+    /// Chips of the lights, box, scale bar and cube.
+    pub marks: Marks,
+    /// What is under the pointer.
+    pub probe: &'a mut LightProbe,
+    /// Of the open volume, and whether it is a body that knows its sides; `None` without one.
+    pub scene: Option<(SceneSpace, bool)>,
+    /// What is known of the renderer's work.
+    pub facts: &'a Facts,
+    /// What the user asks for.
+    pub commands: &'a mut Vec<Command>,
 }
 
 /// Shows the picture and everything that is done with the mouse on it.
 pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), GpuError>) {
-    let Stage { settings, viewport, handles, selected_light, compare, support_radius } = stage;
+    let Stage { settings, viewport, handles, selected_light, compare, marks, probe, scene, facts, commands } =
+        stage;
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
     // Where no picture is, the window's clear colour is seen: filling costs a software driver 15 ms.
-    let Some(support_radius) = support_radius else { return (canvas, Ok(())) };
-    orbit::navigate(
-        ui,
-        &response,
-        &mut settings.camera,
-        f64::from(canvas.rect.height()),
-        !handles.takes_wheel,
-    );
+    let Some((scene, is_anatomical)) = scene else { return (canvas, Ok(())) };
+    orbit::navigate(ui, &response, settings, *selected_light, !handles.takes_wheel);
+    if response.double_clicked()
+        && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())
+        && let Some(found) = light_probe::seen_at(&volume, settings, canvas.rect, at)
+    {
+        settings.camera.turn_about(found.point);
+    }
     // Painted first, filled in when the lights have been moved: no frame of delay.
     let picture = ui.painter().add(Shape::Noop);
-    handles.show(ui, canvas.rect, settings, support_radius, selected_light);
+    let moving =
+        ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
+    marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
+    handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
+    if let Some(view) = marks.show(ui, canvas.rect, &settings.camera, (&scene, is_anatomical)) {
+        commands.push(Command::LookFrom(view));
+    }
+    if marks.on {
+        light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
+    }
+    if let Some((volume, _)) = viewport.volume().filter(|_| probe.on) {
+        let pointer = response.hover_pos().filter(|_| !response.dragged());
+        probe.show(ui, canvas.rect, settings, &volume, pointer);
+    }
     settings.sanitise();
     let result = if canvas.size.contains(&0) {
         Ok(())

@@ -1,6 +1,10 @@
 //! What menus, keys and buttons ask for. Collected during a frame, carried out at its end.
 
-use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
+use std::borrow::Cow;
+
+use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
+
+use crate::model::{Rig, StandardView};
 
 /// Something the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +17,8 @@ pub(super) enum Command {
     Open(String),
     /// Stop opening.
     CancelOpening,
+    /// The volume and the look with which the run before ended.
+    GoOn,
     /// Save the settings where they belong, or ask where.
     SaveSettings,
     /// Ask for settings and apply them.
@@ -27,8 +33,40 @@ pub(super) enum Command {
     Redo,
     /// The camera as it was when the volume was opened.
     ResetView,
+    /// All of the volume, from where the eye is.
+    FrameAll,
+    /// From a side.
+    LookFrom(StandardView),
+    /// Perspective or orthographic.
+    ToggleProjection,
+    /// Keep the view under a digit …
+    StoreView(u8),
+    /// … and look that way again.
+    RecallView(u8),
+    /// The window fills the screen, or not.
+    ToggleFullScreen,
+    /// Show or hide the chips of the lights, box, scale bar and cube.
+    ToggleMarks,
+    /// Say what is under the pointer, and what light gets there.
+    ToggleProbe,
+    /// Find a command by its name.
+    ShowPalette,
     /// Add a light.
     AddLight,
+    /// Other lights instead of those that are there.
+    UseRig(Rig),
+    /// The light after the selected one …
+    NextLight,
+    /// … or before it.
+    PreviousLight,
+    /// Only the selected light shines, or all.
+    Solo,
+    /// The selected light shines or not.
+    Mute,
+    /// The selected light is brighter …
+    Brighter,
+    /// … or dimmer.
+    Dimmer,
     /// The automatic transfer function.
     AutomaticTransfer,
     /// Measure the brightness and set the balance.
@@ -49,32 +87,125 @@ pub(super) enum Command {
     ShowAbout,
 }
 
+const fn plain(key: Key, command: Command) -> (KeyboardShortcut, Command) {
+    (KeyboardShortcut::new(Modifiers::NONE, key), command)
+}
+
+const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
+    (KeyboardShortcut::new(Modifiers::COMMAND, key), command)
+}
+
 /// A command with its key, as help shows it.
-pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 13] = [
-    (KeyboardShortcut::new(Modifiers::COMMAND, Key::O), Command::OpenDialog),
-    (KeyboardShortcut::new(Modifiers::COMMAND, Key::L), Command::OpenPath),
-    (KeyboardShortcut::new(Modifiers::COMMAND, Key::S), Command::SaveSettings),
-    (KeyboardShortcut::new(Modifiers::COMMAND, Key::E), Command::Export),
-    (KeyboardShortcut::new(Modifiers::COMMAND, Key::Q), Command::Quit),
+pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 33] = [
+    control(Key::O, Command::OpenDialog),
+    control(Key::L, Command::OpenPath),
+    control(Key::S, Command::SaveSettings),
+    control(Key::E, Command::Export),
+    control(Key::P, Command::ShowPalette),
+    control(Key::Q, Command::Quit),
     // The longer one first: egui lets Shift pass where it is not asked for.
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), Command::Redo),
-    (KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), Command::Undo),
-    (KeyboardShortcut::new(Modifiers::NONE, Key::N), Command::ToggleSide),
-    (KeyboardShortcut::new(Modifiers::NONE, Key::H), Command::ToggleHandles),
-    (KeyboardShortcut::new(Modifiers::NONE, Key::C), Command::ToggleCompare),
-    (KeyboardShortcut::new(Modifiers::NONE, Key::R), Command::ResetView),
-    (KeyboardShortcut::new(Modifiers::NONE, Key::B), Command::Balance),
-    (KeyboardShortcut::new(Modifiers::NONE, Key::F1), Command::ShowHelp),
+    control(Key::Z, Command::Undo),
+    plain(Key::R, Command::ResetView),
+    plain(Key::F, Command::FrameAll),
+    plain(Key::Num1, Command::LookFrom(StandardView::MinusY)),
+    plain(Key::Num2, Command::LookFrom(StandardView::PlusY)),
+    plain(Key::Num3, Command::LookFrom(StandardView::PlusX)),
+    plain(Key::Num4, Command::LookFrom(StandardView::MinusX)),
+    plain(Key::Num7, Command::LookFrom(StandardView::PlusZ)),
+    plain(Key::Num8, Command::LookFrom(StandardView::MinusZ)),
+    plain(Key::Num9, Command::LookFrom(StandardView::Isometric)),
+    plain(Key::Num5, Command::ToggleProjection),
+    plain(Key::F11, Command::ToggleFullScreen),
+    plain(Key::Comma, Command::PreviousLight),
+    plain(Key::Period, Command::NextLight),
+    plain(Key::OpenBracket, Command::Dimmer),
+    plain(Key::CloseBracket, Command::Brighter),
+    plain(Key::S, Command::Solo),
+    plain(Key::M, Command::Mute),
+    plain(Key::B, Command::Balance),
+    plain(Key::I, Command::ToggleProbe),
+    plain(Key::G, Command::ToggleMarks),
+    plain(Key::H, Command::ToggleHandles),
+    plain(Key::C, Command::ToggleCompare),
+    plain(Key::N, Command::ToggleSide),
+    plain(Key::Questionmark, Command::ShowHelp),
+    plain(Key::F1, Command::ShowHelp),
 ];
+
+/// Digits under which views are kept.
+pub(super) const VIEW_SLOTS: std::ops::RangeInclusive<u8> = 1..=9;
+
+const DIGITS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
+/// Every command that can be asked for by its name.
+pub(super) fn listed() -> Vec<Command> {
+    let mut all = vec![
+        Command::OpenDialog,
+        Command::OpenPath,
+        Command::GoOn,
+        Command::SaveSettings,
+        Command::LoadSettings,
+        Command::Export,
+        Command::Undo,
+        Command::Redo,
+        Command::ResetView,
+        Command::FrameAll,
+        Command::ToggleProjection,
+        Command::ToggleFullScreen,
+        Command::ToggleMarks,
+        Command::ToggleProbe,
+        Command::AddLight,
+        Command::NextLight,
+        Command::PreviousLight,
+        Command::Solo,
+        Command::Mute,
+        Command::Brighter,
+        Command::Dimmer,
+        Command::Balance,
+        Command::AutomaticTransfer,
+        Command::ToggleSide,
+        Command::ToggleHandles,
+        Command::ToggleCompare,
+        Command::CompareWithFile,
+        Command::ShowLightVolume,
+        Command::ShowHelp,
+        Command::ShowAbout,
+        Command::Quit,
+    ];
+    all.extend(StandardView::ALL.map(Command::LookFrom));
+    all.extend(Rig::ALL.map(Command::UseRig));
+    all.extend(VIEW_SLOTS.map(Command::StoreView));
+    all.extend(VIEW_SLOTS.map(Command::RecallView));
+    all
+}
 
 impl Command {
     /// What help calls it.
-    pub(super) fn label(&self) -> &'static str {
-        match self {
+    pub(super) fn label(&self) -> Cow<'static, str> {
+        let text = match self {
+            Self::LookFrom(view) => return format!("Look: {}", view.name()).into(),
+            Self::UseRig(rig) => return format!("Lights: {}", rig.name()).into(),
+            Self::StoreView(slot) => return format!("Store view {slot}").into(),
+            Self::RecallView(slot) => return format!("Recall view {slot}").into(),
+            Self::FrameAll => "Frame all",
+            Self::ToggleProjection => "Perspective or orthographic",
+            Self::ToggleFullScreen => "Full screen",
+            Self::ToggleMarks => "Marks over the picture",
+            Self::ToggleProbe => "Why is this dark? (probe)",
+            Self::ShowPalette => "Find a command…",
+            Self::NextLight => "Next light",
+            Self::PreviousLight => "Previous light",
+            Self::Solo => "Solo the selected light",
+            Self::Mute => "Mute the selected light",
+            Self::Brighter => "Brighter light",
+            Self::Dimmer => "Dimmer light",
             Self::OpenDialog => "Open…",
             Self::OpenPath => "Open path…",
             Self::Open(_) => "Open built-in",
             Self::CancelOpening => "Cancel",
+            Self::GoOn => "Go on where you left off",
             Self::SaveSettings => "Save settings…",
             Self::LoadSettings => "Load settings…",
             Self::Export => "Export picture…",
@@ -92,20 +223,26 @@ impl Command {
             Self::CompareWithFile => "Compare with settings…",
             Self::ShowHelp => "Keys and mouse",
             Self::ShowAbout => "About Chiaroscuro",
-        }
+        };
+        text.into()
     }
 
     /// Its key, for menus.
     pub(super) fn shortcut_text(&self, ctx: &egui::Context) -> String {
-        let found = SHORTCUTS.iter().find(|(_, command)| command == self);
-        found.map_or_else(String::new, |(shortcut, _)| ctx.format_shortcut(shortcut))
+        match self {
+            Self::StoreView(slot) => return format!("Ctrl+Shift+{slot}"),
+            Self::RecallView(slot) => return format!("Ctrl+{slot}"),
+            _ => {}
+        }
+        let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
+        found.map_or_else(String::new, |(shortcut, _)| ctx.format_shortcut(&shortcut))
     }
 }
 
 /// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited.
 pub(super) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
-    let typing = ctx.egui_wants_keyboard_input()
-        && ctx.memory(egui::Memory::focused).is_some_and(|id| is_text(ctx, id));
+    let typing = is_typing(ctx);
+    commands.extend(view_slots(ctx));
     for (shortcut, command) in &SHORTCUTS {
         let plain = shortcut.modifiers == Modifiers::NONE;
         if !(typing && plain) && ctx.input_mut(|input| input.consume_shortcut(shortcut)) {
@@ -114,7 +251,52 @@ pub(super) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
     }
 }
 
+/// Whether letters go into a text field.
+pub(super) fn is_typing(ctx: &egui::Context) -> bool {
+    ctx.egui_wants_keyboard_input() && ctx.memory(egui::Memory::focused).is_some_and(|id| is_text(ctx, id))
+}
+
+/// Digits with Control, and Shift. By the place of the key: with Shift its sign is another on every keyboard.
+fn view_slots(ctx: &egui::Context) -> Vec<Command> {
+    let slot = |event: &Event| {
+        let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return None };
+        let slot = DIGITS.iter().position(|digit| *digit == physical_key.unwrap_or(*key))? as u8 + 1;
+        (modifiers.command && !modifiers.alt).then_some(if modifiers.shift {
+            Command::StoreView(slot)
+        } else {
+            Command::RecallView(slot)
+        })
+    };
+    ctx.input(|input| input.events.iter().filter_map(slot).collect())
+}
+
 /// Whether a widget is a text field that is being edited.
 fn is_text(ctx: &egui::Context, id: egui::Id) -> bool {
     egui::TextEdit::load_state(ctx, id).is_some()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_commands_share_a_key_or_a_name() {
+        for (at, (key, command)) in SHORTCUTS.iter().enumerate() {
+            for (other_key, other) in &SHORTCUTS[at + 1..] {
+                assert!(key != other_key, "{command:?} and {other:?}");
+            }
+        }
+        let mut names: Vec<_> = listed().iter().map(Command::label).collect();
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+
+    #[test]
+    fn everything_with_a_key_can_be_found_by_its_name() {
+        for (_, command) in SHORTCUTS {
+            assert!(listed().contains(&command) || command == Command::ShowPalette, "{command:?}");
+        }
+    }
 }

@@ -44,11 +44,9 @@ impl Compare {
 
     /// What is to be rendered: the look, or the left and the right one.
     pub(super) fn looks(&self, settings: &Settings) -> (Settings, Option<Settings>) {
-        if self.on {
-            (self.left.of(settings), Some(self.right.of(settings)))
-        } else {
-            (settings.clone(), None)
-        }
+        // Kept views are no part of a picture.
+        let settings = Settings { views: std::collections::BTreeMap::new(), ..settings.clone() };
+        if self.on { (self.left.of(&settings), Some(self.right.of(&settings))) } else { (settings, None) }
     }
 
     /// The picture, or two of them.

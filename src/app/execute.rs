@@ -10,9 +10,9 @@ use super::history::History;
 use super::loader::{Opened, Outcome};
 use super::volume_facts::VolumeFacts;
 use super::work::Work;
-use super::{App, export, light_slice, panels};
+use super::{App, export, light_keys, light_slice, panels};
 use crate::gpu::{GpuError, Renderer};
-use crate::model::auto;
+use crate::model::{Record, VolumeRecord, auto};
 
 impl App {
     /// Does what the user asked for.
@@ -20,7 +20,14 @@ impl App {
         match command {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
+            Command::Open(source) if files::is_record(Path::new(&source)) => {
+                self.load_settings(Path::new(&source), ctx);
+            }
             Command::Open(source) => self.open(&source, ctx),
+            Command::GoOn => match self.memory.before() {
+                Some(path) => self.load_settings(&path, ctx),
+                None => self.messages.note("There is nothing to go on with"),
+            },
             Command::CancelOpening => self.loader.cancel(),
             Command::SaveSettings => match self.session.clone() {
                 Some(path) => self.save_settings(&path),
@@ -43,6 +50,43 @@ impl App {
                 }
             }
             Command::Balance => self.start_balance(ctx),
+            Command::FrameAll => self.settings.camera.frame_as(&self.defaults.camera),
+            Command::LookFrom(view) => self.settings.camera.look_from(view),
+            Command::ToggleProjection => self.settings.camera.toggle_projection(),
+            Command::StoreView(slot) => {
+                self.settings.views.insert(slot, self.settings.camera.clone());
+                self.messages.note(format!("View {slot} is kept: Ctrl+{slot} looks that way again"));
+            }
+            Command::RecallView(slot) => match self.settings.views.get(&slot) {
+                Some(camera) => self.settings.camera = camera.clone(),
+                None => self.messages.note(format!("No view is kept as {slot}: Ctrl+Shift+{slot} keeps one")),
+            },
+            Command::ToggleFullScreen => {
+                let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
+            }
+            Command::ToggleMarks => self.marks.on ^= true,
+            Command::ToggleProbe => self.probe.on ^= true,
+            Command::ShowPalette => self.palette.open(),
+            Command::UseRig(rig) => {
+                self.settings.lights = rig.lights(&self.settings.camera);
+                self.selected_light = 0;
+            }
+            Command::NextLight | Command::PreviousLight => {
+                let by = if command == Command::NextLight { 1 } else { -1 };
+                let count = self.settings.lights.len();
+                self.selected_light = light_keys::cycle(count, self.selected_light, by);
+            }
+            Command::Solo => light_keys::solo(&mut self.settings.lights, self.selected_light),
+            Command::Mute | Command::Brighter | Command::Dimmer => {
+                if let Some(light) = self.settings.lights.get_mut(self.selected_light) {
+                    match command {
+                        Command::Mute => light.on ^= true,
+                        Command::Brighter => light_keys::brighten(light, 1),
+                        _ => light_keys::brighten(light, -1),
+                    }
+                }
+            }
             Command::ToggleSide => self.side_open ^= true,
             Command::ToggleHandles => self.handles.hidden ^= true,
             Command::ToggleCompare => self.compare.on ^= true,
@@ -59,8 +103,14 @@ impl App {
         match self.loader.take() {
             None => {}
             Some(Outcome::Opened(opened)) => self.take_in(*opened, ctx),
-            Some(Outcome::Cancelled) => self.messages.note("Opening was cancelled"),
-            Some(Outcome::Failed { short, details }) => self.messages.error(short, details),
+            Some(Outcome::Cancelled) => {
+                self.pending = None;
+                self.messages.note("Opening was cancelled");
+            }
+            Some(Outcome::Failed { short, details }) => {
+                self.pending = None;
+                self.messages.error(short, details);
+            }
         }
         if let Some(result) = self.balance.as_ref().and_then(Work::take) {
             self.balance = None;
@@ -123,30 +173,69 @@ impl App {
                     Err(err) => self.messages.error("the light volume was not exported", err),
                 }
             }
-            Purpose::LoadSettings => self.load_settings(path),
-            Purpose::CompareSettings => match files::load_settings(path, &self.settings) {
-                Ok((look, _)) => self.compare.with(look),
-                Err(err) => self.messages.error("the settings were not loaded", err),
-            },
+            Purpose::LoadSettings => self.load_settings(path, ctx),
+            Purpose::CompareSettings => {
+                let read = files::load_record(path);
+                match read.and_then(|read| read.apply(&self.settings).map_err(|err| err.to_string())) {
+                    Ok((look, _)) => self.compare.with(look),
+                    Err(err) => self.messages.error("the settings were not loaded", err),
+                }
+            }
         }
     }
 
+    /// The open volume, for records.
+    fn volume_record(&self) -> Option<(&str, u64)> {
+        let (volume, _) = self.viewport.volume()?;
+        Some((&self.volume.as_ref()?.source, volume.content_id()))
+    }
+
     fn save_settings(&mut self, path: &Path) {
-        match files::save_settings(path, &self.settings) {
+        match files::save_settings(path, &self.settings, self.volume_record()) {
             Ok(()) => self.messages.note(format!("Saved {}", path.display())),
             Err(err) => self.messages.error("the settings were not saved", err),
         }
     }
 
-    fn load_settings(&mut self, path: &Path) {
-        match files::load_settings(path, &self.settings) {
+    /// Takes over the look of a session, a preset or a picture. If it is of another volume, that is opened
+    /// first.
+    pub(super) fn load_settings(&mut self, path: &Path, ctx: &egui::Context) {
+        let record = match files::load_record(path) {
+            Ok(record) => record,
+            Err(err) => return self.messages.error("the settings were not loaded", err),
+        };
+        let open = self.volume_record().map(|(_, content_id)| content_id);
+        match &record.volume {
+            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => {
+                let source = volume.source_from(path.parent());
+                self.pending = Some(record);
+                self.open(&source, ctx);
+            }
+            _ => self.apply_record(&record),
+        }
+    }
+
+    fn apply_record(&mut self, record: &Record) {
+        match record.apply(&self.settings) {
             Ok((settings, warnings)) => {
                 self.settings = settings;
                 if !warnings.is_empty() {
                     self.messages.note(warnings.join("; "));
                 }
             }
-            Err(err) => self.messages.error("the settings were not loaded", err),
+            Err(err) => self.messages.error("the settings were not loaded", err.to_string()),
+        }
+    }
+
+    /// Keeps the look, so that the next run can go on with it.
+    pub(super) fn keep_look(&mut self) {
+        if !self.memory.is_due() {
+            return;
+        }
+        if let Some((source, content_id)) = self.volume_record() {
+            let volume = VolumeRecord::new(source, content_id, None);
+            let text = Record::text(&self.settings, Some(&volume), None);
+            self.memory.keep(text);
         }
     }
 
@@ -160,7 +249,17 @@ impl App {
         if std::mem::take(&mut self.session_is_due)
             && let Some(path) = self.session.clone().filter(|path| path.exists())
         {
-            self.load_settings(&path);
+            match files::load_record(&path) {
+                Ok(record) => self.apply_record(&record),
+                Err(err) => self.messages.error("the session was not loaded", err),
+            }
+        }
+        self.memory.opened(&source);
+        if let Some(record) = self.pending.take() {
+            if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
+                self.messages.note("The settings were made for other values than the file has now");
+            }
+            self.apply_record(&record);
         }
         if let Some(adjust) = self.adjust.take() {
             self.settings = adjust(std::mem::take(&mut self.settings));
@@ -195,7 +294,10 @@ impl App {
             return;
         };
         let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
-        if let Err(err) = self.export.start(export::Subject { context, volume, bricks, settings }, ctx) {
+        let source = self.volume.as_ref().map_or_else(String::new, |volume| volume.source.clone());
+        if let Err(err) =
+            self.export.start(export::Subject { context, volume, bricks, settings, source }, ctx)
+        {
             self.messages.error("the picture was not exported", err);
         }
     }
@@ -208,7 +310,7 @@ impl App {
         }
         let path =
             self.session.clone().unwrap_or_else(|| std::env::temp_dir().join("chiaroscuro-rescued.json"));
-        let rescue = match files::save_settings(&path, &self.settings) {
+        let rescue = match files::save_settings(&path, &self.settings, self.volume_record()) {
             Ok(()) => format!("the settings were saved to {}", path.display()),
             Err(failure) => format!("the settings could not be saved: {failure}"),
         };

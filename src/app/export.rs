@@ -8,7 +8,7 @@ use eframe::egui;
 use super::work::Work;
 use crate::data::{Bricks, Volume};
 use crate::gpu::{Context, RenderOptions, Renderer, export_png};
-use crate::model::Settings;
+use crate::model::{PictureRecord, Record, Settings, VolumeRecord};
 
 /// Longest edge of an exported picture, in pixels.
 const MAX_EDGE: u32 = 16384;
@@ -24,6 +24,8 @@ pub(super) struct Subject {
     pub bricks: Arc<Bricks>,
     /// The whole look.
     pub settings: Settings,
+    /// What was opened.
+    pub source: String,
 }
 
 /// What the user asks of the export window.
@@ -94,7 +96,15 @@ impl Export {
             let picture = renderer
                 .render(&subject.volume, &subject.bricks, &subject.settings, size, &options)
                 .map_err(|err| err.to_string())?;
-            export_png(&picture, transparent, &path).map_err(|err| err.to_string())?;
+            let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), path.parent());
+            let how = PictureRecord {
+                size,
+                transparent,
+                version: env!("CARGO_PKG_VERSION").to_owned(),
+                adapter: beside.description(),
+            };
+            let record = Record::text(&subject.settings, Some(&volume), Some(&how));
+            export_png(&picture, transparent, Some(&record), &path).map_err(|err| err.to_string())?;
             Ok(path)
         };
         self.work =

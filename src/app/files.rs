@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 
 use super::work::Work;
-use crate::model::{Settings, load_json, to_json};
+use crate::model::{Record, Settings, VolumeRecord};
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,8 @@ impl Purpose {
     fn hint(self) -> &'static str {
         match self {
             Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
-            Self::LoadSettings | Self::CompareSettings | Self::SaveSettings => "a .json file",
+            Self::LoadSettings | Self::CompareSettings => "a .json file, or a .png picture that was exported",
+            Self::SaveSettings => "a .json file",
             Self::ExportPicture => "a .png file",
             Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
         }
@@ -175,15 +176,37 @@ pub(super) fn dropped(ctx: &egui::Context) -> Option<PathBuf> {
     ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()))
 }
 
-/// Writes settings, whole or not at all.
-pub(super) fn save_settings(path: &Path, settings: &Settings) -> Result<(), String> {
-    crate::gpu::write_atomically(path, to_json(settings).as_bytes()).map_err(|err| err.to_string())
+/// Writes settings, and of what volume they are: whole or not at all.
+pub(super) fn save_settings(
+    path: &Path,
+    settings: &Settings,
+    volume: Option<(&str, u64)>,
+) -> Result<(), String> {
+    let volume = volume.map(|(source, content_id)| VolumeRecord::new(source, content_id, path.parent()));
+    let text = Record::text(settings, volume.as_ref(), None);
+    crate::gpu::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
 }
 
-/// Reads settings and lays them over others. Warnings say what was not understood.
-pub(super) fn load_settings(path: &Path, over: &Settings) -> Result<(Settings, Vec<String>), String> {
+/// Reads what a session, a preset or an exported picture says.
+pub(super) fn load_record(path: &Path) -> Result<Record, String> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|err| format!("could not read the settings: {err} ({shown})"))?;
-    load_json(over, &text).map_err(|err| format!("could not use the settings: {err} ({shown})"))
+    let text = if is_picture(path) {
+        crate::gpu::read_record(path).map_err(|err| err.to_string())?.ok_or_else(|| {
+            format!("the picture carries no settings ({shown}); export it from this program")
+        })?
+    } else {
+        std::fs::read_to_string(path)
+            .map_err(|err| format!("could not read the settings: {err} ({shown})"))?
+    };
+    Record::read(&text).map_err(|err| format!("could not use the settings: {err} ({shown})"))
+}
+
+/// Whether a file is a picture by its name.
+pub(super) fn is_picture(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+}
+
+/// Whether a file holds a look and not a volume, by its name.
+pub(super) fn is_record(path: &Path) -> bool {
+    is_picture(path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }

@@ -6,10 +6,14 @@ use super::commands::SHORTCUTS;
 use super::viewport::Facts;
 
 /// What the mouse does, in the picture and in the editor.
-const MOUSE: [(&str, &str); 9] = [
+const MOUSE: [(&str, &str); 13] = [
     ("Drag the picture", "orbit"),
+    ("Double click on the volume", "turn about what is there"),
+    ("Hold L and drag", "turn the selected light"),
+    ("Arrow keys, with Shift ten times", "turn it by a degree"),
+    ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "keep a view, look that way again"),
     ("Shift-drag or middle drag", "pan"),
-    ("Wheel", "nearer or further"),
+    ("Wheel", "nearer to the pointer, or further"),
     ("Drag a light's handle", "move the light"),
     ("Wheel on a perspective light's handle", "its distance"),
     ("Drag the line between two looks", "see more of one of them"),

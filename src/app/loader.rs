@@ -1,11 +1,11 @@
 //! Opens volumes on a thread of their own, up to the first look.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use eframe::egui;
 
-use super::APP_ID;
 use super::work::Work;
 use crate::data::load::{self, LoadControl, LoadOptions};
 use crate::data::{Bricks, Histogram, Volume};
@@ -66,8 +66,12 @@ const PHASES: [&str; 4] = ["reading", "counting values", "uploading", "finding a
 
 impl Loader {
     /// A loader for volumes that a device will show. Begins to make its pipelines.
-    pub(super) fn new(context: Context, options: LoadOptions) -> std::io::Result<Self> {
-        let shaders = eframe::storage_dir(APP_ID).map_or_else(
+    pub(super) fn new(
+        context: Context,
+        options: LoadOptions,
+        storage: Option<&Path>,
+    ) -> std::io::Result<Self> {
+        let shaders = storage.map_or_else(
             || ShaderLibrary::new(&context),
             |folder| ShaderLibrary::with_cache(&context, &folder.join("pipelines")),
         );

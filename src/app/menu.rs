@@ -2,9 +2,9 @@
 
 use eframe::egui::{self, Button, ThemePreference};
 
-use super::commands::Command;
+use super::commands::{Command, VIEW_SLOTS};
 use crate::data::synthetic;
-use crate::model::{MAX_LIGHTS, Projection, Settings};
+use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
 
 /// What the menu shows as chosen.
 pub(super) struct Menu<'a> {
@@ -14,16 +14,31 @@ pub(super) struct Menu<'a> {
     pub title: String,
     /// Whether there is a step back, and one forward.
     pub undo_redo: (bool, bool),
-    /// Whether the side panel is there.
-    pub side: bool,
-    /// Whether the handles are there.
-    pub handles: bool,
-    /// Whether two looks are shown.
-    pub compares: bool,
+    /// What is on screen.
+    pub shown: Shown,
+    /// Files that were opened, the latest first.
+    pub recent: &'a [String],
+    /// Whether there is a look of the run before.
+    pub can_go_on: bool,
     /// Milliseconds that a frame may take while something moves.
     pub frame_ms: &'a mut Option<f64>,
     /// What the user asks for.
     pub commands: &'a mut Vec<Command>,
+}
+
+/// Parts of the window that can be switched off.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shown {
+    /// The side panel.
+    pub side: bool,
+    /// The handles of the lights.
+    pub handles: bool,
+    /// Two looks instead of one.
+    pub compares: bool,
+    /// Chips of the lights, box, scale bar and cube.
+    pub marks: bool,
+    /// What is under the pointer.
+    pub probe: bool,
 }
 
 /// Shows the bar.
@@ -35,6 +50,8 @@ pub(super) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
                 let (undo, redo) = menu.undo_redo;
                 item(ui, menu, Command::Undo, undo);
                 item(ui, menu, Command::Redo, redo);
+                ui.separator();
+                item(ui, menu, Command::ShowPalette, true);
             });
             ui.menu_button("View", |ui| view(ui, menu));
             ui.menu_button("Light", |ui| light(ui, menu));
@@ -50,7 +67,7 @@ pub(super) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 }
 
 fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool) {
-    let button = Button::new(command.label()).shortcut_text(command.shortcut_text(ui.ctx()));
+    let button = Button::new(&*command.label()).shortcut_text(command.shortcut_text(ui.ctx()));
     if ui.add_enabled(enabled, button).clicked() {
         menu.commands.push(command);
     }
@@ -59,6 +76,17 @@ fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool)
 fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::OpenDialog, true);
     item(ui, menu, Command::OpenPath, true);
+    ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in menu.recent {
+                let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy());
+                if ui.button(name.as_deref().unwrap_or(path)).on_hover_text(path).clicked() {
+                    menu.commands.push(Command::Open(path.clone()));
+                }
+            }
+        });
+    });
+    item(ui, menu, Command::GoOn, menu.can_go_on);
     ui.menu_button("Open built-in", |ui| {
         for name in synthetic::NAMES {
             if ui.button(name).clicked() {
@@ -77,15 +105,37 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 
 fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::ResetView, true);
+    item(ui, menu, Command::FrameAll, true);
+    ui.menu_button("Look from", |ui| {
+        for view in StandardView::ALL {
+            let command = Command::LookFrom(view);
+            let button = Button::new(view.name()).shortcut_text(command.shortcut_text(ui.ctx()));
+            if ui.add(button).clicked() {
+                menu.commands.push(command);
+            }
+        }
+    });
+    ui.menu_button("Kept views", |ui| {
+        for slot in VIEW_SLOTS {
+            let kept = menu.settings.views.contains_key(&slot);
+            ui.horizontal(|ui| {
+                item(ui, menu, Command::RecallView(slot), kept);
+                item(ui, menu, Command::StoreView(slot), true);
+            });
+        }
+    });
+    item(ui, menu, Command::ToggleFullScreen, true);
     ui.separator();
     let projection = &mut menu.settings.camera.projection;
     ui.radio_value(projection, Projection::Perspective, "Perspective");
     ui.radio_value(projection, Projection::Orthographic, "Orthographic");
     ui.separator();
     let switches = [
-        (Command::ToggleSide, menu.side),
-        (Command::ToggleHandles, menu.handles),
-        (Command::ToggleCompare, menu.compares),
+        (Command::ToggleSide, menu.shown.side),
+        (Command::ToggleHandles, menu.shown.handles),
+        (Command::ToggleMarks, menu.shown.marks),
+        (Command::ToggleProbe, menu.shown.probe),
+        (Command::ToggleCompare, menu.shown.compares),
     ];
     for (command, mut shown) in switches {
         let label = format!("{} ({})", command.label(), command.shortcut_text(ui.ctx()));
@@ -124,6 +174,17 @@ const FRAME_MS: [(Option<f64>, &str); 5] = [
 fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let room = menu.settings.lights.len() < MAX_LIGHTS;
     item(ui, menu, Command::AddLight, room);
+    ui.menu_button("Use other lights", |ui| {
+        for rig in Rig::ALL {
+            if ui.button(rig.name()).clicked() {
+                menu.commands.push(Command::UseRig(rig));
+            }
+        }
+    });
+    item(ui, menu, Command::NextLight, true);
+    item(ui, menu, Command::Solo, true);
+    item(ui, menu, Command::Mute, true);
+    ui.separator();
     item(ui, menu, Command::Balance, true);
     item(ui, menu, Command::ShowLightVolume, true);
     ui.separator();

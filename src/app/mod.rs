@@ -12,14 +12,21 @@ mod files;
 mod help;
 mod history;
 mod icon;
+mod light_chips;
 mod light_handles;
+mod light_keys;
+mod light_probe;
 mod light_slice;
 mod loader;
+mod marks;
+mod memory;
 mod menu;
 mod messages;
 mod orbit;
+mod palette;
 mod panels;
 mod refine;
+mod start;
 mod status;
 mod status_file;
 mod theme;
@@ -28,8 +35,9 @@ mod viewport;
 mod volume_facts;
 mod work;
 
+pub use self::start::{Adjustment, AppError, Options, run, storage_folder, wgpu_setup};
+
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use eframe::egui;
 
@@ -41,91 +49,26 @@ use self::files::Files;
 use self::help::Help;
 use self::history::History;
 use self::light_handles::LightHandles;
+use self::light_probe::LightProbe;
 use self::light_slice::LightSlice;
 use self::loader::Loader;
+use self::marks::Marks;
+use self::memory::Memory;
 use self::messages::Messages;
+use self::palette::Palette;
 use self::status_file::StatusFile;
 use self::transfer_editor::TransferEditor;
-use self::viewport::Viewport;
+use self::viewport::{Facts, Viewport};
 use self::volume_facts::VolumeFacts;
 use self::work::Work;
-use crate::data::load::LoadOptions;
-use crate::gpu::{Context, GpuError, device_descriptor};
-use crate::model::Settings;
+use crate::gpu::{Context, GpuError};
+use crate::model::{Record, Settings};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
 
 /// A frame that keeps the window's thread longer is felt.
 const LONG_FRAME_MS: f64 = 50.0;
-
-/// Changes settings once.
-pub type Adjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
-
-/// What the command line says about the window.
-#[derive(Default)]
-pub struct Options {
-    /// A file or `builtin:NAME[:N]`; the built-in scene when not given.
-    pub source: Option<String>,
-    /// How files are read.
-    pub load: LoadOptions,
-    /// Where settings are saved; laid over the first look if the file exists.
-    pub session: Option<PathBuf>,
-    /// Applied to the first volume's settings, after the session.
-    pub adjust: Option<Adjustment>,
-}
-
-impl std::fmt::Debug for Options {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Options")
-            .field("source", &self.source)
-            .field("session", &self.session)
-            .finish_non_exhaustive()
-    }
-}
-
-/// Why there is no window.
-#[derive(Debug, thiserror::Error)]
-pub enum AppError {
-    /// No device that can be used.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// The window system refused.
-    #[error("the window could not be opened: {0}; a running desktop session is needed")]
-    Window(#[from] eframe::Error),
-    /// The operating system gave no thread.
-    #[error("no thread could be started: {0}")]
-    Thread(#[from] std::io::Error),
-}
-
-/// Names our window to the desktop, and the folder in which we keep things.
-const APP_ID: &str = "chiaroscuro";
-
-/// How the window's device is opened: with the limits and features that the renderer can use.
-pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
-    let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.device_descriptor = Arc::new(device_descriptor);
-    setup
-}
-
-/// Opens the window and returns when it is closed.
-///
-/// # Errors
-/// When there is no display or no usable graphics adapter.
-pub fn run(options: Options) -> Result<(), AppError> {
-    let viewport = egui::ViewportBuilder::default()
-        .with_title("Chiaroscuro")
-        .with_app_id(APP_ID)
-        .with_inner_size([1280.0, 800.0])
-        .with_min_inner_size([560.0, 420.0])
-        .with_icon(icon::icon());
-    let wgpu_options =
-        eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup().into(), ..Default::default() };
-    // Without dithering the picture reaches the screen byte for byte.
-    let native = eframe::NativeOptions { viewport, wgpu_options, dithering: false, ..Default::default() };
-    eframe::run_native("Chiaroscuro", native, Box::new(|cc| Ok(Box::new(App::new(cc, options)?))))?;
-    Ok(())
-}
 
 /// The window's state.
 pub struct App {
@@ -136,6 +79,9 @@ pub struct App {
     viewport: Viewport,
     canvas: Option<Canvas>,
     loader: Loader,
+    memory: Memory,
+    /// Settings of the volume that is being opened.
+    pending: Option<Record>,
     balance: Option<Work<Result<f64, GpuError>>>,
     export: Export,
     files: Files,
@@ -146,6 +92,9 @@ pub struct App {
     history: History,
     handles: LightHandles,
     compare: Compare,
+    marks: Marks,
+    probe: LightProbe,
+    palette: Palette,
     light_slice: LightSlice,
     editor: TransferEditor,
     selected_light: usize,
@@ -177,14 +126,23 @@ impl App {
         // The window's own device draws the window alone: pictures are made beside it.
         let context = Context::new(&paint.adapter, paint.device, paint.queue)?.sibling()?;
         theme::apply(&cc.egui_ctx);
-        let Options { source, load, session, adjust } = options;
+        let Options { source, load, session, adjust, storage } = options;
+        // A session knows of which volume it is.
+        let of_session = session.as_ref().filter(|path| source.is_none() && path.exists());
+        let of_session = of_session.and_then(|path| {
+            let volume = files::load_record(path).ok()?.volume?;
+            Some(volume.source_from(path.parent()))
+        });
+        let source = source.or(of_session);
         let mut app = Self {
             settings: Settings::default(),
             defaults: Settings::default(),
             volume: None,
             viewport: Viewport::new(context.clone(), &cc.egui_ctx)?,
             canvas: None,
-            loader: Loader::new(context, load)?,
+            loader: Loader::new(context, load, storage.as_deref())?,
+            memory: Memory::new(storage),
+            pending: None,
             balance: None,
             export: Export::default(),
             files: Files::default(),
@@ -194,6 +152,9 @@ impl App {
             history: History::default(),
             handles: LightHandles::default(),
             compare: Compare::default(),
+            marks: Marks::default(),
+            probe: LightProbe::default(),
+            palette: Palette::default(),
             light_slice: LightSlice::default(),
             editor: TransferEditor::default(),
             selected_light: 0,
@@ -269,25 +230,30 @@ impl App {
     }
 
     /// The panels around the picture.
-    fn surroundings(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    fn surroundings(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let title = self.title();
         let undo_redo = (self.history.can_undo(&self.settings), self.history.can_redo(&self.settings));
-        let (side, handles, compares) = (self.side_open, !self.handles.hidden, self.compare.on);
+        let shown = menu::Shown {
+            side: self.side_open,
+            handles: !self.handles.hidden,
+            compares: self.compare.on,
+            marks: self.marks.on,
+            probe: self.probe.on,
+        };
         menu::show(
             ui,
             &mut menu::Menu {
                 settings: &mut self.settings,
                 title,
                 undo_redo,
-                side,
-                handles,
-                compares,
+                shown,
+                recent: self.memory.recent(),
+                can_go_on: self.memory.before().is_some(),
                 frame_ms: &mut self.viewport.frame_ms,
                 commands,
             },
         );
-        let facts = self.viewport.facts(&self.compare.looks(&self.settings));
-        status::show(ui, &facts, self.loader.progress(), &mut self.messages, commands);
+        status::show(ui, facts, self.loader.progress(), &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
             panel.size_range(90.0..=420.0).show(ui, |ui| {
@@ -304,24 +270,28 @@ impl App {
                     volume: self.volume.as_ref(),
                     selected_light: &mut self.selected_light,
                     compare: &mut self.compare,
-                    facts: &facts,
+                    facts,
                     balancing: self.balance.is_some(),
                     commands,
                 },
             );
         });
-        self.help.ui(ui.ctx(), &facts);
+        self.help.ui(ui.ctx(), facts);
     }
 
     /// The picture.
-    fn picture(&mut self, ui: &mut egui::Ui) {
+    fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let stage = Stage {
             settings: &mut self.settings,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
             selected_light: &mut self.selected_light,
             compare: &mut self.compare,
-            support_radius: self.volume.as_ref().map(|volume| volume.scene.support_radius()),
+            marks: self.marks,
+            probe: &mut self.probe,
+            scene: self.volume.as_ref().map(|volume| (volume.scene, volume.is_anatomical)),
+            facts,
+            commands,
         };
         let shown = egui::CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, stage));
         let (canvas, result) = shown.inner;
@@ -344,11 +314,15 @@ impl eframe::App for App {
         if let Some(path) = files::dropped(&ctx) {
             commands.push(Command::Open(path.display().to_string()));
         }
-        self.surroundings(ui, &mut commands);
-        self.picture(ui);
+        let facts = self.viewport.facts(&self.compare.looks(&self.settings));
+        self.palette.ui(&ctx, &mut commands);
+        self.surroundings(ui, &facts, &mut commands);
+        self.picture(ui, &facts, &mut commands);
         commands::from_keys(&ctx, &mut commands);
+        light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx);
         self.history.observe(&ctx, &self.settings);
+        self.keep_look();
         for command in commands {
             self.execute(command, frame, &ctx);
         }

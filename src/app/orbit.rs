@@ -1,8 +1,9 @@
 //! The mouse on the picture: orbit, pan, zoom.
 
-use eframe::egui::{self, PointerButton, Response};
+use eframe::egui::{self, Key, PointerButton, Response};
 
-use crate::model::Camera;
+use super::light_keys;
+use crate::model::Settings;
 
 /// Degrees of orbit per point of drag.
 const DEGREES_PER_POINT: f64 = 0.4;
@@ -11,16 +12,27 @@ const ZOOM_PER_NOTCH: f64 = 1.1;
 /// Points of scrolling per notch.
 const POINTS_PER_NOTCH: f64 = 40.0;
 
-/// Applies what the user does on the picture to the camera. `height` of the picture in points;
-/// `zooms`: the wheel is not needed elsewhere.
-pub(super) fn navigate(ui: &egui::Ui, response: &Response, camera: &mut Camera, height: f64, zooms: bool) {
+/// Applies what the user does on the picture to the camera, or, while L is held, to a light. `zooms`: the wheel
+/// is not needed elsewhere.
+pub(super) fn navigate(
+    ui: &egui::Ui,
+    response: &Response,
+    settings: &mut Settings,
+    selected: usize,
+    zooms: bool,
+) {
+    let Settings { camera, lights, .. } = settings;
+    let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));
     let delta = response.drag_delta();
     let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
     let shift = ui.input(|input| input.modifiers.shift);
     let pans = response.dragged_by(PointerButton::Middle)
         || response.dragged_by(PointerButton::Secondary)
         || (shift && response.dragged_by(PointerButton::Primary));
-    if pans {
+    let lit = lights.get_mut(selected).filter(|_| ui.input(|input| input.key_down(Key::L)));
+    if let Some(light) = lit.filter(|_| response.dragged_by(PointerButton::Primary)) {
+        light_keys::turn(light, camera, dx * DEGREES_PER_POINT, -dy * DEGREES_PER_POINT);
+    } else if pans {
         camera.pan(dx, dy, height);
     } else if response.dragged_by(PointerButton::Primary) {
         camera.orbit(dx * DEGREES_PER_POINT, dy * DEGREES_PER_POINT);
@@ -29,7 +41,9 @@ pub(super) fn navigate(ui: &egui::Ui, response: &Response, camera: &mut Camera, 
         let notches = wheel_notches(ui);
         let pinch = ui.input(egui::InputState::zoom_delta);
         if notches != 0.0 || pinch != 1.0 {
-            camera.zoom(ZOOM_PER_NOTCH.powf(-notches) / f64::from(pinch));
+            let factor = ZOOM_PER_NOTCH.powf(-notches) / f64::from(pinch);
+            let at = response.hover_pos().unwrap_or(response.rect.center()) - response.rect.min;
+            camera.zoom_at(factor, (f64::from(at.x), f64::from(at.y)), (width, height));
         }
     }
 }

@@ -26,6 +26,8 @@ pub(super) struct VolumeFacts {
     pub bytes: u64,
     /// How the grid lies in scene space.
     pub scene: SceneSpace,
+    /// Whether +x, +y and +z are a body's right, front and head.
+    pub is_anatomical: bool,
     /// How often each value occurs.
     pub histogram: Histogram,
 }
@@ -47,6 +49,7 @@ impl VolumeFacts {
             odd_voxels: volume.odd_voxels(),
             bytes: (volume.voxel_count() * voxel_type.bytes()) as u64,
             scene: volume.scene(),
+            is_anatomical: volume.is_anatomical(),
             histogram,
         }
     }

@@ -51,7 +51,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"));
         pictures.push(picture);
     }
-    export_png(&row_of(&pictures), true, &args.output)?;
+    export_png(&row_of(&pictures), true, None, &args.output)?;
     print_line(&format!("{}", args.output.display()));
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Errors of the command line and their exit codes.
 
 use crate::data::load::{LoadError, LoadErrorKind};
-use crate::gpu::{ExportError, GpuError};
+use crate::gpu::{ExportError, GpuError, ReadPictureError};
 use crate::model::PresetError;
 
 /// Why a command failed.
@@ -38,6 +38,20 @@ pub enum CliError {
     /// The GPU could not do it.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// A picture could not be read.
+    #[error(transparent)]
+    Picture(#[from] ReadPictureError),
+    /// A picture cannot be made again.
+    #[error("{path}: {why}; a picture that was exported by this program, beside its volume, helps")]
+    Replay {
+        /// The picture.
+        path: String,
+        /// What is missing.
+        why: String,
+    },
+    /// A picture that was made again is not as it was.
+    #[error("{0}")]
+    Differs(String),
     /// The result could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
@@ -47,11 +61,12 @@ pub enum CliError {
 }
 
 impl CliError {
-    /// 2 usage, 3 bad input, 4 no adapter, 5 out of memory or over a limit, 6 input or output.
+    /// 1 a check that did not hold, 2 usage, 3 bad input, 4 no adapter, 5 out of memory or over a limit, 6 input or output.
     pub fn exit_code(&self) -> u8 {
         match self {
+            Self::Differs(_) => 1,
             Self::Usage(_) => 2,
-            Self::Preset { .. } => 3,
+            Self::Preset { .. } | Self::Replay { .. } => 3,
             Self::Load(err) => match err.kind() {
                 LoadErrorKind::BadInput => 3,
                 LoadErrorKind::Limit => 5,
@@ -59,7 +74,7 @@ impl CliError {
             },
             Self::Gpu(GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. }) => 5,
             Self::Gpu(_) | Self::Window(_) => 4,
-            Self::Read { .. } | Self::Export(_) => 6,
+            Self::Read { .. } | Self::Export(_) | Self::Picture(_) => 6,
         }
     }
 }

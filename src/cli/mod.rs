@@ -8,6 +8,7 @@ mod error;
 mod info;
 mod light_volume;
 mod render;
+mod replay;
 mod scene;
 
 use std::io::Write as _;
@@ -37,6 +38,8 @@ struct Args {
 enum Command {
     /// Render a picture to a PNG file
     Render(render::RenderArgs),
+    /// Make an exported picture again from what it carries, and compare the two
+    Replay(replay::ReplayArgs),
     /// Render several looks side by side and say how far they are apart
     Compare(compare::CompareArgs),
     /// Write a light's attenuation volume as NRRD
@@ -71,6 +74,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     };
     let result = match args.command {
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::LightVolume(args)) => light_volume::run(&args),
         Some(Command::Info(args)) => info::run(&args),

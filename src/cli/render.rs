@@ -10,6 +10,7 @@ use super::{CliError, print_line, warn_line};
 use crate::gpu::{
     Context, RenderOptions, Renderer, dark_share, export_png, mean_luminance, write_atomically,
 };
+use crate::model::{PictureRecord, Record, VolumeRecord};
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -85,7 +86,16 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         });
         write_atomically(path, format!("{report:#}\n").as_bytes())?;
     }
-    if let Err(err) = export_png(&picture, args.transparent, &args.output) {
+    let folder = args.output.parent();
+    let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
+    let how = PictureRecord {
+        size: args.size,
+        transparent: args.transparent,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        adapter: context.description(),
+    };
+    let record = Record::text(&settings, Some(&volume), Some(&how));
+    if let Err(err) = export_png(&picture, args.transparent, Some(&record), &args.output) {
         // A report without its picture would mislead.
         if let Some(path) = &args.report {
             std::fs::remove_file(path).ok();

@@ -171,6 +171,11 @@ impl SceneArgs {
         self.look.load(&self.file)
     }
 
+    /// What is to be loaded.
+    pub(super) fn source(&self) -> &str {
+        &self.file
+    }
+
     /// Finds the look.
     pub(super) fn look(&self, loaded: &Loaded) -> Result<Look, CliError> {
         self.look.look(loaded)

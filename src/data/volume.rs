@@ -170,6 +170,7 @@ pub struct Volume {
     max_value: f64,
     odd_voxels: usize,
     unit_mm: Option<f64>,
+    is_anatomical: bool,
     content_id: u64,
 }
 
@@ -214,6 +215,7 @@ impl Volume {
             max_value,
             odd_voxels,
             unit_mm: None,
+            is_anatomical: false,
             content_id,
         })
     }
@@ -228,6 +230,17 @@ impl Volume {
     /// See [`Self::with_unit_mm`].
     pub fn unit_mm(&self) -> Option<f64> {
         self.unit_mm
+    }
+
+    /// States that world space is right-anterior-superior, as the file says of a body.
+    #[must_use]
+    pub fn with_anatomy(self, is_anatomical: bool) -> Self {
+        Self { is_anatomical, ..self }
+    }
+
+    /// Whether +x, +y and +z are known to be a body's right, front and head.
+    pub fn is_anatomical(&self) -> bool {
+        self.is_anatomical
     }
 
     /// An axis-aligned volume: `spacing_mm` between voxel centres along x, y, z.

@@ -139,6 +139,12 @@ impl Context {
         self
     }
 
+    /// The adapter and its driver, in words.
+    pub fn description(&self) -> String {
+        let info = &self.info;
+        format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info).trim().to_owned()
+    }
+
     /// Another device on the same adapter, for work beside a window: long work on the window's own
     /// queue would hold up its frames, and a surface cannot be resized while others submit to it.
     ///

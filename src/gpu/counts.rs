@@ -1,6 +1,7 @@
 //! What a renderer keeps and what it has done, in numbers.
 
 use super::display::Target;
+use super::job::Job;
 use super::light_collapse::CollapsedLight;
 use super::light_volume::LightVolume;
 use super::readback::read_word;
@@ -8,7 +9,27 @@ use super::scatter_voxels::ScatterVoxels;
 use super::volume::GpuVolume;
 use super::{GpuError, Renderer};
 
+/// A light's volume, for display.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightFigures {
+    /// Whether it is filled.
+    pub complete: bool,
+    /// From the beginning of its filling to the end, where that is known.
+    pub fill_ms: Option<f64>,
+    /// Bytes of its texture.
+    pub bytes: u64,
+}
+
 impl Renderer {
+    /// The volumes of a job's lights, in the order of the settings.
+    pub fn light_figures(&self, job: &Job) -> Vec<Option<LightFigures>> {
+        let figures = |key: &Option<_>| {
+            let light = self.lights.iter().find(|light| Some(&light.key) == key.as_ref())?;
+            Some(LightFigures { complete: light.complete, fill_ms: light.fill_ms, bytes: light.bytes() })
+        };
+        job.keys.iter().map(figures).collect()
+    }
+
     /// How often the light volume of each light of the settings was filled; counted where its first
     /// march is submitted.
     pub fn light_rebuilds(&self) -> &[u64] {

@@ -3,8 +3,6 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use image::ImageEncoder as _;
-
 use super::Picture;
 
 /// Why a file could not be written.
@@ -12,7 +10,7 @@ use super::Picture;
 pub enum ExportError {
     /// The encoder refused.
     #[error("the picture could not be encoded: {0}")]
-    Encode(#[from] image::ImageError),
+    Encode(#[from] png::EncodingError),
     /// The disk refused.
     #[error("could not write: {source} ({path}); a folder that exists and can be written to helps")]
     Write {
@@ -50,22 +48,76 @@ pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), ExportError>
     Ok(())
 }
 
-/// Writes a picture as PNG: RGB, or RGBA with straight alpha when it is transparent.
+/// Under which name a picture carries its record.
+const RECORD: &str = "chiaroscuro";
+
+/// Most bytes that are read of a picture's texts: a thousand times a real record.
+const MOST_TEXT: usize = 16 << 20;
+
+/// Writes a picture as PNG: RGB, or RGBA with straight alpha when it is transparent. It carries a record
+/// ([`crate::model::Record`]) as text.
 ///
 /// # Errors
 /// As [`write_atomically`].
-pub fn export_png(picture: &Picture, transparent: bool, path: &Path) -> Result<(), ExportError> {
-    let mut png = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut png);
-    let [width, height] = picture.size;
-    if transparent {
-        encoder.write_image(&picture.shown, width, height, image::ExtendedColorType::Rgba8)?;
+pub fn export_png(
+    picture: &Picture,
+    transparent: bool,
+    record: Option<&str>,
+    path: &Path,
+) -> Result<(), ExportError> {
+    let bytes = if transparent {
+        encode(picture.size, png::ColorType::Rgba, &picture.shown, record)?
     } else {
         let rgb: Vec<u8> =
             picture.shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect();
-        encoder.write_image(&rgb, width, height, image::ExtendedColorType::Rgb8)?;
+        encode(picture.size, png::ColorType::Rgb, &rgb, record)?
+    };
+    write_atomically(path, &bytes)
+}
+
+/// Bytes of colours as PNG, with a text if there is one.
+pub(super) fn encode(
+    [width, height]: [u32; 2],
+    color: png::ColorType,
+    bytes: &[u8],
+    record: Option<&str>,
+) -> Result<Vec<u8>, png::EncodingError> {
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, width, height);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_color(color);
+    if let Some(record) = record {
+        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned())?;
     }
-    write_atomically(path, &png)
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()?;
+    Ok(png)
+}
+
+/// The record that a PNG file carries, if it does.
+///
+/// # Errors
+/// When the file cannot be read or is no PNG.
+pub fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
+    let failed =
+        |why: &dyn std::fmt::Display| ReadPictureError { path: path.to_owned(), why: why.to_string() };
+    let file = std::fs::File::open(path).map_err(|err| failed(&err))?;
+    let limits = png::Limits { bytes: MOST_TEXT };
+    let decoder = png::Decoder::new_with_limits(std::io::BufReader::new(file), limits);
+    let reader = decoder.read_info().map_err(|err| failed(&err))?;
+    let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD);
+    found.map(|text| text.get_text().map_err(|err| failed(&err))).transpose()
+}
+
+/// Why a picture could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error("could not read the picture: {why} ({path}); a PNG file that this program has exported helps")]
+pub struct ReadPictureError {
+    /// Which.
+    path: PathBuf,
+    /// What is wrong with it.
+    why: String,
 }
 
 #[cfg(test)]
@@ -89,7 +141,14 @@ mod tests {
         let path = folder.path().join("a.png");
         let shown = (0..4 * 6).map(|i| (i * 10) as u8).collect::<Vec<_>>();
         let picture = Picture { size: [3, 2], light: vec![[0.0; 4]; 6], shown: shown.clone() };
-        export_png(&picture, true, &path).unwrap();
+        export_png(&picture, true, None, &path).unwrap();
+        assert_eq!(read_record(&path).unwrap(), None);
         assert_eq!(image::open(&path).unwrap().to_rgba8().into_raw(), shown);
+        let record = "{\"name\": \"Größe, 体積\"}";
+        export_png(&picture, true, Some(record), &path).unwrap();
+        assert_eq!(image::open(&path).unwrap().to_rgba8().into_raw(), shown);
+        assert_eq!(read_record(&path).unwrap().as_deref(), Some(record));
+        std::fs::write(&path, b"no picture").unwrap();
+        assert!(read_record(&path).is_err() && read_record(Path::new("/no/such.png")).is_err());
     }
 }

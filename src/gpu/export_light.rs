@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::export::{ExportError, write_atomically};
+use super::export::{ExportError, encode, write_atomically};
 use super::readback::Attenuation;
 use crate::data::Volume;
 use crate::math::false_color;
@@ -47,15 +47,7 @@ impl LightSlice {
 /// # Errors
 /// As [`write_atomically`].
 pub fn export_slice(slice: &LightSlice, path: &Path) -> Result<(), ExportError> {
-    use image::ImageEncoder as _;
-    let mut png = Vec::new();
-    let [width, height] = slice.size.map(|n| n as u32);
-    image::codecs::png::PngEncoder::new(&mut png).write_image(
-        &slice.colors(),
-        width,
-        height,
-        image::ExtendedColorType::Rgb8,
-    )?;
+    let png = encode(slice.size.map(|n| n as u32), png::ColorType::Rgb, &slice.colors(), None)?;
     write_atomically(path, &png)
 }
 

@@ -30,6 +30,9 @@ pub(super) struct LightVolume {
     pub reach: u8,
     /// Whether everything in `filled` is there.
     pub complete: bool,
+    /// When it began to be filled, and how long that took.
+    pub started: std::time::Instant,
+    pub fill_ms: Option<f64>,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
 }
@@ -53,20 +56,23 @@ impl LightVolume {
             Precision::Byte if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
             Precision::Byte | Precision::Half => context.storage_format,
         };
+        let fresh = |texture, view| Self {
+            key,
+            dims,
+            divisor,
+            texture,
+            view,
+            filled,
+            reach,
+            complete: false,
+            started: std::time::Instant::now(),
+            fill_ms: None,
+            last_used: 0,
+        };
         let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
         if let Some(at) = unwanted.iter().position(fits) {
             let Self { texture, view, .. } = unwanted.swap_remove(at);
-            return Ok(Self {
-                key,
-                dims,
-                divisor,
-                texture,
-                view,
-                filled,
-                reach,
-                complete: false,
-                last_used: 0,
-            });
+            return Ok(fresh(texture, view));
         }
         let texture = context.texture(&texture_3d(
             "LightVolume::attenuation",
@@ -78,7 +84,7 @@ impl LightVolume {
                 | wgpu::TextureUsages::COPY_DST,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { key, dims, divisor, texture, view, filled, reach, complete: false, last_used: 0 })
+        Ok(fresh(texture, view))
     }
 
     /// Lights the listed cells fully.
@@ -108,6 +114,12 @@ impl LightVolume {
             listed_bricks::workgroups(bricks.len() as u32),
         );
         Ok(())
+    }
+
+    /// Everything is there.
+    pub(super) fn finish(&mut self) {
+        self.complete = true;
+        self.fill_ms = Some(self.started.elapsed().as_secs_f64() * 1000.0);
     }
 
     /// Bytes of its texture.

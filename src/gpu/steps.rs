@@ -174,7 +174,7 @@ impl Renderer {
             build.scatter = None;
         }
         if ends_view && view + 1 == build.views.len() {
-            self.lights[at].complete = true;
+            self.lights[at].finish();
         }
         Ok(())
     }
@@ -198,7 +198,9 @@ impl Renderer {
         if bricks.start == 0 {
             self.rebuilds[build.light] += 1;
         }
-        self.lights[at].complete = bricks.end == build.bricks.len();
+        if bricks.end == build.bricks.len() {
+            self.lights[at].finish();
+        }
         Ok(())
     }
 

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Camera, ControlPoint, Interpolation, Length, Rig, Sampling, Settings, TransferFunction};
+use super::{ControlPoint, Interpolation, Length, Rig, Sampling, Settings, TransferFunction};
 use crate::data::{Histogram, Volume};
 
 /// Histogram bins used here: fine enough for 12-bit data whose object spans a tenth of the range.

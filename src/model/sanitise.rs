@@ -29,14 +29,17 @@ impl Settings {
             }
         };
         let default = Self::default();
-        let Camera { projection: _, azimuth_deg, elevation_deg, roll_deg, target, distance, fov_y_deg } =
-            &mut self.camera;
-        number(azimuth_deg, -1e6, 1e6, default.camera.azimuth_deg);
-        number(elevation_deg, -1e6, 1e6, default.camera.elevation_deg);
-        number(roll_deg, -1e6, 1e6, 0.0);
-        point(target, 100.0);
-        number(distance, 0.05, 1e4, default.camera.distance);
-        number(fov_y_deg, 1.0, 120.0, default.camera.fov_y_deg);
+        self.views.retain(|slot, _| (1..=9).contains(slot));
+        for camera in self.views.values_mut().chain([&mut self.camera]) {
+            let Camera { projection: _, azimuth_deg, elevation_deg, roll_deg, target, distance, fov_y_deg } =
+                camera;
+            number(azimuth_deg, -1e6, 1e6, default.camera.azimuth_deg);
+            number(elevation_deg, -1e6, 1e6, default.camera.elevation_deg);
+            number(roll_deg, -1e6, 1e6, 0.0);
+            point(target, 100.0);
+            number(distance, 0.05, 1e4, default.camera.distance);
+            number(fov_y_deg, 1.0, 120.0, default.camera.fov_y_deg);
+        }
         self.lights.truncate(super::MAX_LIGHTS);
         for light in &mut self.lights {
             let Light {

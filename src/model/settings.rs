@@ -1,5 +1,7 @@
 //! The one value that is the whole look of a picture.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::transfer::unit_in_scene;
@@ -37,6 +39,8 @@ pub struct Settings {
     pub sampling: Sampling,
     /// What happens to the picture at the end.
     pub output: Output,
+    /// Views that are kept, by their digit; they are no part of the picture.
+    pub views: BTreeMap<u8, Camera>,
 }
 
 impl Default for Settings {
@@ -52,6 +56,7 @@ impl Default for Settings {
             shadows: Shadows::default(),
             sampling: Sampling::default(),
             output: Output::default(),
+            views: BTreeMap::new(),
         }
     }
 }

@@ -4,22 +4,21 @@ use glam::DVec3;
 
 use super::{Camera, Projection};
 
-/// A side from which to look. The names are those of a body in right-anterior-superior space, or of a thing
-/// whose front looks along +y.
+/// A side from which to look, along the axes of the scene. What the front of a thing is, only its owner knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardView {
+    /// From +x …
+    PlusX,
+    /// … and so on.
+    MinusX,
     /// From +y.
-    Front,
+    PlusY,
     /// From −y.
-    Back,
-    /// From +x.
-    Right,
-    /// From −x.
-    Left,
-    /// From +z.
-    Top,
-    /// From −z.
-    Bottom,
+    MinusY,
+    /// From +z: from above.
+    PlusZ,
+    /// From −z: from below.
+    MinusZ,
     /// From a corner: all three axes are equally long.
     Isometric,
 }
@@ -27,17 +26,17 @@ pub enum StandardView {
 impl StandardView {
     /// All of them, in the order of menus.
     pub const ALL: [Self; 7] =
-        [Self::Front, Self::Back, Self::Right, Self::Left, Self::Top, Self::Bottom, Self::Isometric];
+        [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ, Self::Isometric];
 
     /// What menus call it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Front => "Front (from +y)",
-            Self::Back => "Back (from −y)",
-            Self::Right => "Right (from +x)",
-            Self::Left => "Left (from −x)",
-            Self::Top => "Top (from +z)",
-            Self::Bottom => "Bottom (from −z)",
+            Self::PlusX => "From +x",
+            Self::MinusX => "From −x",
+            Self::PlusY => "From +y",
+            Self::MinusY => "From −y",
+            Self::PlusZ => "From above (+z)",
+            Self::MinusZ => "From below (−z)",
             Self::Isometric => "Isometric",
         }
     }
@@ -45,15 +44,15 @@ impl StandardView {
     /// Azimuth and elevation in degrees.
     pub fn angles_deg(self) -> [f64; 2] {
         match self {
-            Self::Front => [90.0, 0.0],
-            Self::Back => [270.0, 0.0],
-            Self::Right => [0.0, 0.0],
-            Self::Left => [180.0, 0.0],
+            Self::PlusX => [0.0, 0.0],
+            Self::MinusX => [180.0, 0.0],
+            Self::PlusY => [90.0, 0.0],
+            Self::MinusY => [270.0, 0.0],
             // +y up, as on a map.
-            Self::Top => [270.0, 90.0],
-            Self::Bottom => [270.0, -90.0],
-            // atan(1/√2): the angle between a cube's diagonal and its face.
-            Self::Isometric => [45.0, std::f64::consts::FRAC_1_SQRT_2.atan().to_degrees()],
+            Self::PlusZ => [270.0, 90.0],
+            Self::MinusZ => [270.0, -90.0],
+            // Between +x and −y; atan(1/√2) is the angle between a cube's diagonal and its face.
+            Self::Isometric => [315.0, std::f64::consts::FRAC_1_SQRT_2.atan().to_degrees()],
         }
     }
 
@@ -62,11 +61,11 @@ impl StandardView {
         let size = direction.abs();
         let side = |value: f64, plus, minus| if value > 0.0 { plus } else { minus };
         if size.z >= size.x && size.z >= size.y {
-            side(direction.z, Self::Top, Self::Bottom)
+            side(direction.z, Self::PlusZ, Self::MinusZ)
         } else if size.y >= size.x {
-            side(direction.y, Self::Front, Self::Back)
+            side(direction.y, Self::PlusY, Self::MinusY)
         } else {
-            side(direction.x, Self::Right, Self::Left)
+            side(direction.x, Self::PlusX, Self::MinusX)
         }
     }
 }
@@ -125,12 +124,12 @@ mod tests {
     #[test]
     fn sides_are_seen_from_where_their_names_say() {
         for (view, from) in [
-            (StandardView::Front, DVec3::Y),
-            (StandardView::Back, DVec3::NEG_Y),
-            (StandardView::Right, DVec3::X),
-            (StandardView::Left, DVec3::NEG_X),
-            (StandardView::Top, DVec3::Z),
-            (StandardView::Bottom, DVec3::NEG_Z),
+            (StandardView::PlusY, DVec3::Y),
+            (StandardView::MinusY, DVec3::NEG_Y),
+            (StandardView::PlusX, DVec3::X),
+            (StandardView::MinusX, DVec3::NEG_X),
+            (StandardView::PlusZ, DVec3::Z),
+            (StandardView::MinusZ, DVec3::NEG_Z),
         ] {
             let mut camera = Camera { roll_deg: 20.0, ..Camera::default() };
             camera.look_from(view);
@@ -143,7 +142,7 @@ mod tests {
         let mut camera = Camera::default();
         camera.look_from(StandardView::Isometric);
         let towards = camera.scene_from_view().z_axis;
-        assert!((towards - DVec3::ONE.normalize()).length() < 1e-9);
+        assert!((towards - DVec3::new(1.0, -1.0, 1.0).normalize()).length() < 1e-9);
     }
 
     #[test]

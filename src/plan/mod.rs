@@ -111,6 +111,7 @@ impl LightKey {
             sampling:
                 Sampling { kernel: _, slab: _, quadrature: _, gradients: _, classification, engine, order: _ },
             output: _,
+            views: _,
         } = &request.settings;
         let light = lights.get(index)?.in_world(camera);
         let Light {
@@ -231,6 +232,7 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
         shadows,
         sampling,
         output,
+        views: _,
     } = &next.settings;
     let before = &previous.settings;
     let volume = previous.volume != next.volume;

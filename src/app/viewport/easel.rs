@@ -301,6 +301,7 @@ impl Easel {
         let splats = if is_settled { Some(scene.renderer.splats()?) } else { None };
         let total_ms = total_ms + start.elapsed().as_secs_f64() * 1000.0;
         log::debug!("{look:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
+        let light_volumes = scene.renderer.light_figures(&job);
         let light_rebuilds: u64 = scene.renderer.light_rebuilds().iter().sum();
         let pixels = f64::from(size[0]) * f64::from(size[1]);
         self.refine.learn_picture(look, pixels, total_ms - light_ms);
@@ -333,6 +334,7 @@ impl Easel {
             desk.figures.splats = splats;
         }
         desk.figures.light_bytes = scene.renderer.light_bytes();
+        desk.figures.light_volumes = light_volumes;
         desk.figures.gpu_bytes = scene.renderer.gpu_bytes();
         desk.figures.refining = None;
         desk.frame = Some(Frame { wanted, look, image, other });

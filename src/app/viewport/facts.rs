@@ -1,7 +1,7 @@
 //! What the rest of the window may know of the renderer.
 
 use super::Viewport;
-use crate::gpu::Stage;
+use crate::gpu::{LightFigures, Stage};
 use crate::model::Settings;
 
 /// What is going on.
@@ -46,6 +46,8 @@ pub(in crate::app) struct Facts {
     pub light_mebibytes: f64,
     /// Mebibytes of textures.
     pub gpu_mebibytes: f64,
+    /// The light volume of each light of the picture, if it has one.
+    pub light_volumes: Vec<Option<LightFigures>>,
     /// What is going on.
     pub doing: Doing,
 }
@@ -67,6 +69,7 @@ impl Viewport {
             light_mebibytes: figures.light_bytes as f64 / f64::from(1 << 20),
             dark_share: figures.dark_share,
             gpu_mebibytes: figures.gpu_bytes as f64 / f64::from(1 << 20),
+            light_volumes: figures.light_volumes.clone(),
             doing: self.doing(looks, figures.refining),
         }
     }

@@ -19,6 +19,7 @@ pub(super) use self::facts::{Doing, Facts};
 use self::painter::{Frame, Painter};
 use super::refine::Look;
 use crate::data::{Bricks, Volume};
+pub(super) use crate::gpu::LightFigures;
 use crate::gpu::{Context, Distance, GpuError, Renderer};
 use crate::model::Settings;
 

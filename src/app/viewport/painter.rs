@@ -13,7 +13,7 @@ use super::easel::Easel;
 use super::{Scene, Wanted};
 use crate::app::refine::Look;
 use crate::app::work::panic_message;
-use crate::gpu::{Context, GpuError, Stage};
+use crate::gpu::{Context, GpuError, LightFigures, Stage};
 
 /// A finished picture.
 pub(super) struct Frame {
@@ -25,7 +25,7 @@ pub(super) struct Frame {
 }
 
 /// Figures about the work, for display.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Figures {
     /// Milliseconds of the last full-quality picture.
     pub(super) full_ms: Option<f64>,
@@ -35,6 +35,8 @@ pub(super) struct Figures {
     pub(super) cached_light_volumes: usize,
     pub(super) gpu_bytes: u64,
     pub(super) light_bytes: u64,
+    /// The light volume of each light, if it has one.
+    pub(super) light_volumes: Vec<Option<LightFigures>>,
     /// Footprints that the last full-quality picture has splatted; 0 of one that gathers.
     pub(super) splats: u64,
     /// Share of what the last full-quality picture shows that is nearly black.
@@ -145,6 +147,6 @@ impl Painter {
 
     /// Figures about the work.
     pub(super) fn figures(&self) -> Figures {
-        self.shared.desk().figures
+        self.shared.desk().figures.clone()
     }
 }

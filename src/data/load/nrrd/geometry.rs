@@ -9,7 +9,7 @@ use super::super::LoadError;
 use super::super::error::{Attempt, quoted};
 use super::super::limits::{is_usable_affine, is_usable_spacing};
 use super::header::Header;
-use super::space::{directions, flips, mm_per_unit, origin};
+use super::space::{directions, flips, is_anatomical, mm_per_unit, origin};
 
 /// The largest dimension that NRRD allows.
 const MOST_AXES: usize = 16;
@@ -38,6 +38,8 @@ pub(super) struct Geometry {
     pub(super) dims: [u64; 3],
     /// Voxel indices to millimetres, right-anterior-superior.
     pub(super) world_from_index: DAffine3,
+    /// Whether the file says so.
+    pub(super) is_anatomical: bool,
 }
 
 /// One axis of the array.
@@ -73,7 +75,8 @@ impl Geometry {
             translation: ras_from_file * origin_mm,
         };
         if is_usable_affine(&world_from_index) {
-            Ok(Self { dims: [size(0), size(1), size(2)], world_from_index })
+            let dims = [size(0), size(1), size(2)];
+            Ok(Self { dims, world_from_index, is_anatomical: is_anatomical(header) })
         } else {
             let field =
                 if header.get("space directions").is_some() { "space directions" } else { "spacings" };

@@ -83,6 +83,13 @@ pub(super) fn flips(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Load
     })
 }
 
+/// Whether the file says which way a body lies.
+pub(super) fn is_anatomical(header: &Header) -> bool {
+    let space = header.get("space").unwrap_or_default().to_lowercase();
+    let names = ["right-anterior-superior", "left-anterior-superior", "left-posterior-superior"];
+    names.contains(&space.as_str()) || ["ras", "las", "lps"].contains(&space.as_str())
+}
+
 /// Millimetres per unit of `space units` or `units`, from the first unit that is a known length.
 pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
     let units = header.get(field).unwrap_or_default();

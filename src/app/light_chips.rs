@@ -1,0 +1,112 @@
+//! The lights as chips at the top of the picture: which there are, which shine, which one is selected.
+
+use eframe::egui::{self, Rect, Sense, Ui, UiBuilder, vec2};
+
+use super::commands::Command;
+use super::light_keys::solo;
+use super::theme;
+use super::viewport::Facts;
+use crate::model::{Light, MAX_LIGHTS, Settings};
+
+/// Shows the chips.
+pub(super) fn show(
+    ui: &mut Ui,
+    picture: Rect,
+    settings: &mut Settings,
+    selected: &mut usize,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) {
+    let area =
+        Rect::from_min_size(picture.min + vec2(8.0, 8.0), vec2((picture.width() - 130.0).max(80.0), 24.0));
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(area).id_salt("light chips"));
+    ui.set_clip_rect(picture);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
+        let mut alone = None;
+        for at in 0..settings.lights.len() {
+            let is_selected = *selected == at;
+            let volume = facts.light_volumes.get(at).copied().flatten();
+            let response = chip(ui, &settings.lights[at], is_selected);
+            let response = response.on_hover_text(what_it_costs(&settings.lights[at], volume));
+            if response.clicked() {
+                *selected = at;
+            }
+            response.context_menu(|ui| {
+                let light = &mut settings.lights[at];
+                if ui.button(if light.on { "Mute" } else { "Unmute" }).clicked() {
+                    light.on ^= true;
+                }
+                if ui.button("Solo").clicked() {
+                    alone = Some(at);
+                }
+                ui.checkbox(&mut light.casts_shadows, "Casts shadows");
+                ui.add(egui::Slider::new(&mut light.intensity, 0.0..=4.0).text("Intensity"));
+            });
+        }
+        if let Some(at) = alone {
+            solo(&mut settings.lights, at);
+        }
+        if settings.lights.len() < MAX_LIGHTS {
+            let add = ui.add(egui::Button::new("+").small().fill(ground(false)));
+            if add.on_hover_text("Add a light").clicked() {
+                commands.push(Command::AddLight);
+            }
+        }
+    });
+}
+
+fn ground(selected: bool) -> egui::Color32 {
+    theme::OUTLINE.gamma_multiply(if selected { 0.9 } else { 0.6 })
+}
+
+/// A dot in the light's colour, dimmed with its intensity and hollow when it is off; and its name.
+fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let name = if light.name.is_empty() { "Light" } else { &light.name };
+    let ink = match (selected, light.on) {
+        (true, _) => theme::ACCENT,
+        (false, true) => theme::EYE_CURVE,
+        (false, false) => theme::GUIDE.gamma_multiply(0.6),
+    };
+    let galley = ui.painter().layout_no_wrap(name.to_owned(), font, ink);
+    let size = vec2(galley.size().x + 30.0, 20.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| {
+        let state = if light.on { "on" } else { "off" };
+        egui::WidgetInfo::selected(egui::Role::RadioButton, true, selected, format!("Light {name}, {state}"))
+    });
+    let painter = ui.painter();
+    painter.rect_filled(rect, 10.0, ground(selected || response.hovered()));
+    if selected || response.has_focus() {
+        let stroke = egui::Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.8));
+        painter.rect_stroke(rect, 10.0, stroke, egui::StrokeKind::Inside);
+    }
+    let dot = rect.left_center() + vec2(12.0, 0.0);
+    let color = theme::color(light.color);
+    if light.on {
+        let strength = (0.35 + 0.65 * (light.intensity as f32).min(1.0)).min(1.0);
+        painter.circle_filled(dot, 5.0, color.gamma_multiply(strength));
+    } else {
+        painter.circle_stroke(dot, 4.5, egui::Stroke::new(1.2, color.gamma_multiply(0.6)));
+    }
+    painter.galley(rect.left_center() + vec2(22.0, -galley.size().y / 2.0), galley, ink);
+    response
+}
+
+/// What a light's shadows cost: (milliseconds of filling, bytes, whether they are there).
+fn what_it_costs(light: &Light, volume: Option<super::viewport::LightFigures>) -> String {
+    let shadows = match volume {
+        _ if !light.casts_shadows => "casts no shadows".to_owned(),
+        None => "shadows are not filled yet".to_owned(),
+        Some(volume) => {
+            let state = if volume.complete { "cached" } else { "being filled" };
+            let ms = volume.fill_ms.map_or_else(String::new, |ms| format!(", {ms:.0} ms"));
+            format!("light volume {state}{ms}, {:.1} MiB", volume.bytes as f64 / f64::from(1 << 20))
+        }
+    };
+    format!(
+        "{}: intensity {:.2}, {shadows}\nClick selects, drag its handle or use the arrow keys; right click for more",
+        light.name, light.intensity
+    )
+}

@@ -1,0 +1,113 @@
+//! What is remembered from one run to the next: files that were opened, and the look as it was at last.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Files that the menu offers.
+const MOST_RECENT: usize = 12;
+/// The look is kept at most so often.
+const KEEP_EVERY: Duration = Duration::from_secs(5);
+
+/// Files in the folder that the system gives us; without one, nothing is remembered.
+#[derive(Debug, Default)]
+pub(super) struct Memory {
+    folder: Option<PathBuf>,
+    recent: Vec<String>,
+    /// The look that was written last, and when.
+    kept: Option<(String, Instant)>,
+}
+
+impl Memory {
+    /// Remembers what was written to a folder. The look of the run before is put aside.
+    pub(super) fn new(folder: Option<PathBuf>) -> Self {
+        let mut memory = Self { folder, ..Self::default() };
+        if let Some(folder) = &memory.folder {
+            std::fs::create_dir_all(folder).ok();
+            std::fs::rename(folder.join("now.json"), folder.join("before.json")).ok();
+            let text = std::fs::read_to_string(folder.join("recent.json")).unwrap_or_default();
+            memory.recent = serde_json::from_str(&text).unwrap_or_default();
+            memory.recent.truncate(MOST_RECENT);
+        }
+        memory
+    }
+
+    /// What was opened, the latest first.
+    pub(super) fn recent(&self) -> &[String] {
+        &self.recent
+    }
+
+    /// Takes note of a file that was opened. Built-in volumes have a menu of their own.
+    pub(super) fn opened(&mut self, source: &str) {
+        if source.starts_with("builtin:") {
+            return;
+        }
+        let whole =
+            std::path::absolute(source).map_or_else(|_| source.to_owned(), |path| path.display().to_string());
+        self.recent.retain(|known| *known != whole);
+        self.recent.insert(0, whole);
+        self.recent.truncate(MOST_RECENT);
+        self.write("recent.json", &serde_json::to_string_pretty(&self.recent).unwrap_or_default());
+    }
+
+    /// The look of the run before, if there is one.
+    pub(super) fn before(&self) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join("before.json")).filter(|path| path.exists())
+    }
+
+    /// Whether it is time to keep the look.
+    pub(super) fn is_due(&self) -> bool {
+        self.folder.is_some() && self.kept.as_ref().is_none_or(|(_, when)| when.elapsed() > KEEP_EVERY)
+    }
+
+    /// Keeps the look, unless it is as it was.
+    pub(super) fn keep(&mut self, text: String) {
+        if self.kept.as_ref().is_none_or(|(known, _)| *known != text) {
+            self.write("now.json", &text);
+        }
+        self.kept = Some((text, Instant::now()));
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        if let Some(folder) = &self.folder
+            && let Err(err) = crate::gpu::write_atomically(&folder.join(name), text.as_bytes())
+        {
+            log::warn!("{name} was not kept: {err}");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_and_the_last_look_are_remembered() {
+        let folder = tempfile::tempdir().unwrap();
+        let remember = || Memory::new(Some(folder.path().to_owned()));
+        let mut memory = remember();
+        assert!(memory.recent().is_empty() && memory.before().is_none() && memory.is_due());
+        for file in ["/a.nrrd", "/b.nrrd", "builtin:chair", "/a.nrrd"] {
+            memory.opened(file);
+        }
+        memory.keep("{\"look\": 1}".to_owned());
+        assert!(!memory.is_due());
+        let memory = remember();
+        assert_eq!(memory.recent(), ["/a.nrrd", "/b.nrrd"]);
+        assert_eq!(std::fs::read_to_string(memory.before().unwrap()).unwrap(), "{\"look\": 1}");
+        for at in 0..2 * MOST_RECENT {
+            remember().opened(&format!("/{at}.nrrd"));
+        }
+        assert_eq!(remember().recent().len(), MOST_RECENT);
+    }
+
+    #[test]
+    fn damaged_files_are_nothing_and_no_folder_remembers_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("recent.json"), "{nonsense").unwrap();
+        assert!(Memory::new(Some(folder.path().to_owned())).recent().is_empty());
+        let mut memory = Memory::new(None);
+        memory.opened("/a.nrrd");
+        memory.keep("x".to_owned());
+        assert!(!memory.is_due() && memory.before().is_none());
+    }
+}

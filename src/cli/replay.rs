@@ -1,0 +1,90 @@
+//! `chiaroscuro replay`: makes a picture again from what it carries, and compares.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::scene::{Loaded, RawArgs};
+use super::{CliError, print_line, warn_line};
+use crate::data::load::{LoadControl, open};
+use crate::gpu::{Context, Distance, RenderOptions, Renderer, export_png, read_record};
+use crate::model::{PresetError, Record, Settings};
+
+/// Arguments of `replay`.
+#[derive(Debug, Args)]
+pub(super) struct ReplayArgs {
+    /// A PNG picture that this program has exported
+    picture: PathBuf,
+    /// The volume, if it is not where it was
+    #[arg(long, value_name = "FILE")]
+    volume: Option<String>,
+    /// Write the new picture
+    #[arg(short, long, value_name = "OUT.png")]
+    output: Option<PathBuf>,
+    /// Fail (exit code 1) unless both pictures are the same byte for byte
+    #[arg(long)]
+    check: bool,
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+/// Renders the picture again and says how far the two are apart.
+pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
+    let path = args.picture.display().to_string();
+    let unusable = |why: String| CliError::Replay { path: path.clone(), why };
+    let text = read_record(&args.picture)?.ok_or_else(|| unusable("it carries no settings".to_owned()))?;
+    let preset = |source: PresetError| CliError::Preset { what: "picture", path: path.clone(), source };
+    let record = Record::read(&text).map_err(preset)?;
+    let how =
+        record.picture.clone().ok_or_else(|| unusable("it does not say how large it was".to_owned()))?;
+    let (settings, warnings) = record.apply(&Settings::default()).map_err(preset)?;
+    for warning in warnings {
+        warn_line(&format!("warning: {warning} ({path})"));
+    }
+    let stated = record.volume.as_ref();
+    let source = args.volume.clone().or_else(|| stated.map(|of| of.source_from(args.picture.parent())));
+    let source = source.ok_or_else(|| unusable("it does not say of which volume".to_owned()))?;
+    let volume = open(&source, &args.raw.load_options()?, &LoadControl::new())?;
+    if stated.is_some_and(|of| !of.is_of(volume.content_id())) {
+        return Err(unusable(format!("{source} is another volume than the one that it shows")));
+    }
+    let loaded = Loaded::new(volume);
+    let context = Context::headless()?;
+    if how.adapter != context.description() {
+        warn_line(&format!("made on {}, again on {}", how.adapter, context.description()));
+    }
+    if how.version != env!("CARGO_PKG_VERSION") {
+        warn_line(&format!("made by version {}, again by {}", how.version, env!("CARGO_PKG_VERSION")));
+    }
+    let options = RenderOptions { transparent: how.transparent, ..RenderOptions::default() };
+    let mut renderer = Renderer::new(&context)?;
+    let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, how.size, &options)?;
+    let before = image::open(&args.picture).map_err(|err| unusable(err.to_string()))?.to_rgba8();
+    if [before.width(), before.height()] != how.size {
+        return Err(unusable(format!(
+            "it is {} × {} pixels and not {:?}",
+            before.width(),
+            before.height(),
+            how.size
+        )));
+    }
+    let shown: Vec<u8> = if how.transparent {
+        picture.shown.clone()
+    } else {
+        picture.shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2], 255]).collect()
+    };
+    if let Some(output) = &args.output {
+        export_png(&picture, how.transparent, Some(&text), output)?;
+    }
+    if shown == *before.as_raw() {
+        print_line("identical");
+        return Ok(());
+    }
+    let Distance { rmse, largest } = Distance::between(before.as_raw(), &shown);
+    let words = format!("different: RMSE {rmse:.3} of 255, largest difference {largest}");
+    if args.check {
+        return Err(CliError::Differs(words));
+    }
+    print_line(&words);
+    Ok(())
+}
