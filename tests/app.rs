@@ -8,7 +8,7 @@ use chiaroscuro::app::{App, Options, wgpu_setup};
 use chiaroscuro::data::Bricks;
 use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer, export_png};
-use chiaroscuro::model::{LightKind, Projection};
+use chiaroscuro::model::{LightKind, Projection, TransferFunction};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -297,6 +297,45 @@ fn lights_are_set_by_the_keyboard() {
     click(&mut harness, "Light Key, off");
     press(&mut harness, egui::Key::M);
     assert!(lights(&harness)[0].on);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn the_whole_curve_is_colored_moved_and_replaced() {
+    let mut harness = window();
+    let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
+    let first = transfer(&harness);
+    click(&mut harness, "Colours");
+    click(&mut harness, "Viridis");
+    let colored = transfer(&harness);
+    assert!(colored.points.len() > first.points.len());
+    let last = |function: &TransferFunction| function.points.last().expect("a point").color;
+    assert!(last(&colored) != last(&first));
+
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(transfer(&harness), first);
+    click(&mut harness, "Presets");
+    click(&mut harness, "Lobster");
+    let preset = transfer(&harness);
+    assert!(preset != first && preset != colored);
+    click(&mut harness, "Bump");
+    assert_eq!(transfer(&harness).points.len(), preset.points.len() + 11);
+
+    // The wheel shows fewer values, and points beyond are not in the way.
+    let plot = harness.get_by_label("Transfer function").rect();
+    harness.hover_at(plot.left_center() + vec2(30.0, 0.0));
+    harness.step();
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        source: egui::MouseWheelSource::Wheel,
+        delta: vec2(0.0, 400.0),
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(8);
+    click(&mut harness, "Show all");
+    assert!(harness.query_by_label("Show all").is_none());
     wait_until_idle(&mut harness);
 }
 

@@ -666,6 +666,36 @@ fn unknown_names_in_a_preset_are_warnings() {
 }
 
 #[test]
+fn turntables_are_files_that_move_or_folders() {
+    let folder = Folder::new();
+    folder.succeed("turntable builtin:chair:16 -o turn.png --size 40x30 --frames 4 --rate 8");
+    let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(folder.read("turn.png")))
+        .expect("a PNG file");
+    assert!(decoder.is_apng().expect("it can be read"));
+    let frames = image::AnimationDecoder::into_frames(decoder.apng().expect("it moves"));
+    let frames: Vec<_> = frames.map(|frame| frame.expect("a frame").into_buffer().into_raw()).collect();
+    assert_eq!(frames.len(), 4);
+    assert!(frames.windows(2).all(|pair| pair[0] != pair[1]), "the camera turns");
+
+    folder.succeed("turntable builtin:chair:16 -o pictures --size 40x30 --frames 3 --light 1");
+    let names = ["0000.png", "0001.png", "0002.png"].map(|name| format!("pictures/{name}"));
+    assert!(names.iter().all(|name| folder.path(name).exists()));
+    assert!(folder.succeed("replay pictures/0001.png --check").contains("identical"));
+    let outcome = folder.run("turntable builtin:chair:16 -o x.png --light 9");
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    assert!(outcome.stderr.contains("no light 9"), "{outcome:?}");
+}
+
+#[test]
+fn presets_of_the_library_can_be_named() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:chair:16 -o own.png --size 40x30");
+    folder.succeed("render builtin:chair:16 -o paper.png --size 40x30 --preset paper/chair");
+    assert_shows_something(&folder.path("paper.png"), [40, 30]);
+    assert!(folder.read("own.png") != folder.read("paper.png"));
+}
+
+#[test]
 fn pictures_can_be_made_again_from_themselves() {
     let folder = Folder::new();
     folder.write("x_8x8x8_uint8.raw", small_ball());

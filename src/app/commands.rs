@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
-use crate::model::{Rig, StandardView};
+use crate::model::{COLOR_MAPS, PRESETS, Preset, Rig, StandardView};
 
 /// Something the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,6 +69,16 @@ pub(super) enum Command {
     Dimmer,
     /// The automatic transfer function.
     AutomaticTransfer,
+    /// One of the library.
+    UsePreset(Preset),
+    /// Other colours for the visible values: the index of a colour map, and whether it is reversed.
+    UseColors(usize, bool),
+    /// Ask for a transfer function of another program …
+    ImportTransfer,
+    /// … or where to write one.
+    ExportTransfer,
+    /// Opacities the other way round.
+    InvertTransfer,
     /// Measure the brightness and set the balance.
     Balance,
     /// Show or hide the side panel.
@@ -165,6 +175,9 @@ pub(super) fn listed() -> Vec<Command> {
         Command::Dimmer,
         Command::Balance,
         Command::AutomaticTransfer,
+        Command::InvertTransfer,
+        Command::ImportTransfer,
+        Command::ExportTransfer,
         Command::ToggleSide,
         Command::ToggleHandles,
         Command::ToggleCompare,
@@ -176,6 +189,8 @@ pub(super) fn listed() -> Vec<Command> {
     ];
     all.extend(StandardView::ALL.map(Command::LookFrom));
     all.extend(Rig::ALL.map(Command::UseRig));
+    all.extend(PRESETS.map(Command::UsePreset));
+    all.extend((0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| Command::UseColors(at, back))));
     all.extend(VIEW_SLOTS.map(Command::StoreView));
     all.extend(VIEW_SLOTS.map(Command::RecallView));
     all
@@ -187,6 +202,16 @@ impl Command {
         let text = match self {
             Self::LookFrom(view) => return format!("Look: {}", view.name()).into(),
             Self::UseRig(rig) => return format!("Lights: {}", rig.name()).into(),
+            Self::UsePreset(preset) => {
+                return format!("Preset: {}, {}", preset.domain(), preset.title()).into();
+            }
+            Self::UseColors(at, back) => {
+                let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
+                return format!("Colours: {name}{}", if *back { ", reversed" } else { "" }).into();
+            }
+            Self::ImportTransfer => "Import transfer function…",
+            Self::ExportTransfer => "Export transfer function…",
+            Self::InvertTransfer => "Invert opacities",
             Self::StoreView(slot) => return format!("Store view {slot}").into(),
             Self::RecallView(slot) => return format!("Recall view {slot}").into(),
             Self::FrameAll => "Frame all",

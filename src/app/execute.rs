@@ -12,7 +12,7 @@ use super::volume_facts::VolumeFacts;
 use super::work::Work;
 use super::{App, export, light_keys, light_slice, panels};
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{Record, VolumeRecord, auto};
+use crate::model::{COLOR_MAPS, Record, VolumeRecord, auto};
 
 impl App {
     /// Does what the user asked for.
@@ -49,6 +49,22 @@ impl App {
                     self.settings.transfer = auto::transfer(&volume, &facts.histogram);
                 }
             }
+            Command::UsePreset(preset) => {
+                if let Some(volume) = &self.volume {
+                    match preset.apply(&self.settings, volume.range) {
+                        Ok(settings) => self.settings = settings,
+                        Err(err) => self.messages.error("the preset was not applied", err.to_string()),
+                    }
+                }
+            }
+            Command::UseColors(at, reversed) => {
+                if let Some(map) = COLOR_MAPS.get(at) {
+                    self.settings.transfer.color_by(map, reversed);
+                }
+            }
+            Command::ImportTransfer => self.files.ask(Purpose::ImportTransfer, frame, ctx),
+            Command::ExportTransfer => self.files.ask(Purpose::ExportTransfer, frame, ctx),
+            Command::InvertTransfer => self.settings.transfer.invert(),
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => self.settings.camera.frame_as(&self.defaults.camera),
             Command::LookFrom(view) => self.settings.camera.look_from(view),
@@ -174,6 +190,14 @@ impl App {
                 }
             }
             Purpose::LoadSettings => self.load_settings(path, ctx),
+            Purpose::ImportTransfer => match files::import_transfer(path) {
+                Ok(function) => self.settings.transfer = function,
+                Err(err) => self.messages.error("the transfer function was not imported", err),
+            },
+            Purpose::ExportTransfer => match files::export_transfer(path, &self.settings.transfer) {
+                Ok(()) => self.messages.note(format!("Wrote {}", path.display())),
+                Err(err) => self.messages.error("the transfer function was not written", err),
+            },
             Purpose::CompareSettings => {
                 let read = files::load_record(path);
                 match read.and_then(|read| read.apply(&self.settings).map_err(|err| err.to_string())) {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 
 use super::work::Work;
-use crate::model::{Record, Settings, VolumeRecord};
+use crate::model::{Record, Settings, TransferFunction, VolumeRecord, from_paraview, to_paraview};
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +15,10 @@ pub(super) enum Purpose {
     OpenVolume,
     /// Settings to apply.
     LoadSettings,
+    /// A transfer function of another program.
+    ImportTransfer,
+    /// Where to write the transfer function for another program.
+    ExportTransfer,
     /// Settings to compare with.
     CompareSettings,
     /// Where to save settings.
@@ -30,6 +34,8 @@ impl Purpose {
         match self {
             Self::OpenVolume => "Open volume",
             Self::LoadSettings => "Load settings",
+            Self::ImportTransfer => "Import transfer function",
+            Self::ExportTransfer => "Export transfer function",
             Self::CompareSettings => "Compare with settings",
             Self::SaveSettings => "Save settings",
             Self::ExportPicture => "Export picture",
@@ -41,6 +47,7 @@ impl Purpose {
         match self {
             Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
             Self::LoadSettings | Self::CompareSettings => "a .json file, or a .png picture that was exported",
+            Self::ImportTransfer | Self::ExportTransfer => "a .json file, as ParaView's colour maps",
             Self::SaveSettings => "a .json file",
             Self::ExportPicture => "a .png file",
             Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
@@ -87,7 +94,11 @@ impl Files {
                 Box::pin(dialog.add_filter("Volumes", &filters).add_filter("All files", &["*"]).pick_file())
             }
             Purpose::LoadSettings | Purpose::CompareSettings => {
-                Box::pin(dialog.add_filter("Settings", &["json"]).pick_file())
+                Box::pin(dialog.add_filter("Settings and pictures", &["json", "png"]).pick_file())
+            }
+            Purpose::ImportTransfer => Box::pin(dialog.add_filter("ParaView", &["json"]).pick_file()),
+            Purpose::ExportTransfer => {
+                Box::pin(dialog.add_filter("ParaView", &["json"]).set_file_name("colors.json").save_file())
             }
             Purpose::SaveSettings => {
                 Box::pin(dialog.add_filter("Settings", &["json"]).set_file_name("settings.json").save_file())
@@ -154,6 +165,8 @@ impl Files {
                     Purpose::OpenVolume => "Open",
                     Purpose::LoadSettings => "Load",
                     Purpose::CompareSettings => "Compare",
+                    Purpose::ImportTransfer => "Import",
+                    Purpose::ExportTransfer => "Write",
                     Purpose::SaveSettings => "Save",
                     Purpose::ExportPicture => "Use",
                     Purpose::ExportLight => "Export",
@@ -199,6 +212,20 @@ pub(super) fn load_record(path: &Path) -> Result<Record, String> {
             .map_err(|err| format!("could not read the settings: {err} ({shown})"))?
     };
     Record::read(&text).map_err(|err| format!("could not use the settings: {err} ({shown})"))
+}
+
+/// Reads a transfer function of another program.
+pub(super) fn import_transfer(path: &Path) -> Result<TransferFunction, String> {
+    let shown = path.display();
+    let text = std::fs::read_to_string(path)
+        .map_err(|err| format!("could not read the transfer function: {err} ({shown})"))?;
+    from_paraview(&text).map_err(|err| format!("could not use the transfer function: {err} ({shown})"))
+}
+
+/// Writes a transfer function for another program.
+pub(super) fn export_transfer(path: &Path, function: &TransferFunction) -> Result<(), String> {
+    let name = path.file_stem().map_or_else(|| "Chiaroscuro".into(), |stem| stem.to_string_lossy());
+    crate::gpu::write_atomically(path, to_paraview(function, &name).as_bytes()).map_err(|err| err.to_string())
 }
 
 /// Whether a file is a picture by its name.

@@ -18,7 +18,7 @@ pub(super) struct LightProbe {
 }
 
 impl LightProbe {
-    /// Asks what is under the pointer and paints the answer. The value there, for other views to mark.
+    /// Asks what is under the pointer and paints the answer.
     pub(super) fn show(
         &mut self,
         ui: &Ui,
@@ -26,8 +26,11 @@ impl LightProbe {
         settings: &Settings,
         volume: &Volume,
         pointer: Option<Pos2>,
-    ) -> Option<f64> {
-        let pointer = pointer.filter(|_| self.on)?;
+    ) {
+        let Some(pointer) = pointer.filter(|_| self.on) else {
+            self.last = None;
+            return;
+        };
         if self.last.as_ref().is_none_or(|(at, of, _)| *at != pointer || of != settings) {
             let found = seen_at(volume, settings, picture, pointer);
             self.last = Some((pointer, settings.clone(), found));
@@ -49,7 +52,12 @@ impl LightProbe {
         let corner = Rect::from_min_size(picture.right_bottom() - size - vec2(10.0, 10.0), size);
         painter.rect_filled(corner, 4.0, theme::OUTLINE.gamma_multiply(0.85));
         painter.galley(corner.min + vec2(8.0, 6.0), galley, theme::EYE_CURVE);
-        found.map(|found| found.value)
+    }
+
+    /// The value under the pointer, for other views to mark.
+    pub(super) fn value(&self) -> Option<f64> {
+        let (_, _, found) = self.last.as_ref().filter(|_| self.on)?;
+        Some(found.as_ref()?.value)
     }
 }
 

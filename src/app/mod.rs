@@ -257,7 +257,7 @@ impl App {
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
             panel.size_range(90.0..=420.0).show(ui, |ui| {
-                self.editor.ui(ui, &mut self.settings, volume, commands);
+                self.editor.ui(ui, &mut self.settings, volume, self.probe.value(), commands);
             });
         }
         let panel = egui::Panel::right("side").resizable(false).exact_size(theme::SIDE_WIDTH);

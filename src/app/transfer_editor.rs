@@ -3,11 +3,14 @@
 //! Both curves share one plot: the eye's, filled with its colours, and the lighting one as a single
 //! amber line, dashed while it follows the eye's.
 
+mod menus;
 mod plot;
+mod zoom;
 
 use eframe::egui::{self, DragValue, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 
 use self::plot::Axes;
+use self::zoom::Zoom;
 use super::commands::Command;
 use super::panels::controls::color;
 use super::theme;
@@ -31,11 +34,13 @@ pub(super) struct TransferEditor {
     selected: Option<usize>,
     /// Rare values are raised so that they can be seen.
     log_histogram: bool,
+    /// Values that are shown, if not all.
+    zoom: Zoom,
 }
 
 impl Default for TransferEditor {
     fn default() -> Self {
-        Self { curve: Curve::Eye, selected: None, log_histogram: true }
+        Self { curve: Curve::Eye, selected: None, log_histogram: true, zoom: Zoom::default() }
     }
 }
 
@@ -49,6 +54,7 @@ impl TransferEditor {
         ui: &mut Ui,
         settings: &mut Settings,
         volume: &VolumeFacts,
+        marked: Option<f64>,
         commands: &mut Vec<Command>,
     ) {
         if settings.lighting.linked {
@@ -58,7 +64,8 @@ impl TransferEditor {
         let size = ui.available_size();
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Transfer function"));
-        let axes = Axes::new(area, volume.range);
+        self.zoom.ui(ui, &response, area, volume.range);
+        let axes = Axes::new(area, self.zoom.shown(volume.range));
         self.paint(ui, &axes, settings, volume);
         let light = self.curve == Curve::Light;
         let name = if light { "Light point" } else { "Eye point" };
@@ -66,6 +73,7 @@ impl TransferEditor {
         self.add_point(&response, &axes, function);
         self.edit_points(ui, &axes, function, name);
         plot::readout(ui, &axes, &response, settings);
+        plot::mark(ui, &axes, marked);
     }
 
     fn tools(
@@ -93,7 +101,18 @@ impl TransferEditor {
         if let Some(index) = self.selected {
             self.point_fields(ui, function, index, volume.range, light);
         } else {
-            ui.weak("Click in the plot to add a point, drag points to move them");
+            menus::whole_curve(ui, function, volume.range);
+            let fit = ui.button("Fit").on_hover_text("Spreads the points over the values that occur");
+            if fit.clicked() {
+                menus::fit(function, volume);
+            }
+            let bump = ui.button("Bump").on_hover_text("Adds a smooth bump of opacity: a band of values");
+            if bump.clicked() {
+                menus::add_bump(function, self.zoom.shown(volume.range));
+            }
+            ui.add(
+                egui::Label::new(egui::RichText::new("Click adds a point, wheel zooms").weak()).truncate(),
+            );
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let button = ui.button("Automatic").on_hover_text("Puts the automatic transfer function back");
@@ -103,6 +122,9 @@ impl TransferEditor {
             }
             ui.checkbox(&mut self.log_histogram, "Log histogram")
                 .on_hover_text("Raises rare values in the histogram");
+            menus::colors(ui, commands);
+            menus::presets(ui, commands);
+            self.zoom.button(ui);
         });
     }
 
@@ -133,8 +155,9 @@ impl TransferEditor {
     fn paint(&self, ui: &Ui, axes: &Axes, settings: &Settings, volume: &VolumeFacts) {
         let painter = ui.painter_at(axes.area);
         plot::checkerboard(&painter, axes.area);
-        let bars = plot::bars(&volume.histogram, volume.levels, axes.width());
-        plot::histogram(&painter, axes, &bars, self.log_histogram);
+        let bars =
+            plot::bars(&volume.histogram, volume.levels, axes.width() * self.zoom.factor(volume.range));
+        plot::histogram(&painter, axes, volume.range, &bars, self.log_histogram);
         plot::eye_curve(&painter, axes, &settings.transfer, self.curve == Curve::Eye);
         plot::light_curve(&painter, axes, settings, self.curve == Curve::Light);
         plot::labels(&painter, axes);
@@ -157,6 +180,9 @@ impl TransferEditor {
         let painter = ui.painter_at(axes.area.expand(theme::POINT_RADIUS + 2.0));
         let mut removed = None;
         for index in 0..function.points.len() {
+            if !axes.shows(function.points[index].value) {
+                continue;
+            }
             let at = axes.position(function.points[index].value, function.points[index].opacity);
             let area = Rect::from_center_size(at, Vec2::splat(2.0 * theme::POINT_RADIUS + 6.0));
             let id = ui.scope_id().with((name, index));

@@ -10,6 +10,7 @@ mod light_volume;
 mod render;
 mod replay;
 mod scene;
+mod turntable;
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -38,6 +39,8 @@ struct Args {
 enum Command {
     /// Render a picture to a PNG file
     Render(render::RenderArgs),
+    /// Render one turn of the camera or of a light
+    Turntable(turntable::TurntableArgs),
     /// Make an exported picture again from what it carries, and compare the two
     Replay(replay::ReplayArgs),
     /// Render several looks side by side and say how far they are apart
@@ -74,6 +77,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     };
     let result = match args.command {
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Turntable(args)) => turntable::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::LightVolume(args)) => light_volume::run(&args),

@@ -10,14 +10,10 @@ use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
 use crate::data::{Bricks, Histogram, Volume, VoxelType};
 use crate::gpu::{Renderer, balance};
-use crate::model::{Engine, Settings, ShadowAlgorithm, apply_json, apply_path, auto};
+use crate::model::{Engine, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
 
 /// Largest file that is read as a preset: a thousand times the size of a real one.
 const MAX_PRESET_BYTES: u64 = 4 << 20;
-
-/// Presets that come with the program.
-const BUILTIN_PRESETS: [(&str, &str); 1] =
-    [("bench/creature", include_str!("../../presets/bench/creature.json"))];
 
 /// How a RAW file is stored.
 #[derive(Debug, Clone, Args)]
@@ -206,11 +202,9 @@ impl LookArgs {
             let Some(path) = path else { continue };
             let (overlay, name) = read_overlay(what, &path)?;
             balanced |= overlay.pointer("/shadows/balance").is_some();
-            let (next, warnings) = apply_json(&settings, &overlay).map_err(|source| CliError::Preset {
-                what,
-                path: name.clone(),
-                source,
-            })?;
+            let range = loaded.volume.value_range();
+            let (next, warnings) = apply_relative(&settings, &overlay, range)
+                .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
             for warning in warnings {
                 warn_line(&format!("warning: {what}: {warning} ({name})"));
             }
@@ -273,9 +267,9 @@ impl Look {
 /// Reads a preset or session: a built-in's name or a file.
 fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliError> {
     let name = path.display().to_string();
-    let builtin = BUILTIN_PRESETS.iter().find(|(known, _)| what == "preset" && *known == name);
+    let builtin = Preset::find(&name).filter(|_| what == "preset");
     let text = match builtin {
-        Some((_, text)) => text.as_bytes().to_vec(),
+        Some(preset) => preset.text().as_bytes().to_vec(),
         None => read_small(what, path)?,
     };
     let value = serde_json::from_slice(&text).map_err(|err| CliError::Preset {
@@ -304,7 +298,6 @@ fn read_small(what: &'static str, path: &Path) -> Result<Vec<u8>, CliError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::load_json;
 
     #[test]
     fn sizes_and_triples() {
@@ -315,13 +308,5 @@ mod tests {
         assert_eq!(triple("1x2x3"), Some([1usize, 2, 3]));
         assert_eq!(triple::<usize>("1x2"), None);
         assert_eq!(triple("0.5x1x2"), Some([0.5, 1.0, 2.0]));
-    }
-
-    #[test]
-    fn built_in_presets_are_valid_and_fully_understood() {
-        for (name, text) in BUILTIN_PRESETS {
-            let (_, warnings) = load_json(&Settings::default(), text).unwrap();
-            assert!(warnings.is_empty(), "{name}: {warnings:?}");
-        }
     }
 }

@@ -68,9 +68,7 @@ pub fn export_png(
     let bytes = if transparent {
         encode(picture.size, png::ColorType::Rgba, &picture.shown, record)?
     } else {
-        let rgb: Vec<u8> =
-            picture.shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect();
-        encode(picture.size, png::ColorType::Rgb, &rgb, record)?
+        encode(picture.size, png::ColorType::Rgb, &rgb(picture), record)?
     };
     write_atomically(path, &bytes)
 }
@@ -93,6 +91,35 @@ pub(super) fn encode(
     writer.write_image_data(bytes)?;
     writer.finish()?;
     Ok(png)
+}
+
+/// Pictures of one size as a PNG that moves (APNG), for ever; programs that do not know of it show the first.
+///
+/// # Errors
+/// When the encoder refuses.
+pub fn animated_png(pictures: &[Picture], transparent: bool, rate: u16) -> Result<Vec<u8>, ExportError> {
+    let [width, height] = pictures.first().map_or([1, 1], |picture| picture.size);
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, width, height);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_color(if transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_animated(pictures.len() as u32, 0)?;
+    encoder.set_frame_delay(1, rate)?;
+    let mut writer = encoder.write_header()?;
+    for picture in pictures {
+        if transparent {
+            writer.write_image_data(&picture.shown)?;
+        } else {
+            writer.write_image_data(&rgb(picture))?;
+        }
+    }
+    writer.finish()?;
+    Ok(png)
+}
+
+/// The colours of a picture without its alpha.
+fn rgb(picture: &Picture) -> Vec<u8> {
+    picture.shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
 }
 
 /// The record that a PNG file carries, if it does.

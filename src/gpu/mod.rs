@@ -49,7 +49,7 @@ pub use context::{Context, device_descriptor};
 pub use counts::LightFigures;
 pub use distance::Distance;
 pub use error::GpuError;
-pub use export::{ExportError, ReadPictureError, export_png, read_record, write_atomically};
+pub use export::{ExportError, ReadPictureError, animated_png, export_png, read_record, write_atomically};
 pub use export_light::{LightSlice, export_slice, light_volume_nrrd};
 pub use first_look::{balance, dark_share, first_look, mean_luminance};
 pub use job::{Job, Stage};

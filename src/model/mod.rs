@@ -5,7 +5,10 @@
 
 pub mod auto;
 mod camera;
+mod color_map;
+mod exchange;
 mod length;
+mod library;
 mod light;
 mod preset;
 mod record;
@@ -19,7 +22,10 @@ mod variant;
 mod view;
 
 pub use camera::{Camera, Projection};
+pub use color_map::{COLOR_MAPS, ColorMap};
+pub use exchange::{ExchangeError, from_paraview, to_paraview};
 pub use length::Length;
+pub use library::{PRESETS, Preset, apply_relative};
 pub use light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
 pub use preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use record::{PictureRecord, Record, VolumeRecord};

@@ -22,15 +22,17 @@ pub(super) struct Axes {
     pub area: Rect,
     /// The smallest and the largest value.
     pub range: (f64, f64),
+    /// Whether all of the volume's values are shown.
+    is_whole: bool,
     plot: Rect,
 }
 
 impl Axes {
     /// Axes over an area.
-    pub(super) fn new(area: Rect, range: (f64, f64)) -> Self {
+    pub(super) fn new(area: Rect, (range, is_whole): ((f64, f64), bool)) -> Self {
         // A volume with a single value still needs an axis.
         let range = if range.1 > range.0 { range } else { (range.0, range.0 + 1.0) };
-        Self { area, range, plot: area.shrink2(MARGIN) }
+        Self { area, range, is_whole, plot: area.shrink2(MARGIN) }
     }
 
     /// Where a value and an opacity are.
@@ -47,6 +49,18 @@ impl Axes {
         let x = f64::from(((at.x - self.plot.min.x) / self.plot.width()).clamp(0.0, 1.0));
         let y = f64::from(((self.plot.max.y - at.y) / self.plot.height()).clamp(0.0, 1.0));
         (self.range.0 + x * (self.range.1 - self.range.0), y)
+    }
+
+    /// Whether a value lies within what is shown.
+    pub(super) fn shows(&self, value: f64) -> bool {
+        // A volume's outermost points may lie beyond it, at the border.
+        let slack = 1e-9 * (self.range.1 - self.range.0);
+        (self.range.0 - slack..=self.range.1 + slack).contains(&value) || self.is_whole
+    }
+
+    /// Where a value is along the plot, also beyond it.
+    fn x(&self, value: f64) -> f32 {
+        self.plot.min.x + ((value - self.range.0) / (self.range.1 - self.range.0)) as f32 * self.plot.width()
     }
 
     /// Places along the value axis at which curves are sampled.
@@ -107,8 +121,8 @@ pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> 
     (0..columns).map(|column| histogram.counts[first(column)..first(column + 1)].iter().sum()).collect()
 }
 
-/// Bars of the histogram.
-pub(super) fn histogram(painter: &Painter, axes: &Axes, counts: &[u64], log: bool) {
+/// Bars of the histogram of a range of values.
+pub(super) fn histogram(painter: &Painter, axes: &Axes, range: (f64, f64), counts: &[u64], log: bool) {
     let columns = counts.len();
     let height = |count: u64| if log { (count as f64).ln_1p() } else { count as f64 };
     // The background would dwarf everything else on a linear scale.
@@ -117,12 +131,17 @@ pub(super) fn histogram(painter: &Painter, axes: &Axes, counts: &[u64], log: boo
     let top = if log { sorted[columns - 1] } else { sorted[(columns * 99 / 100).min(columns - 1)] };
     let full = height(top).max(1e-9);
     let mut mesh = Mesh::default();
-    let width = axes.plot.width() / columns as f32;
+    let edge = |column: usize| {
+        let span = if range.1 > range.0 { range.1 - range.0 } else { 1.0 };
+        axes.x(range.0 + span * column as f64 / columns as f64)
+    };
     for (column, &count) in counts.iter().enumerate().filter(|bar| *bar.1 > 0) {
         let tall = (height(count) / full).min(1.0) as f32 * axes.plot.height();
-        let left = axes.plot.min.x + column as f32 * width;
-        let bar = Rect::from_min_max(pos2(left, axes.plot.max.y - tall), pos2(left + width, axes.plot.max.y));
-        mesh.add_colored_rect(bar, theme::HISTOGRAM);
+        let (left, right) = (edge(column).max(axes.plot.min.x), edge(column + 1).min(axes.plot.max.x));
+        if left < right {
+            let bar = Rect::from_min_max(pos2(left, axes.plot.max.y - tall), pos2(right, axes.plot.max.y));
+            mesh.add_colored_rect(bar, theme::HISTOGRAM);
+        }
     }
     painter.add(Shape::mesh(mesh));
 }
@@ -212,6 +231,17 @@ pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Sett
     painter.text(place, align, text, font, theme::EYE_CURVE);
 }
 
+/// The value that another view marks.
+pub(super) fn mark(ui: &Ui, axes: &Axes, marked: Option<f64>) {
+    let Some(value) = marked.filter(|&value| axes.shows(value)) else { return };
+    let x = axes.x(value);
+    let painter = ui.painter_at(axes.area);
+    painter.vline(x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), Stroke::new(1.5, theme::ACCENT));
+    let head =
+        [pos2(x - 4.0, axes.plot.min.y), pos2(x + 4.0, axes.plot.min.y), pos2(x, axes.plot.min.y + 6.0)];
+    painter.add(Shape::convex_polygon(head.to_vec(), theme::ACCENT, Stroke::NONE));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -219,12 +249,13 @@ mod tests {
 
     #[test]
     fn places_and_values_agree() {
-        let axes = Axes::new(Rect::from_min_size(pos2(7.0, 400.0), vec2(900.0, 120.0)), (-1000.0, 3000.0));
+        let axes =
+            Axes::new(Rect::from_min_size(pos2(7.0, 400.0), vec2(900.0, 120.0)), ((-1000.0, 3000.0), true));
         let at = axes.position(250.0, 0.37);
         let (value, opacity) = axes.values(at);
         assert!((value - 250.0).abs() < 0.5 && (opacity - 0.37).abs() < 1e-3, "{value} {opacity}");
         assert_eq!(axes.values(pos2(-50.0, 9000.0)), (-1000.0, 0.0));
-        assert!(Axes::new(axes.area, (5.0, 5.0)).position(5.0, 0.0).x.is_finite());
+        assert!(Axes::new(axes.area, ((5.0, 5.0), true)).position(5.0, 0.0).x.is_finite());
     }
 
     #[test]

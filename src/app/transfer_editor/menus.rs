@@ -1,0 +1,156 @@
+//! Menus of the transfer function editor: presets by domain, colour maps, and what moves the whole curve.
+
+use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Sense, Ui, vec2};
+
+use super::super::commands::Command;
+use super::super::theme;
+use super::super::volume_facts::VolumeFacts;
+use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, PRESETS, TransferFunction};
+
+/// Size of the strip that shows a colour map.
+const STRIP: egui::Vec2 = vec2(96.0, 14.0);
+
+/// Presets, by domain.
+pub(super) fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.menu_button("Presets", |ui| {
+        let mut domain = "";
+        // The one of the benchmarks is for the command line.
+        for preset in PRESETS.into_iter().filter(|preset| preset.domain() != "bench") {
+            if preset.domain() != domain {
+                domain = preset.domain();
+                ui.weak(heading(domain));
+            }
+            if ui.button(preset.title()).on_hover_text(preset.about()).clicked() {
+                commands.push(Command::UsePreset(preset));
+            }
+        }
+    });
+}
+
+fn heading(domain: &str) -> &str {
+    match domain {
+        "ct" => "CT (Hounsfield units)",
+        "mr" => "Magnetic resonance",
+        "microscopy" => "Microscopy",
+        "simulation" => "Simulation",
+        "paper" => "Splatting with shadows",
+        other => other,
+    }
+}
+
+/// Colour maps, with their colours.
+pub(super) fn colors(ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.menu_button("Colours", |ui| {
+        for (at, map) in COLOR_MAPS.iter().enumerate() {
+            ui.horizontal(|ui| {
+                strip(ui, map);
+                if ui.button(map.name).on_hover_text("Colours the visible values").clicked() {
+                    commands.push(Command::UseColors(at, false));
+                }
+                let reversed = ui.small_button("reversed");
+                if reversed.on_hover_text(format!("{} from the high end", map.name)).clicked() {
+                    commands.push(Command::UseColors(at, true));
+                }
+            });
+        }
+        ui.separator();
+        for command in [Command::ImportTransfer, Command::ExportTransfer] {
+            let button = ui.button(&*command.label()).on_hover_text("As ParaView's colour maps (JSON)");
+            if button.clicked() {
+                commands.push(command);
+            }
+        }
+        if ui.button("Invert opacities").on_hover_text("What is dense becomes clear").clicked() {
+            commands.push(Command::InvertTransfer);
+        }
+    });
+}
+
+fn strip(ui: &mut Ui, map: &ColorMap) {
+    let (area, _) = ui.allocate_exact_size(STRIP, Sense::hover());
+    let mut mesh = Mesh::default();
+    for i in 0..8 {
+        let left = area.min.x + STRIP.x * i as f32 / 8.0;
+        let part = Rect::from_min_size(egui::pos2(left, area.min.y), vec2(STRIP.x / 8.0, STRIP.y));
+        let ink = |stop: i32| -> Color32 { theme::color(map.at(f64::from(stop) / 8.0)) };
+        let base = mesh.vertices.len() as u32;
+        for (corner, color) in [
+            (part.left_top(), ink(i)),
+            (part.right_top(), ink(i + 1)),
+            (part.left_bottom(), ink(i)),
+            (part.right_bottom(), ink(i + 1)),
+        ] {
+            mesh.colored_vertex(corner, color);
+        }
+        mesh.add_triangle(base, base + 1, base + 2);
+        mesh.add_triangle(base + 1, base + 3, base + 2);
+    }
+    ui.painter().add(mesh);
+}
+
+/// Moves the whole curve, or spreads it. The limits keep every point near the volume's values.
+pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (f64, f64)) {
+    let (Some(first), Some(last)) = (function.points.first(), function.points.last()) else { return };
+    let span = (range.1 - range.0).max(1e-12);
+    let (middle, width) = (f64::midpoint(first.value, last.value), last.value - first.value);
+    let (mut to, mut wide) = (middle, width);
+    let label = ui.label("Level");
+    let level = DragValue::new(&mut to).speed(span / 400.0).range(range.0 - span..=range.1 + span);
+    ui.add(level).labelled_by(label.id).on_hover_text("Moves all points along the values");
+    let label = ui.label("Window");
+    let window = DragValue::new(&mut wide).speed(span / 400.0).range(span / 1000.0..=4.0 * span);
+    ui.add(window).labelled_by(label.id).on_hover_text("Spreads all points around their middle");
+    if to != middle || (wide != width && width > 0.0) {
+        let stretch = if width > 0.0 { wide / width } else { 1.0 };
+        function.shift_and_stretch(to - middle, stretch);
+    }
+}
+
+/// Spreads the points over the values that occur: all but two hundredths of the voxels at either end, since most
+/// volumes have much that is empty.
+pub(super) fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
+    let value =
+        |share: f64| volume.range.0 + volume.histogram.percentile(share) * (volume.range.1 - volume.range.0);
+    let (low, high) = (value(0.02), value(0.998));
+    let (Some(first), Some(last)) = (function.points.first(), function.points.last()) else { return };
+    let (from, to) = (first.value, last.value);
+    if high > low && to > from {
+        function.shift_and_stretch(
+            f64::midpoint(low, high) - f64::midpoint(from, to),
+            (high - low) / (to - from),
+        );
+    }
+}
+
+/// A smooth bump of opacity around the middle of the window that is shown.
+pub(super) fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
+    let (middle, width) = (f64::midpoint(low, high), (high - low) / 10.0);
+    // A Gaussian, by its values at multiples of half its standard deviation.
+    for step in -5_i32..=5 {
+        let at = f64::from(step) * 0.5;
+        let value = middle + at * width * 0.5;
+        let opacity = (0.7 * (-0.5 * at * at).exp()).max(function.opacity_at(value));
+        let color = super::plot::srgb(function.at(value).0);
+        let opacity = if step.abs() == 5 { function.opacity_at(value) } else { opacity };
+        let index = function.points.partition_point(|point| point.value <= value);
+        function.points.insert(index, ControlPoint { value, color, opacity });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bump_is_a_bump() {
+        let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+        let mut function = TransferFunction {
+            points: vec![point(0.0, 0.0), point(100.0, 0.2)],
+            ..TransferFunction::default()
+        };
+        add_bump(&mut function, ((0.0, 100.0), true));
+        assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
+        assert!((function.opacity_at(50.0) - 0.7).abs() < 1e-9);
+        assert!((function.opacity_at(20.0) - 0.04).abs() < 1e-9, "elsewhere nothing has changed");
+    }
+}

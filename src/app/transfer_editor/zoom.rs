@@ -1,0 +1,104 @@
+//! Which values the plot shows: the wheel zooms to the pointer, a drag with the middle button moves.
+
+use eframe::egui::{PointerButton, Rect, Response, Ui};
+
+use super::super::orbit::wheel_notches;
+
+/// A notch of the wheel shows this much less.
+const ZOOM_PER_NOTCH: f64 = 1.2;
+/// Least share of the values that is shown: the histogram has a thousand bars.
+const LEAST_SHARE: f64 = 0.02;
+
+/// A part of the values; nothing is all of them.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Zoom {
+    part: Option<(f64, f64)>,
+}
+
+impl Zoom {
+    /// The values that are shown of a range, and whether these are all.
+    pub(super) fn shown(&self, range: (f64, f64)) -> ((f64, f64), bool) {
+        // Another volume has other values.
+        match self.part.filter(|part| part.0 >= range.0 && part.1 <= range.1) {
+            Some(part) => (part, false),
+            None => (range, true),
+        }
+    }
+
+    /// How much wider the plot of all values would be.
+    pub(super) fn factor(&self, range: (f64, f64)) -> f32 {
+        let ((low, high), _) = self.shown(range);
+        ((range.1 - range.0) / (high - low).max(1e-300)).clamp(1.0, 1.0 / LEAST_SHARE) as f32
+    }
+
+    /// Takes what the mouse does on the plot.
+    pub(super) fn ui(&mut self, ui: &Ui, response: &Response, area: Rect, range: (f64, f64)) {
+        let Some(pointer) = ui.ctx().pointer_hover_pos().filter(|at| area.contains(*at)) else { return };
+        let share = f64::from(((pointer.x - area.min.x) / area.width().max(1.0)).clamp(0.0, 1.0));
+        let notches = wheel_notches(ui);
+        if notches != 0.0 && response.contains_pointer() {
+            self.by(range, share, ZOOM_PER_NOTCH.powf(-notches));
+        }
+        let delta = ui.input(|input| input.pointer.delta().x);
+        if ui.input(|input| input.pointer.button_down(PointerButton::Middle)) && delta != 0.0 {
+            self.along(range, -f64::from(delta / area.width().max(1.0)));
+        }
+    }
+
+    /// Offers to show everything again, while it does not.
+    pub(super) fn button(&mut self, ui: &mut Ui) {
+        if self.part.is_some() && ui.button("Show all").on_hover_text("Shows all values again").clicked() {
+            self.part = None;
+        }
+    }
+
+    /// Shows a share of what is shown now, with the value at `share` where it is.
+    fn by(&mut self, range: (f64, f64), share: f64, factor: f64) {
+        let ((low, high), _) = self.shown(range);
+        let all = range.1 - range.0;
+        let width = ((high - low) * factor).clamp(LEAST_SHARE * all, all);
+        let low = low + share * (high - low - width);
+        self.show(range, low, width);
+    }
+
+    /// Moves by a share of what is shown.
+    fn along(&mut self, range: (f64, f64), share: f64) {
+        let ((low, high), is_whole) = self.shown(range);
+        if !is_whole {
+            self.show(range, low + share * (high - low), high - low);
+        }
+    }
+
+    fn show(&mut self, range: (f64, f64), low: f64, width: f64) {
+        let low = low.clamp(range.0, (range.1 - width).max(range.0));
+        let whole = width >= (range.1 - range.0) * (1.0 - 1e-9);
+        self.part = (!whole).then_some((low, (low + width).min(range.1)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_value_under_the_pointer_stays() {
+        let (mut zoom, range) = (Zoom::default(), (-1000.0, 3000.0));
+        zoom.by(range, 0.25, 0.5);
+        let ((low, high), is_whole) = zoom.shown(range);
+        assert!(!is_whole && (low + 0.25 * (high - low) - 0.0).abs() < 1e-9 && high - low == 2000.0);
+        assert_eq!(zoom.factor(range), 2.0);
+        zoom.along(range, -9.0);
+        assert_eq!(zoom.shown(range).0, (-1000.0, 1000.0), "no further than the values");
+        for _ in 0..60 {
+            zoom.by(range, 0.5, 0.7);
+        }
+        assert!((zoom.factor(range) - 50.0).abs() < 0.1);
+        for _ in 0..60 {
+            zoom.by(range, 0.9, 1.5);
+        }
+        assert_eq!(zoom, Zoom::default());
+        // Another volume.
+        zoom.by(range, 0.0, 0.1);
+        assert!(zoom.shown((0.0, 1.0)).1);
+    }
+}

@@ -1,0 +1,126 @@
+//! `chiaroscuro turntable`: the camera or a light goes once around the volume.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::{DQuat, DVec3};
+
+use super::scene::{SceneArgs, parse_size};
+use super::{CliError, print_line, warn_line};
+use crate::gpu::{Context, ExportError, RenderOptions, Renderer, animated_png, export_png, write_atomically};
+use crate::model::{PictureRecord, Record, Settings, VolumeRecord};
+
+/// Arguments of `turntable`.
+#[derive(Debug, Args)]
+pub(super) struct TurntableArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// A PNG file, which will move; or a folder for one PNG file per picture
+    #[arg(short, long, value_name = "OUT.png|FOLDER")]
+    output: PathBuf,
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_size)]
+    size: [u32; 2],
+    /// Pictures for one turn
+    #[arg(long, default_value_t = 72, value_parser = clap::value_parser!(u32).range(2..=3600))]
+    frames: u32,
+    /// Pictures per second of a file that moves
+    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u16).range(1..=120))]
+    rate: u16,
+    /// Turn this light around the vertical axis instead of the camera; 1 is the first
+    #[arg(long, value_name = "N")]
+    light: Option<usize>,
+    /// Leave the background out (straight alpha)
+    #[arg(long)]
+    transparent: bool,
+    /// Say what is being done
+    #[arg(long)]
+    progress: bool,
+}
+
+/// The look after a share of a turn, from 0 to 1.
+fn turned(settings: &Settings, light: Option<usize>, share: f64) -> Settings {
+    let mut turned = settings.clone();
+    match light {
+        None => turned.camera.azimuth_deg = (settings.camera.azimuth_deg + 360.0 * share).rem_euclid(360.0),
+        Some(index) => {
+            let lamp = &mut turned.lights[index];
+            let world = DVec3::from(lamp.in_world(&settings.camera).position);
+            let turn = DQuat::from_rotation_z(std::f64::consts::TAU * share);
+            lamp.set_world_position(turn * world, &settings.camera);
+        }
+    }
+    turned
+}
+
+/// Renders one turn.
+pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
+    let loaded = args.scene.load()?;
+    let look = args.scene.look(&loaded)?;
+    let context = Context::headless()?;
+    let mut renderer = Renderer::new(&context)?;
+    let settings = look.settings(&mut renderer, &loaded)?;
+    let light = args.light.map(|number| number.wrapping_sub(1));
+    if let Some(index) = light.filter(|&index| index >= settings.lights.len()) {
+        let number = index.wrapping_add(1);
+        let count = settings.lights.len();
+        return Err(CliError::Usage(format!(
+            "--light: there are lights 1 to {count}, and no light {number}"
+        )));
+    }
+    let moves = args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    if !moves {
+        std::fs::create_dir_all(&args.output)
+            .map_err(|source| ExportError::Write { path: args.output.clone(), source })?;
+    }
+    let folder = if moves { args.output.parent() } else { Some(args.output.as_path()) };
+    let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
+    let how = PictureRecord {
+        size: args.size,
+        transparent: args.transparent,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        adapter: context.description(),
+    };
+    let options = RenderOptions { transparent: args.transparent, ..RenderOptions::default() };
+    let mut pictures = Vec::new();
+    for frame in 0..args.frames {
+        let settings = turned(&settings, light, f64::from(frame) / f64::from(args.frames));
+        let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
+        if moves {
+            pictures.push(picture);
+        } else {
+            let record = Record::text(&settings, Some(&volume), Some(&how));
+            let path = args.output.join(format!("{frame:04}.png"));
+            export_png(&picture, args.transparent, Some(&record), &path)?;
+        }
+        if args.progress {
+            warn_line(&format!("{} of {}", frame + 1, args.frames));
+        }
+    }
+    if moves {
+        let png = animated_png(&pictures, args.transparent, args.rate)?;
+        write_atomically(&args.output, &png)?;
+    }
+    print_line(&format!("{}", args.output.display()));
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_turn_ends_where_it_began() {
+        let settings = Settings::default();
+        for light in [None, Some(0)] {
+            let (start, half, end) =
+                (turned(&settings, light, 0.0), turned(&settings, light, 0.5), turned(&settings, light, 1.0));
+            assert_ne!(half, start);
+            let place = |s: &Settings| (DVec3::from(s.lights[0].position), s.camera.azimuth_deg);
+            assert!((place(&start).0 - place(&end).0).length() < 1e-9);
+            assert!((place(&start).1 - place(&end).1).abs() < 1e-9);
+        }
+        let z = |s: &Settings| s.lights[0].position[2];
+        assert_eq!(z(&turned(&settings, Some(0), 0.3)), z(&settings), "around the vertical axis");
+    }
+}
