@@ -266,6 +266,111 @@ fn a_dropped_picture_brings_its_look_back() {
 }
 
 #[test]
+fn turntables_and_copies_come_from_the_window() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turn.png");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&path, [24, 18], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    click(&mut harness, "Turntable");
+    click(&mut harness, "Export");
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap()));
+    let frames = image::AnimationDecoder::into_frames(decoder.unwrap().apng().unwrap());
+    assert_eq!(frames.count(), 72);
+
+    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), egui::Key::C);
+    harness.run_steps(2);
+    wait_until(&mut harness, "never copied", |app| !app.is_exporting());
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("on the clipboard").is_some());
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn the_next_file_can_have_the_look_of_this_one() {
+    let mut harness = window();
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    let lights = harness.state().settings().lights.clone();
+    let open_sphere = |harness: &mut Harness<'_, App>, n: usize| {
+        let ctx = harness.ctx.clone();
+        harness.state_mut().open(&format!("builtin:sphere:{n}"), &ctx);
+        let other = move |app: &App| app.volume_name() == Some("sphere") && app.is_idle();
+        wait_until(harness, "never opened", other);
+    };
+    open_sphere(&mut harness, 16);
+    assert_ne!(harness.state().settings().lights, lights, "a first look of its own");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+    harness.run_steps(3);
+    harness.event(Event::Text("keep this look".to_owned()));
+    harness.run_steps(3);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    let lights = harness.state().settings().lights.clone();
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("builtin:box:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box") && app.is_idle());
+    assert_eq!(harness.state().settings().lights, lights);
+}
+
+#[test]
+fn the_first_run_has_hints_and_the_next_remembers() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = |source: Option<&str>| {
+        let options = Options {
+            source: source.map(str::to_owned),
+            storage: Some(folder.path().to_owned()),
+            ..Options::default()
+        };
+        let mut setup = wgpu_setup();
+        setup.power_preference = wgpu::PowerPreference::None;
+        let mut harness = Harness::builder()
+            .with_size(Vec2::new(760.0, 900.0))
+            .with_step_dt(0.1)
+            .wgpu_setup(setup.into())
+            .build_eframe(|cc| App::new(cc, options).expect("a window"));
+        wait_until_idle(&mut harness);
+        harness
+    };
+    let mut harness = start(Some(SCENE));
+    assert!(harness.query_by_label("Close the hints").is_some());
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    drag(&mut harness, rect.left_center() + vec2(30.0, 60.0), vec2(30.0, 0.0));
+    harness.run_steps(20);
+    assert!(harness.query_by_label("Close the hints").is_none(), "gone with the first drag");
+    wait_until_idle(&mut harness);
+    // The look is kept some seconds after it was kept last.
+    let kept = folder.path().join("now.json");
+    let begin = Instant::now();
+    let wanted = harness.state().settings().clone();
+    while !std::fs::read_to_string(&kept).is_ok_and(|text| {
+        let read = chiaroscuro::model::Record::read(&text).expect("a record");
+        read.apply(&wanted).expect("settings").0 == wanted
+            && text.contains("builtin:chair")
+            && read.apply(&chiaroscuro::model::Settings::default()).expect("settings").0 == wanted
+    }) {
+        assert!(begin.elapsed() < PATIENCE, "the look was not kept");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    drop(harness);
+
+    let mut harness = start(Some("builtin:sphere:16"));
+    assert!(harness.query_by_label("Close the hints").is_none());
+    click(&mut harness, "File");
+    harness.get_by_label_contains("Go on where").click();
+    harness.run_steps(3);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair") && app.is_idle());
+    assert_eq!(harness.state().settings(), &wanted);
+}
+
+#[test]
 fn lights_are_set_by_the_keyboard() {
     let mut harness = window();
     let lights = |harness: &Harness<'_, App>| harness.state().settings().lights.clone();

@@ -4,6 +4,7 @@ use eframe::egui::{self, Rect, Role, Sense, Shape, WidgetInfo, pos2};
 
 use super::commands::Command;
 use super::compare::Compare;
+use super::hints::Hints;
 use super::light_handles::LightHandles;
 use super::light_probe::LightProbe;
 use super::marks::Marks;
@@ -56,6 +57,8 @@ pub(super) struct Stage<'a> {
     pub marks: Marks,
     /// What is under the pointer.
     pub probe: &'a mut LightProbe,
+    /// What the first picture says.
+    pub hints: &'a mut Hints,
     /// Of the open volume, and whether it is a body that knows its sides; `None` without one.
     pub scene: Option<(SceneSpace, bool)>,
     /// What is known of the renderer's work.
@@ -66,8 +69,19 @@ pub(super) struct Stage<'a> {
 
 /// Shows the picture and everything that is done with the mouse on it.
 pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), GpuError>) {
-    let Stage { settings, viewport, handles, selected_light, compare, marks, probe, scene, facts, commands } =
-        stage;
+    let Stage {
+        settings,
+        viewport,
+        handles,
+        selected_light,
+        compare,
+        marks,
+        probe,
+        hints,
+        scene,
+        facts,
+        commands,
+    } = stage;
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
@@ -102,6 +116,7 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     } else {
         viewport.advance(compare.looks(settings), canvas.size, ui.ctx())
     };
+    hints.show(ui, canvas.rect, &response);
     let pictures = viewport.pictures();
     compare.ui(ui, canvas.rect, &pictures);
     ui.painter().set(picture, compare.shapes(canvas.rect, &pictures));

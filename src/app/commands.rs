@@ -23,6 +23,10 @@ pub(super) enum Command {
     SaveSettings,
     /// Ask for settings and apply them.
     LoadSettings,
+    /// Put the picture on the clipboard.
+    CopyPicture,
+    /// Show the next volume as this one, or not.
+    KeepLook,
     /// Show the export window.
     Export,
     /// Close the window.
@@ -106,11 +110,12 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
 }
 
 /// A command with its key, as help shows it.
-pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 33] = [
+pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 34] = [
     control(Key::O, Command::OpenDialog),
     control(Key::L, Command::OpenPath),
     control(Key::S, Command::SaveSettings),
     control(Key::E, Command::Export),
+    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C), Command::CopyPicture),
     control(Key::P, Command::ShowPalette),
     control(Key::Q, Command::Quit),
     // The longer one first: egui lets Shift pass where it is not asked for.
@@ -158,6 +163,8 @@ pub(super) fn listed() -> Vec<Command> {
         Command::SaveSettings,
         Command::LoadSettings,
         Command::Export,
+        Command::CopyPicture,
+        Command::KeepLook,
         Command::Undo,
         Command::Redo,
         Command::ResetView,
@@ -233,7 +240,9 @@ impl Command {
             Self::GoOn => "Go on where you left off",
             Self::SaveSettings => "Save settings…",
             Self::LoadSettings => "Load settings…",
-            Self::Export => "Export picture…",
+            Self::Export => "Export picture or turntable…",
+            Self::CopyPicture => "Copy picture",
+            Self::KeepLook => "Keep this look for the next file",
             Self::Quit => "Quit",
             Self::Undo => "Undo",
             Self::Redo => "Redo",

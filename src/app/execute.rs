@@ -5,6 +5,7 @@ use std::path::Path;
 use eframe::egui;
 
 use super::commands::Command;
+use super::export::Exported;
 use super::files::{self, Purpose};
 use super::history::History;
 use super::loader::{Opened, Outcome};
@@ -12,7 +13,7 @@ use super::volume_facts::VolumeFacts;
 use super::work::Work;
 use super::{App, export, light_keys, light_slice, panels};
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{COLOR_MAPS, Record, VolumeRecord, auto};
+use crate::model::{COLOR_MAPS, Record, Settings, VolumeRecord, auto};
 
 impl App {
     /// Does what the user asked for.
@@ -35,6 +36,8 @@ impl App {
             },
             Command::LoadSettings => self.files.ask(Purpose::LoadSettings, frame, ctx),
             Command::Export => self.export.open(self.viewport_size()),
+            Command::CopyPicture => self.copy_picture(ctx),
+            Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::Undo => self.history.undo(&mut self.settings),
             Command::Redo => self.history.redo(&mut self.settings),
@@ -141,7 +144,12 @@ impl App {
         }
         match self.export.take() {
             None => {}
-            Some(Ok(path)) => self.messages.note(format!("Exported {}", path.display())),
+            Some(Ok(Exported::File(path))) => self.messages.note(format!("Exported {}", path.display())),
+            Some(Ok(Exported::Picture(picture))) => {
+                ctx.copy_image(picture);
+                self.messages.note("The picture is on the clipboard");
+            }
+            Some(Ok(Exported::Cancelled)) => self.messages.note("Exporting was cancelled"),
             Some(Err(err)) => self.messages.error("the picture was not exported", err),
         }
         if let Some((purpose, path)) = self.files.take() {
@@ -268,7 +276,13 @@ impl App {
         let Opened { source, volume, bricks, histogram, renderer, settings } = opened;
         self.messages.clear();
         self.defaults = settings.clone();
-        self.settings = settings;
+        if self.keeps_look && self.volume.is_some() {
+            // As it was, but for where the object is: that is another one.
+            let camera = settings.camera.clone();
+            self.settings = Settings { camera, ..std::mem::take(&mut self.settings) };
+        } else {
+            self.settings = settings;
+        }
         // Session and command line speak of the first volume.
         if std::mem::take(&mut self.session_is_due)
             && let Some(path) = self.session.clone().filter(|path| path.exists())
@@ -312,17 +326,37 @@ impl App {
         }
     }
 
-    pub(super) fn start_export(&mut self, ctx: &egui::Context) {
+    /// What is to be exported; a message if there is nothing.
+    fn subject(&mut self) -> Option<export::Subject> {
         let Some((volume, bricks)) = self.viewport.volume() else {
             self.messages.note("There is no picture to export yet");
-            return;
+            return None;
         };
-        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
-        let source = self.volume.as_ref().map_or_else(String::new, |volume| volume.source.clone());
-        if let Err(err) =
-            self.export.start(export::Subject { context, volume, bricks, settings, source }, ctx)
+        Some(export::Subject {
+            context: self.viewport.context().clone(),
+            volume,
+            bricks,
+            settings: self.settings.clone(),
+            source: self.volume.as_ref().map_or_else(String::new, |volume| volume.source.clone()),
+            selected_light: self.selected_light,
+        })
+    }
+
+    pub(super) fn start_export(&mut self, ctx: &egui::Context) {
+        if let Some(subject) = self.subject()
+            && let Err(err) = self.export.start(subject, ctx)
         {
             self.messages.error("the picture was not exported", err);
+        }
+    }
+
+    fn copy_picture(&mut self, ctx: &egui::Context) {
+        if self.export.is_busy() {
+            self.messages.note("A picture is being exported");
+        } else if let Some(subject) = self.subject()
+            && let Err(err) = self.export.copy(subject, self.viewport_size(), ctx)
+        {
+            self.messages.error("the picture was not copied", err);
         }
     }
 

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 
 use super::work::Work;
 use crate::data::{Bricks, Volume};
-use crate::gpu::{Context, RenderOptions, Renderer, export_png};
+use crate::gpu::{Context, Picture, RenderOptions, Renderer, animated_png, export_png, write_atomically};
 use crate::model::{PictureRecord, Record, Settings, VolumeRecord};
 
 /// Longest edge of an exported picture, in pixels.
@@ -26,6 +27,63 @@ pub(super) struct Subject {
     pub settings: Settings,
     /// What was opened.
     pub source: String,
+    /// The light that turns, if one is to.
+    pub selected_light: usize,
+}
+
+/// A renderer beside the window's device, so that the window stays alive.
+struct Worker {
+    renderer: Renderer,
+    adapter: String,
+}
+
+impl Worker {
+    fn new(subject: &Subject) -> Result<Self, String> {
+        let beside = subject.context.sibling().map_err(|err| err.to_string())?;
+        let renderer = Renderer::new(&beside).map_err(|err| err.to_string())?;
+        Ok(Self { renderer, adapter: beside.description() })
+    }
+
+    fn render(
+        &mut self,
+        subject: &Subject,
+        settings: &Settings,
+        size: [u32; 2],
+        transparent: bool,
+    ) -> Result<Picture, String> {
+        let options = RenderOptions { transparent, ..RenderOptions::default() };
+        let picture = self.renderer.render(&subject.volume, &subject.bricks, settings, size, &options);
+        picture.map_err(|err| err.to_string())
+    }
+}
+
+/// What an export ended with.
+#[derive(Debug)]
+pub(super) enum Exported {
+    /// A file was written.
+    File(PathBuf),
+    /// A picture for the clipboard.
+    Picture(egui::ColorImage),
+    /// The user did not want it any more.
+    Cancelled,
+}
+
+/// What is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// One picture.
+    Still,
+    /// A turn of the camera …
+    Turntable,
+    /// … or of the selected light.
+    LightTurn,
+}
+
+/// What the window and its worker tell each other.
+#[derive(Debug, Default)]
+struct Progress {
+    done: AtomicU32,
+    cancelled: AtomicBool,
 }
 
 /// What the user asks of the export window.
@@ -44,12 +102,32 @@ pub(super) struct Export {
     size: [u32; 2],
     transparent: bool,
     path: String,
-    work: Option<Work<Result<PathBuf, String>>>,
+    kind: Kind,
+    frames: u32,
+    rate: u16,
+    progress: Arc<Progress>,
+    work: Option<Work<Result<Exported, String>>>,
 }
+
+const KINDS: [(Kind, &str, &str); 3] = [
+    (Kind::Still, "Picture", "What the window shows, at any size"),
+    (Kind::Turntable, "Turntable", "The camera goes once around the volume; the light stays"),
+    (Kind::LightTurn, "Turning light", "The selected light goes once around the vertical axis"),
+];
 
 impl Default for Export {
     fn default() -> Self {
-        Self { open: false, size: [0, 0], transparent: false, path: "chiaroscuro.png".to_owned(), work: None }
+        Self {
+            open: false,
+            size: [0, 0],
+            transparent: false,
+            path: "chiaroscuro.png".to_owned(),
+            kind: Kind::Still,
+            frames: 72,
+            rate: 24,
+            progress: Arc::default(),
+            work: None,
+        }
     }
 }
 
@@ -79,7 +157,7 @@ impl Export {
     }
 
     /// How the last export ended, once.
-    pub(super) fn take(&mut self) -> Option<Result<PathBuf, String>> {
+    pub(super) fn take(&mut self) -> Option<Result<Exported, String>> {
         let result = self.work.as_ref()?.take()?;
         self.work = None;
         Some(result.and_then(|result| result))
@@ -88,27 +166,64 @@ impl Export {
     /// Starts to render and write.
     pub(super) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
         let (size, transparent, path) = (self.size, self.transparent, PathBuf::from(self.path.trim()));
-        let task = move || {
-            let options = RenderOptions { transparent, ..RenderOptions::default() };
-            // Beside the window's device, so that the window stays alive.
-            let beside = subject.context.sibling().map_err(|err| err.to_string())?;
-            let mut renderer = Renderer::new(&beside).map_err(|err| err.to_string())?;
-            let picture = renderer
-                .render(&subject.volume, &subject.bricks, &subject.settings, size, &options)
-                .map_err(|err| err.to_string())?;
-            let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), path.parent());
-            let how = PictureRecord {
-                size,
-                transparent,
-                version: env!("CARGO_PKG_VERSION").to_owned(),
-                adapter: beside.description(),
-            };
-            let record = Record::text(&subject.settings, Some(&volume), Some(&how));
-            export_png(&picture, transparent, Some(&record), &path).map_err(|err| err.to_string())?;
-            Ok(path)
+        let (frames, rate, light) = match self.kind {
+            Kind::Still => (1, self.rate, None),
+            Kind::Turntable => (self.frames, self.rate, None),
+            Kind::LightTurn => (self.frames, self.rate, Some(subject.selected_light)),
         };
-        self.work =
-            Some(Work::start("export", ctx, task).map_err(|err| format!("no thread for the export: {err}"))?);
+        self.progress = Arc::default();
+        let progress = Arc::clone(&self.progress);
+        self.run(ctx, move || {
+            let mut worker = Worker::new(&subject)?;
+            let mut pictures = Vec::new();
+            for frame in 0..frames {
+                if progress.cancelled.load(Ordering::Relaxed) {
+                    return Ok(Exported::Cancelled);
+                }
+                let settings = subject.settings.turned(light, f64::from(frame) / f64::from(frames));
+                pictures.push(worker.render(&subject, &settings, size, transparent)?);
+                progress.done.store(frame + 1, Ordering::Relaxed);
+            }
+            if let ([picture], 1) = (&pictures[..], frames) {
+                let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), path.parent());
+                let how = PictureRecord {
+                    size,
+                    transparent,
+                    version: env!("CARGO_PKG_VERSION").to_owned(),
+                    adapter: worker.adapter,
+                };
+                let record = Record::text(&subject.settings, Some(&volume), Some(&how));
+                export_png(picture, transparent, Some(&record), &path).map_err(|err| err.to_string())?;
+            } else {
+                let png = animated_png(&pictures, transparent, rate).map_err(|err| err.to_string())?;
+                write_atomically(&path, &png).map_err(|err| err.to_string())?;
+            }
+            Ok(Exported::File(path))
+        })
+    }
+
+    /// Starts to render for the clipboard, as large as the window's picture.
+    pub(super) fn copy(
+        &mut self,
+        subject: Subject,
+        size: [u32; 2],
+        ctx: &egui::Context,
+    ) -> Result<(), String> {
+        let transparent = self.transparent;
+        self.run(ctx, move || {
+            let picture = Worker::new(&subject)?.render(&subject, &subject.settings, size, transparent)?;
+            let size = size.map(|n| n as usize);
+            Ok(Exported::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &picture.shown)))
+        })
+    }
+
+    fn run(
+        &mut self,
+        ctx: &egui::Context,
+        task: impl FnOnce() -> Result<Exported, String> + Send + 'static,
+    ) -> Result<(), String> {
+        let work = Work::start("export", ctx, task);
+        self.work = Some(work.map_err(|err| format!("no thread for the export: {err}"))?);
         Ok(())
     }
 
@@ -118,7 +233,15 @@ impl Export {
         let mut open = self.open;
         let window = egui::Window::new("Export picture").open(&mut open).collapsible(false).resizable(false);
         window.default_pos([160.0, 90.0]).show(ctx, |ui| {
+            ui.horizontal(|ui| {
+                for (kind, name, tip) in KINDS {
+                    ui.selectable_value(&mut self.kind, kind, name).on_hover_text(tip);
+                }
+            });
             self.size_ui(ui, viewport);
+            if self.kind != Kind::Still {
+                self.turn_ui(ui);
+            }
             ui.checkbox(&mut self.transparent, "Transparent background")
                 .on_hover_text("Leaves the background out, for placing the picture on something else");
             ui.horizontal(|ui| {
@@ -134,13 +257,38 @@ impl Export {
                     request = Some(Request::Export);
                 }
                 if self.is_busy() {
-                    ui.spinner();
-                    ui.label("rendering at full quality");
+                    self.progress_ui(ui);
                 }
             });
         });
         self.open = open;
         request
+    }
+
+    /// How many pictures a turn has, and how fast they go by.
+    fn turn_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            let field = egui::DragValue::new(&mut self.frames).range(2..=3600).suffix(" pictures");
+            ui.name_inputs("Pictures of a turn", |ui| ui.add(field));
+            let field = egui::DragValue::new(&mut self.rate).range(1..=120).suffix(" per second");
+            ui.name_inputs("Pictures per second", |ui| ui.add(field));
+            ui.weak("a PNG file that moves");
+        });
+    }
+
+    fn progress_ui(&self, ui: &mut egui::Ui) {
+        if self.kind == Kind::Still {
+            ui.spinner();
+            ui.label("rendering at full quality");
+            return;
+        }
+        let done = self.progress.done.load(Ordering::Relaxed);
+        let bar = egui::ProgressBar::new(done as f32 / self.frames.max(1) as f32).desired_width(120.0);
+        ui.add(bar.text(format!("{done} of {}", self.frames)));
+        if ui.button("Cancel").clicked() {
+            self.progress.cancelled.store(true, Ordering::Relaxed);
+        }
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     }
 
     fn size_ui(&mut self, ui: &mut egui::Ui, viewport: [u32; 2]) {

@@ -13,6 +13,8 @@ const KEEP_EVERY: Duration = Duration::from_secs(5);
 pub(super) struct Memory {
     folder: Option<PathBuf>,
     recent: Vec<String>,
+    /// There was no run before.
+    is_first: bool,
     /// The look that was written last, and when.
     kept: Option<(String, Instant)>,
 }
@@ -22,6 +24,7 @@ impl Memory {
     pub(super) fn new(folder: Option<PathBuf>) -> Self {
         let mut memory = Self { folder, ..Self::default() };
         if let Some(folder) = &memory.folder {
+            memory.is_first = !["now.json", "before.json"].iter().any(|name| folder.join(name).exists());
             std::fs::create_dir_all(folder).ok();
             std::fs::rename(folder.join("now.json"), folder.join("before.json")).ok();
             let text = std::fs::read_to_string(folder.join("recent.json")).unwrap_or_default();
@@ -29,6 +32,11 @@ impl Memory {
             memory.recent.truncate(MOST_RECENT);
         }
         memory
+    }
+
+    /// Whether nobody has used the program here before.
+    pub(super) fn is_first(&self) -> bool {
+        self.is_first
     }
 
     /// What was opened, the latest first.
@@ -86,12 +94,14 @@ mod tests {
         let remember = || Memory::new(Some(folder.path().to_owned()));
         let mut memory = remember();
         assert!(memory.recent().is_empty() && memory.before().is_none() && memory.is_due());
+        assert!(memory.is_first());
         for file in ["/a.nrrd", "/b.nrrd", "builtin:chair", "/a.nrrd"] {
             memory.opened(file);
         }
         memory.keep("{\"look\": 1}".to_owned());
         assert!(!memory.is_due());
         let memory = remember();
+        assert!(!memory.is_first());
         assert_eq!(memory.recent(), ["/a.nrrd", "/b.nrrd"]);
         assert_eq!(std::fs::read_to_string(memory.before().unwrap()).unwrap(), "{\"look\": 1}");
         for at in 0..2 * MOST_RECENT {

@@ -18,6 +18,8 @@ pub(super) struct Menu<'a> {
     pub shown: Shown,
     /// Files that were opened, the latest first.
     pub recent: &'a [String],
+    /// Whether the next volume is shown as this one.
+    pub keeps_look: bool,
     /// Whether there is a look of the run before.
     pub can_go_on: bool,
     /// Milliseconds that a frame may take while something moves.
@@ -98,7 +100,14 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::SaveSettings, true);
     item(ui, menu, Command::LoadSettings, true);
     ui.separator();
+    let mut keeps_look = menu.keeps_look;
+    let tip = "Lights, transfer function and shadows stay when another file is opened";
+    if ui.checkbox(&mut keeps_look, &*Command::KeepLook.label()).on_hover_text(tip).clicked() {
+        menu.commands.push(Command::KeepLook);
+    }
+    ui.separator();
     item(ui, menu, Command::Export, true);
+    item(ui, menu, Command::CopyPicture, true);
     ui.separator();
     item(ui, menu, Command::Quit, true);
 }

@@ -10,6 +10,7 @@ mod execute;
 mod export;
 mod files;
 mod help;
+mod hints;
 mod history;
 mod icon;
 mod light_chips;
@@ -47,6 +48,7 @@ use self::compare::Compare;
 use self::export::Export;
 use self::files::Files;
 use self::help::Help;
+use self::hints::Hints;
 use self::history::History;
 use self::light_handles::LightHandles;
 use self::light_probe::LightProbe;
@@ -80,6 +82,8 @@ pub struct App {
     canvas: Option<Canvas>,
     loader: Loader,
     memory: Memory,
+    /// Whether the next volume is shown as this one, and not as its own first look.
+    keeps_look: bool,
     /// Settings of the volume that is being opened.
     pending: Option<Record>,
     balance: Option<Work<Result<f64, GpuError>>>,
@@ -100,6 +104,7 @@ pub struct App {
     selected_light: usize,
     side_open: bool,
     help: Help,
+    hints: Hints,
     messages: Messages,
     /// The longest frame so far; see `status_file`.
     longest_ui_ms: f64,
@@ -134,14 +139,18 @@ impl App {
             Some(volume.source_from(path.parent()))
         });
         let source = source.or(of_session);
+        let pipelines = storage.as_deref().map(Path::to_owned);
+        let memory = Memory::new(storage);
+        let hints = Hints { on: memory.is_first() };
         let mut app = Self {
             settings: Settings::default(),
             defaults: Settings::default(),
             volume: None,
             viewport: Viewport::new(context.clone(), &cc.egui_ctx)?,
             canvas: None,
-            loader: Loader::new(context, load, storage.as_deref())?,
-            memory: Memory::new(storage),
+            loader: Loader::new(context, load, pipelines.as_deref())?,
+            memory,
+            keeps_look: false,
             pending: None,
             balance: None,
             export: Export::default(),
@@ -160,6 +169,7 @@ impl App {
             selected_light: 0,
             side_open: true,
             help: Help::default(),
+            hints,
             messages: Messages::default(),
             longest_ui_ms: 0.0,
             status_file: StatusFile::from_environment(),
@@ -248,6 +258,7 @@ impl App {
                 undo_redo,
                 shown,
                 recent: self.memory.recent(),
+                keeps_look: self.keeps_look,
                 can_go_on: self.memory.before().is_some(),
                 frame_ms: &mut self.viewport.frame_ms,
                 commands,
@@ -289,6 +300,7 @@ impl App {
             compare: &mut self.compare,
             marks: self.marks,
             probe: &mut self.probe,
+            hints: &mut self.hints,
             scene: self.volume.as_ref().map(|volume| (volume.scene, volume.is_anatomical)),
             facts,
             commands,

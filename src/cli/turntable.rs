@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use glam::{DQuat, DVec3};
 
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line, warn_line};
 use crate::gpu::{Context, ExportError, RenderOptions, Renderer, animated_png, export_png, write_atomically};
-use crate::model::{PictureRecord, Record, Settings, VolumeRecord};
+use crate::model::{PictureRecord, Record, VolumeRecord};
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]
@@ -36,21 +35,6 @@ pub(super) struct TurntableArgs {
     /// Say what is being done
     #[arg(long)]
     progress: bool,
-}
-
-/// The look after a share of a turn, from 0 to 1.
-fn turned(settings: &Settings, light: Option<usize>, share: f64) -> Settings {
-    let mut turned = settings.clone();
-    match light {
-        None => turned.camera.azimuth_deg = (settings.camera.azimuth_deg + 360.0 * share).rem_euclid(360.0),
-        Some(index) => {
-            let lamp = &mut turned.lights[index];
-            let world = DVec3::from(lamp.in_world(&settings.camera).position);
-            let turn = DQuat::from_rotation_z(std::f64::consts::TAU * share);
-            lamp.set_world_position(turn * world, &settings.camera);
-        }
-    }
-    turned
 }
 
 /// Renders one turn.
@@ -84,7 +68,7 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let options = RenderOptions { transparent: args.transparent, ..RenderOptions::default() };
     let mut pictures = Vec::new();
     for frame in 0..args.frames {
-        let settings = turned(&settings, light, f64::from(frame) / f64::from(args.frames));
+        let settings = settings.turned(light, f64::from(frame) / f64::from(args.frames));
         let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
         if moves {
             pictures.push(picture);
@@ -103,24 +87,4 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     }
     print_line(&format!("{}", args.output.display()));
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_whole_turn_ends_where_it_began() {
-        let settings = Settings::default();
-        for light in [None, Some(0)] {
-            let (start, half, end) =
-                (turned(&settings, light, 0.0), turned(&settings, light, 0.5), turned(&settings, light, 1.0));
-            assert_ne!(half, start);
-            let place = |s: &Settings| (DVec3::from(s.lights[0].position), s.camera.azimuth_deg);
-            assert!((place(&start).0 - place(&end).0).length() < 1e-9);
-            assert!((place(&start).1 - place(&end).1).abs() < 1e-9);
-        }
-        let z = |s: &Settings| s.lights[0].position[2];
-        assert_eq!(z(&turned(&settings, Some(0), 0.3)), z(&settings), "around the vertical axis");
-    }
 }

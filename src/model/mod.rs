@@ -18,6 +18,7 @@ mod sanitise;
 mod settings;
 mod shadows;
 mod transfer;
+mod turn;
 mod variant;
 mod view;
 

@@ -1,0 +1,45 @@
+//! One turn of the camera or of a light, for pictures that move.
+
+use glam::{DQuat, DVec3};
+
+use super::Settings;
+
+impl Settings {
+    /// The look after a share of a turn, from 0 to 1: of a light of these settings about the vertical axis, or of
+    /// the camera. A light that is not there does not turn.
+    #[must_use]
+    pub fn turned(&self, light: Option<usize>, share: f64) -> Self {
+        let mut turned = self.clone();
+        match light {
+            None => turned.camera.azimuth_deg = (self.camera.azimuth_deg + 360.0 * share).rem_euclid(360.0),
+            Some(index) => {
+                if let Some(lamp) = turned.lights.get_mut(index) {
+                    let world = DVec3::from(lamp.in_world(&self.camera).position);
+                    let turn = DQuat::from_rotation_z(std::f64::consts::TAU * share);
+                    lamp.set_world_position(turn * world, &self.camera);
+                }
+            }
+        }
+        turned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_turn_ends_where_it_began() {
+        let settings = Settings::default();
+        for light in [None, Some(0)] {
+            let (start, half, end) =
+                (settings.turned(light, 0.0), settings.turned(light, 0.5), settings.turned(light, 1.0));
+            assert_ne!(half, start);
+            let place = |s: &Settings| (DVec3::from(s.lights[0].position), s.camera.azimuth_deg);
+            assert!((place(&start).0 - place(&end).0).length() < 1e-9);
+            assert!((place(&start).1 - place(&end).1).abs() < 1e-9);
+        }
+        assert_eq!(settings.turned(Some(0), 0.3).lights[0].position[2], settings.lights[0].position[2]);
+        assert_eq!(settings.turned(Some(9), 0.3), settings);
+    }
+}
