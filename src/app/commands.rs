@@ -269,8 +269,16 @@ impl Command {
             _ => {}
         }
         let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
-        found.map_or_else(String::new, |(shortcut, _)| ctx.format_shortcut(&shortcut))
+        found.map_or_else(String::new, |(shortcut, _)| key_text(ctx, &shortcut))
     }
+}
+
+/// A key as it is printed on the keyboard.
+pub(super) fn key_text(ctx: &egui::Context, shortcut: &KeyboardShortcut) -> String {
+    let named = ctx.format_shortcut(shortcut);
+    let signs =
+        [("OpenBracket", "["), ("CloseBracket", "]"), ("Comma", ","), ("Period", "."), ("Questionmark", "?")];
+    signs.into_iter().fold(named, |text, (name, sign)| text.replace(name, sign))
 }
 
 /// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited.

@@ -2,7 +2,7 @@
 
 use eframe::egui;
 
-use super::commands::SHORTCUTS;
+use super::commands::{SHORTCUTS, key_text};
 use super::viewport::Facts;
 
 /// What the mouse does, in the picture and in the editor.
@@ -22,6 +22,20 @@ const MOUSE: [(&str, &str); 13] = [
     ("Double click, or Delete", "remove it"),
 ];
 
+/// Room that keys and mouse take.
+const TABLES: egui::Vec2 = egui::vec2(960.0, 462.0);
+
+/// Two columns: what is done, and what happens.
+fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, String)>) {
+    egui::Grid::new(name).num_columns(2).striped(true).spacing([16.0, 4.0]).show(ui, |ui| {
+        for (what, effect) in rows {
+            ui.label(what);
+            ui.label(effect.trim_end_matches('…'));
+            ui.end_row();
+        }
+    });
+}
+
 /// Which of the windows are open.
 #[derive(Debug, Default)]
 pub(super) struct Help {
@@ -34,20 +48,24 @@ pub(super) struct Help {
 impl Help {
     /// Shows the windows that are open.
     pub(super) fn ui(&mut self, ctx: &egui::Context, facts: &Facts) {
+        // All of it where the window has room, else with scroll bars.
+        let size = TABLES.min(ctx.content_rect().size() - egui::vec2(90.0, 130.0));
         let window =
             egui::Window::new("Keys and mouse").open(&mut self.keys).resizable(false).collapsible(false);
-        window.default_pos([420.0, 50.0]).show(ctx, |ui| {
-            egui::Grid::new("keys").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
-                for (gesture, effect) in MOUSE {
-                    ui.label(gesture);
-                    ui.label(effect);
-                    ui.end_row();
-                }
-                for (shortcut, command) in &SHORTCUTS {
-                    ui.label(ctx.format_shortcut(shortcut));
-                    ui.label(command.label().trim_end_matches('…'));
-                    ui.end_row();
-                }
+        window.default_pos([40.0, 50.0]).fixed_size(size).show(ctx, |ui| {
+            egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                ui.horizontal_top(|ui| {
+                    table(ui, "mouse", MOUSE.map(|(what, effect)| (what.to_owned(), effect.to_owned())));
+                    let keys: Vec<_> = SHORTCUTS
+                        .into_iter()
+                        .map(|(key, command)| (key_text(ctx, &key), command.label().into_owned()))
+                        .collect();
+                    let (first, second) = keys.split_at(keys.len().div_ceil(2));
+                    for (name, part) in [("keys", first), ("more keys", second)] {
+                        ui.separator();
+                        table(ui, name, part.iter().cloned());
+                    }
+                });
             });
         });
         let window =

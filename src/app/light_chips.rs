@@ -48,7 +48,8 @@ pub(super) fn show(
             solo(&mut settings.lights, at);
         }
         if settings.lights.len() < MAX_LIGHTS {
-            let add = ui.add(egui::Button::new("+").small().fill(ground(false)));
+            let plus = egui::RichText::new("+").color(theme::EYE_CURVE);
+            let add = ui.add(egui::Button::new(plus).small().fill(ground(false)));
             if add.on_hover_text("Add a light").clicked() {
                 commands.push(Command::AddLight);
             }

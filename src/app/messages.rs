@@ -68,7 +68,7 @@ impl Messages {
             over = now_s >= until_s;
             ui.request_repaint_after(std::time::Duration::from_secs_f64((until_s - now_s).max(0.0)));
         }
-        let color = if message.is_error { ui.visuals().error_fg_color } else { theme::ACCENT };
+        let color = if message.is_error { ui.visuals().error_fg_color } else { theme::accent(ui.visuals()) };
         ui.separator();
         ui.label(RichText::new(&message.short).color(color));
         if !message.details.is_empty() && ui.small_button("Details").clicked() {

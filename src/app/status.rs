@@ -42,7 +42,7 @@ fn doing(ui: &mut egui::Ui, doing: Doing) {
     match doing {
         Doing::Nothing => ui.weak("no volume"),
         Doing::FullQuality => ui.label("full quality"),
-        Doing::Preview => ui.label(RichText::new("preview").color(theme::ACCENT)),
+        Doing::Preview => ui.label(RichText::new("preview").color(theme::accent(ui.visuals()))),
         Doing::Refining(what, share) => {
             let bar = ProgressBar::new(share).desired_width(80.0).desired_height(8.0);
             ui.add(bar.fill(theme::ACCENT));

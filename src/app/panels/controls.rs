@@ -84,7 +84,7 @@ fn reset(ui: &mut Ui, label: &str, differs: bool) -> bool {
     let (area, response) = ui.allocate_exact_size(size, egui::Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Reset {label}")));
     let lit = response.hovered() || response.has_focus();
-    let ink = if lit { theme::ACCENT } else { ui.visuals().weak_text_color() };
+    let ink = if lit { theme::accent(ui.visuals()) } else { ui.visuals().weak_text_color() };
     circular_arrow(ui, area.center(), ink);
     response.on_hover_text(format!("Reset {}", label.to_lowercase())).clicked()
 }

@@ -56,7 +56,7 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
         on.on_hover_text("Switches this light on or off; its shadows are kept");
         color(ui, &format!("Colour of light {}", index + 1), &mut light.color);
         let text = egui::RichText::new(if light.name.is_empty() { "Light" } else { &light.name });
-        let text = if selected { text.color(theme::ACCENT).strong() } else { text };
+        let text = if selected { text.color(theme::accent(ui.visuals())).strong() } else { text };
         ui.selectable_label(selected, text)
             .on_hover_text("Select; its handle in the picture is marked")
             .clicked()

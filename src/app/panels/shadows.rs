@@ -133,10 +133,10 @@ fn darkness(ui: &mut Ui, share: Option<f64>) {
             return ui.weak("–");
         };
         let ink = if share > MUCH_DARKNESS { theme::ACCENT } else { theme::HISTOGRAM };
-        let bar = egui::ProgressBar::new(share as f32).fill(ink).desired_width(ui.available_width() - 12.0);
-        let text = format!("{:.0} %", share * 100.0);
-        let bar = ui.add(bar.desired_height(12.0).text(egui::RichText::new(text).small()));
-        bar.on_hover_text(tip)
+        let bar = egui::ProgressBar::new(share as f32).fill(ink).desired_width(ui.available_width() - 52.0);
+        let bar = ui.add(bar.desired_height(12.0)).on_hover_text(tip);
+        ui.small(format!("{:.0} %", share * 100.0));
+        bar
     });
 }
 
