@@ -289,6 +289,30 @@ fn turntables_and_copies_come_from_the_window() {
 }
 
 #[test]
+fn lights_are_tried_on_the_volume() {
+    let mut harness = window();
+    let before = harness.state().settings().lights.clone();
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+    harness.run_steps(3);
+    harness.event(Event::Text("try lights".to_owned()));
+    harness.run_steps(3);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    let begin = Instant::now();
+    while harness.query_by_label("From above").is_none() {
+        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(harness.query_all_by_label_contains("o'clock").count() % 6, 0);
+    click(&mut harness, "Use From above");
+    let lights = harness.state().settings().lights.clone();
+    assert_ne!(lights, before);
+    assert_eq!(lights[0].name, "Sun");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
 fn the_next_file_can_have_the_look_of_this_one() {
     let mut harness = window();
     harness.key_press(egui::Key::CloseBracket);

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
-use crate::model::{COLOR_MAPS, PRESETS, Preset, Rig, StandardView};
+use crate::model::{COLOR_MAPS, Light, PRESETS, Preset, Rig, StandardView};
 
 /// Something the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,6 +59,10 @@ pub(super) enum Command {
     AddLight,
     /// Other lights instead of those that are there.
     UseRig(Rig),
+    /// These lights.
+    UseLights(Vec<Light>),
+    /// Show the contact sheet.
+    TryLights,
     /// The light after the selected one …
     NextLight,
     /// … or before it.
@@ -174,6 +178,7 @@ pub(super) fn listed() -> Vec<Command> {
         Command::ToggleMarks,
         Command::ToggleProbe,
         Command::AddLight,
+        Command::TryLights,
         Command::NextLight,
         Command::PreviousLight,
         Command::Solo,
@@ -227,6 +232,8 @@ impl Command {
             Self::ToggleMarks => "Marks over the picture",
             Self::ToggleProbe => "Why is this dark? (probe)",
             Self::ShowPalette => "Find a command…",
+            Self::UseLights(_) => "Use lights",
+            Self::TryLights => "Try lights…",
             Self::NextLight => "Next light",
             Self::PreviousLight => "Previous light",
             Self::Solo => "Solo the selected light",
@@ -269,13 +276,13 @@ impl Command {
             _ => {}
         }
         let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
-        found.map_or_else(String::new, |(shortcut, _)| key_text(ctx, &shortcut))
+        found.map_or_else(String::new, |(shortcut, _)| key_text(ctx, shortcut))
     }
 }
 
 /// A key as it is printed on the keyboard.
-pub(super) fn key_text(ctx: &egui::Context, shortcut: &KeyboardShortcut) -> String {
-    let named = ctx.format_shortcut(shortcut);
+pub(super) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
+    let named = ctx.format_shortcut(&shortcut);
     let signs =
         [("OpenBracket", "["), ("CloseBracket", "]"), ("Comma", ","), ("Period", "."), ("Questionmark", "?")];
     signs.into_iter().fold(named, |text, (name, sign)| text.replace(name, sign))

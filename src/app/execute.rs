@@ -91,6 +91,11 @@ impl App {
                 self.settings.lights = rig.lights(&self.settings.camera);
                 self.selected_light = 0;
             }
+            Command::UseLights(lights) => {
+                self.selected_light = self.selected_light.min(lights.len().saturating_sub(1));
+                self.settings.lights = lights;
+            }
+            Command::TryLights => self.contact_sheet.open(),
             Command::NextLight | Command::PreviousLight => {
                 let by = if command == Command::NextLight { 1 } else { -1 };
                 let count = self.settings.lights.len();
@@ -158,7 +163,21 @@ impl App {
     }
 
     /// The windows over the picture.
-    pub(super) fn windows(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
+    pub(super) fn windows(
+        &mut self,
+        frame: &eframe::Frame,
+        ctx: &egui::Context,
+        commands: &mut Vec<Command>,
+    ) {
+        if self.contact_sheet.wanted
+            && let Some(subject) = self.subject()
+            && let Err(err) = self.contact_sheet.start(subject, ctx)
+        {
+            self.messages.error("lights could not be tried", err);
+        }
+        if let Err(err) = self.contact_sheet.ui(ctx, commands) {
+            self.messages.error("lights could not be tried", err);
+        }
         if let Some((purpose, path)) = self.files.ui(ctx) {
             self.chosen(purpose, &path, ctx);
         }

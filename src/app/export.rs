@@ -32,19 +32,21 @@ pub(super) struct Subject {
 }
 
 /// A renderer beside the window's device, so that the window stays alive.
-struct Worker {
+pub(super) struct Worker {
     renderer: Renderer,
     adapter: String,
 }
 
 impl Worker {
-    fn new(subject: &Subject) -> Result<Self, String> {
+    /// A renderer for a subject.
+    pub(super) fn new(subject: &Subject) -> Result<Self, String> {
         let beside = subject.context.sibling().map_err(|err| err.to_string())?;
         let renderer = Renderer::new(&beside).map_err(|err| err.to_string())?;
         Ok(Self { renderer, adapter: beside.description() })
     }
 
-    fn render(
+    /// A picture of the subject with settings of one's own.
+    pub(super) fn render(
         &mut self,
         subject: &Subject,
         settings: &Settings,

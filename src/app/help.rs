@@ -58,7 +58,7 @@ impl Help {
                     table(ui, "mouse", MOUSE.map(|(what, effect)| (what.to_owned(), effect.to_owned())));
                     let keys: Vec<_> = SHORTCUTS
                         .into_iter()
-                        .map(|(key, command)| (key_text(ctx, &key), command.label().into_owned()))
+                        .map(|(key, command)| (key_text(ctx, key), command.label().into_owned()))
                         .collect();
                     let (first, second) = keys.split_at(keys.len().div_ceil(2));
                     for (name, part) in [("keys", first), ("more keys", second)] {

@@ -190,6 +190,7 @@ fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             }
         }
     });
+    item(ui, menu, Command::TryLights, true);
     item(ui, menu, Command::NextLight, true);
     item(ui, menu, Command::Solo, true);
     item(ui, menu, Command::Mute, true);

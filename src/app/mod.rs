@@ -6,6 +6,7 @@
 mod canvas;
 mod commands;
 mod compare;
+mod contact_sheet;
 mod execute;
 mod export;
 mod files;
@@ -45,6 +46,7 @@ use eframe::egui;
 use self::canvas::{Canvas, Stage};
 use self::commands::Command;
 use self::compare::Compare;
+use self::contact_sheet::ContactSheet;
 use self::export::Export;
 use self::files::Files;
 use self::help::Help;
@@ -100,6 +102,7 @@ pub struct App {
     probe: LightProbe,
     palette: Palette,
     light_slice: LightSlice,
+    contact_sheet: ContactSheet,
     editor: TransferEditor,
     selected_light: usize,
     side_open: bool,
@@ -165,6 +168,7 @@ impl App {
             probe: LightProbe::default(),
             palette: Palette::default(),
             light_slice: LightSlice::default(),
+            contact_sheet: ContactSheet::default(),
             editor: TransferEditor::default(),
             selected_light: 0,
             side_open: true,
@@ -332,7 +336,7 @@ impl eframe::App for App {
         self.picture(ui, &facts, &mut commands);
         commands::from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
-        self.windows(frame, &ctx);
+        self.windows(frame, &ctx, &mut commands);
         self.history.observe(&ctx, &self.settings);
         self.keep_look();
         for command in commands {
