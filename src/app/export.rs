@@ -188,12 +188,7 @@ impl Export {
             }
             if let ([picture], 1) = (&pictures[..], frames) {
                 let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), path.parent());
-                let how = PictureRecord {
-                    size,
-                    transparent,
-                    version: env!("CARGO_PKG_VERSION").to_owned(),
-                    adapter: worker.adapter,
-                };
+                let how = PictureRecord::new(size, transparent, worker.adapter);
                 let record = Record::text(&subject.settings, Some(&volume), Some(&how));
                 export_png(picture, transparent, Some(&record), &path).map_err(|err| err.to_string())?;
             } else {

@@ -200,6 +200,18 @@ pub(super) fn save_settings(
     crate::gpu::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
 }
 
+/// Largest file that is read as settings: a thousand times the size of a real one.
+const MOST_BYTES: u64 = 4 << 20;
+
+/// Reads a text, but not a huge one, nor a device.
+fn read_text(path: &Path) -> std::io::Result<String> {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() || metadata.len() > MOST_BYTES {
+        return Err(std::io::Error::other("it is no file of a few kilobytes, as settings are"));
+    }
+    std::fs::read_to_string(path)
+}
+
 /// Reads what a session, a preset or an exported picture says.
 pub(super) fn load_record(path: &Path) -> Result<Record, String> {
     let shown = path.display();
@@ -208,8 +220,7 @@ pub(super) fn load_record(path: &Path) -> Result<Record, String> {
             format!("the picture carries no settings ({shown}); export it from this program")
         })?
     } else {
-        std::fs::read_to_string(path)
-            .map_err(|err| format!("could not read the settings: {err} ({shown})"))?
+        read_text(path).map_err(|err| format!("could not read the settings: {err} ({shown})"))?
     };
     Record::read(&text).map_err(|err| format!("could not use the settings: {err} ({shown})"))
 }
@@ -217,8 +228,8 @@ pub(super) fn load_record(path: &Path) -> Result<Record, String> {
 /// Reads a transfer function of another program.
 pub(super) fn import_transfer(path: &Path) -> Result<TransferFunction, String> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|err| format!("could not read the transfer function: {err} ({shown})"))?;
+    let text =
+        read_text(path).map_err(|err| format!("could not read the transfer function: {err} ({shown})"))?;
     from_paraview(&text).map_err(|err| format!("could not use the transfer function: {err} ({shown})"))
 }
 
@@ -236,4 +247,29 @@ pub(super) fn is_picture(path: &Path) -> bool {
 /// Whether a file holds a look and not a volume, by its name.
 pub(super) fn is_record(path: &Path) -> bool {
     is_picture(path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_small_files_are_read_as_settings() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        std::fs::write(&path, "{\"shadows\": {\"gain\": 2.0}}").unwrap();
+        let settings = load_record(&path).unwrap().apply(&Settings::default()).unwrap().0;
+        assert_eq!(settings.shadows.gain, 2.0);
+        std::fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
+        assert!(load_record(&path).unwrap_err().contains("few kilobytes"));
+        assert!(load_record(folder.path()).unwrap_err().contains("few kilobytes"));
+        assert!(import_transfer(&folder.path().join("none.json")).is_err());
+    }
+
+    #[test]
+    fn looks_and_volumes_are_told_apart_by_name() {
+        for (name, record) in [("a.json", true), ("b.PNG", true), ("c.nrrd", false), ("png", false)] {
+            assert_eq!(is_record(Path::new(name)), record, "{name}");
+        }
+    }
 }

@@ -88,12 +88,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     }
     let folder = args.output.parent();
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
-    let how = PictureRecord {
-        size: args.size,
-        transparent: args.transparent,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        adapter: context.description(),
-    };
+    let how = PictureRecord::new(args.size, args.transparent, context.description());
     let record = Record::text(&settings, Some(&volume), Some(&how));
     if let Err(err) = export_png(&picture, args.transparent, Some(&record), &args.output) {
         // A report without its picture would mislead.

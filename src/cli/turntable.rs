@@ -59,12 +59,7 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     }
     let folder = if moves { args.output.parent() } else { Some(args.output.as_path()) };
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
-    let how = PictureRecord {
-        size: args.size,
-        transparent: args.transparent,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        adapter: context.description(),
-    };
+    let how = PictureRecord::new(args.size, args.transparent, context.description());
     let options = RenderOptions { transparent: args.transparent, ..RenderOptions::default() };
     let mut pictures = Vec::new();
     for frame in 0..args.frames {

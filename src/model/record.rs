@@ -65,6 +65,13 @@ impl VolumeRecord {
     }
 }
 
+impl PictureRecord {
+    /// A picture that this version makes on an adapter.
+    pub fn new(size: [u32; 2], transparent: bool, adapter: String) -> Self {
+        Self { size, transparent, version: env!("CARGO_PKG_VERSION").to_owned(), adapter }
+    }
+}
+
 /// A path as seen from a folder, if it lies below it; else the whole of it.
 fn relative(source: &str, folder: Option<&Path>) -> String {
     let whole = std::path::absolute(source).unwrap_or_else(|_| PathBuf::from(source));
