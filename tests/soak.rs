@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::data::{Bricks, Histogram, Volume};
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, device_descriptor};
-use chiaroscuro::model::{Kernel, Resolution, Settings, auto};
+use chiaroscuro::model::{Engine, Kernel, Resolution, Settings, auto};
 use chiaroscuro::plan::Request;
 
 /// Drags that always happen …
@@ -31,6 +31,8 @@ struct Soak {
     volume: Arc<Volume>,
     bricks: Arc<Bricks>,
     settings: Settings,
+    /// Slabs of light that are marched at a time.
+    chunk: Option<u32>,
 }
 
 impl Soak {
@@ -45,7 +47,7 @@ impl Soak {
         let settings = auto::first_settings(&volume, &Histogram::of(&volume, 256));
         let bricks = Arc::new(Bricks::of(&volume));
         let renderer = Renderer::new(&context).expect("a renderer");
-        Self { instance, renderer, volume: Arc::new(volume), bricks, settings }
+        Self { instance, renderer, volume: Arc::new(volume), bricks, settings, chunk: None }
     }
 
     /// Moves the light, and sometimes the camera and the transfer function; a preview, or a whole picture.
@@ -61,8 +63,13 @@ impl Soak {
         if at.is_multiple_of(50) {
             self.settings.transfer.points[0].value += if at.is_multiple_of(100) { 0.5 } else { -0.5 };
         }
+        self.draw(at.is_multiple_of(REST_EVERY));
+        start.elapsed()
+    }
+
+    /// A picture at rest, or a preview.
+    fn draw(&mut self, is_rest: bool) {
         let mut settings = self.settings.clone();
-        let is_rest = at.is_multiple_of(REST_EVERY);
         if !is_rest {
             settings.sampling.kernel = Kernel::Prefiltered;
             settings.shadows.kernel = Kernel::Prefiltered;
@@ -73,12 +80,11 @@ impl Soak {
             size: if is_rest { [96, 72] } else { [48, 36] },
             coarse: (!is_rest).then_some(Resolution::Quarter),
         };
-        let options = RenderOptions { preview: !is_rest, ..RenderOptions::default() };
+        let options = RenderOptions { preview: !is_rest, chunk: self.chunk, ..RenderOptions::default() };
         let mut job = self.renderer.begin(&self.volume, &self.bricks, request, &options).expect("a job");
         while self.renderer.step(&mut job).expect("a step") {}
         self.renderer.context().wait().expect("it is done");
         self.renderer.read_shown().expect("a picture");
-        start.elapsed()
     }
 
     /// Objects of every kind that the graphics library keeps for us, and the bytes of our textures.
@@ -111,6 +117,65 @@ fn resident_bytes() -> Option<u64> {
 fn median(mut times: Vec<Duration>) -> f64 {
     times.sort_unstable();
     times.get(times.len() / 2).map_or(0.0, Duration::as_secs_f64)
+}
+
+#[test]
+fn what_only_light_needs_goes_with_it() {
+    let mut soak = Soak::new();
+    let textures = |soak: &Soak| soak.kept().iter().find(|(what, _)| *what == "textures").map(|(_, n)| *n);
+    let orbit = |soak: &mut Soak| {
+        soak.settings.camera.orbit(3.0, 0.2);
+        soak.draw(true);
+    };
+    // A picture that fills a light volume leaves its sheets to the next; one that fills none needs none.
+    // Two, since two targets take turns.
+    soak.draw(true);
+    soak.settings.lights[0].position[0] += 0.1;
+    soak.draw(true);
+    let filled = textures(&soak);
+    orbit(&mut soak);
+    assert_eq!(textures(&soak), filled.map(|n| n - 1), "the sheets are gone, and nothing holds on to them");
+    // Sheets of another size take their place.
+    for (chunk, resolution) in [(4, Resolution::Full), (8, Resolution::Half), (64, Resolution::Full)] {
+        soak.settings.shadows.resolution = resolution;
+        soak.settings.lights[0].position[0] += 0.1;
+        soak.chunk = Some(chunk);
+        soak.draw(true);
+        orbit(&mut soak);
+    }
+    let mut drag = |soak: &mut Soak| {
+        soak.settings.lights[0].position[0] += 0.1;
+        soak.draw(true);
+        orbit(soak);
+        soak.kept()
+    };
+    // Spare light volumes are of one size after a few.
+    for _ in 0..3 {
+        drag(&mut soak);
+    }
+    let before = drag(&mut soak);
+    for _ in 0..4 {
+        assert_eq!(drag(&mut soak), before);
+    }
+}
+
+#[test]
+fn scattered_light_leaves_nothing_behind() {
+    let mut soak = Soak::new();
+    soak.settings.sampling.engine = Engine::Scatter;
+    let drag = |soak: &mut Soak| {
+        soak.settings.lights[0].position[0] += 0.05;
+        soak.draw(true);
+        soak.kept()
+    };
+    // Light volumes that are kept beside the current one come first.
+    for _ in 0..4 {
+        drag(&mut soak);
+    }
+    let before = drag(&mut soak);
+    for _ in 0..4 {
+        assert_eq!(drag(&mut soak), before);
+    }
 }
 
 #[test]

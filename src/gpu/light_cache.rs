@@ -121,10 +121,17 @@ impl Renderer {
         let count = request.settings.lights.len();
         self.rebuilds.resize(self.rebuilds.len().max(count), 0);
         let reach = picture_reach(volume, request);
+        let wanted: Vec<_> = (0..count).map(|light| LightKey::of(request, light)).collect();
+        let shadowed = wanted.iter().flatten().count();
+        let most_kept = shadowed + SPARE_LIGHT_VOLUMES.max(shadowed);
+        let at_coarse = |full: &LightKey| request.coarse.map(|resolution| full.at_resolution(resolution));
+        let is_wanted = |key: &LightKey| {
+            wanted.iter().flatten().any(|full| full == key || at_coarse(full).as_ref() == Some(key))
+        };
         let mut keys = vec![None; count];
         let mut builds: Vec<LightBuild> = Vec::new();
-        for (light, slot) in keys.iter_mut().enumerate() {
-            let Some(full) = LightKey::of(request, light) else { continue };
+        for (light, (slot, full)) in keys.iter_mut().zip(&wanted).enumerate() {
+            let Some(full) = full else { continue };
             let options = &self.options;
             let needed = |key: &LightKey, reach: u8| {
                 needed_cells(volume, tables, options, key.resolution().divisor(), reach)
@@ -134,20 +141,19 @@ impl Renderer {
             let usable = |known: &LightVolume, key: &LightKey| {
                 known.key == *key && is_within(&least(key), &known.filled)
             };
-            let coarse = request.coarse.map(|resolution| full.at_resolution(resolution));
+            let coarse = at_coarse(full);
             let found = [Some(full.clone()), coarse.clone()]
                 .into_iter()
                 .flatten()
                 .find(|key| self.lights.iter().any(|known| usable(known, key)));
-            let key = found.clone().or(coarse).unwrap_or(full);
+            let key = found.clone().or(coarse).unwrap_or_else(|| full.clone());
             if found.is_none() {
                 self.unwanted.extend(self.lights.extract_if(.., |known| known.key == key));
                 // One that would be forgotten afterwards.
-                if self.lights.len() >= count + SPARE_LIGHT_VOLUMES.max(count) {
-                    let clock = self.clock;
-                    let oldest = (0..self.lights.len()).min_by_key(|&at| self.lights[at].last_used);
-                    let free = oldest.filter(|&at| self.lights[at].last_used < clock);
-                    self.unwanted.extend(free.map(|at| self.lights.swap_remove(at)));
+                if self.lights.len() >= most_kept {
+                    let free = (0..self.lights.len()).filter(|&at| !is_wanted(&self.lights[at].key));
+                    let oldest = free.min_by_key(|&at| self.lights[at].last_used);
+                    self.unwanted.extend(oldest.map(|at| self.lights.swap_remove(at)));
                 }
                 let filled = needed(&key, reach);
                 let around = needed(&key, reach.max(stretch_reach(WIDEST))).0.without(&filled.0);
@@ -162,10 +168,8 @@ impl Renderer {
             }
             *slot = Some(key);
         }
-        let clock = self.clock;
         self.lights.sort_by_key(|light| std::cmp::Reverse(light.last_used));
-        let current = self.lights.iter().filter(|light| light.last_used == clock).count();
-        let kept = self.lights.len().min(current + SPARE_LIGHT_VOLUMES.max(current));
+        let kept = self.lights.len().min(most_kept);
         self.unwanted.extend(self.lights.drain(kept..));
         Ok((keys, builds))
     }

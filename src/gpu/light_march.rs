@@ -69,7 +69,7 @@ impl Sheets {
             Some(Err(larger)) => larger,
             None => needed,
         };
-        recycled.count();
+        recycled.made_sheets();
         let [width, height, layers] = size;
         let ring = context.texture(&wgpu::TextureDescriptor {
             label: Some("Sheets::ring"),
@@ -121,25 +121,20 @@ impl Sheets {
         }
     }
 
-    /// Bind group 0 of the passes that march.
-    pub(super) fn march_bind_group(
-        &self,
-        gpu: Gpu<'_>,
-        pipeline: &wgpu::ComputePipeline,
-        uniform: &wgpu::Buffer,
-        table: &wgpu::Buffer,
-        distances: &wgpu::TextureView,
-        deposits: Option<&wgpu::Buffer>,
-    ) -> wgpu::BindGroup {
-        let mut entries = vec![
+    /// What the passes that march bind to group 0.
+    pub(super) fn march_entries<'a>(
+        &'a self,
+        uniform: &'a wgpu::Buffer,
+        table: &'a wgpu::Buffer,
+        distances: &'a wgpu::TextureView,
+    ) -> [wgpu::BindGroupEntry<'a>; 5] {
+        [
             entry(0, uniform.as_entire_binding()),
             entry(1, table.as_entire_binding()),
             view_entry(2, distances),
             entry(3, self.transmittance.as_entire_binding()),
             view_entry(4, &self.ring_view),
-        ];
-        entries.extend(deposits.map(|deposits| entry(5, deposits.as_entire_binding())));
-        gpu.bind("March::bind_group", pipeline, 0, &entries)
+        ]
     }
 
     /// Bytes of the ring and of the running transmittance.
@@ -221,14 +216,8 @@ pub(super) fn march(
     let runs = pass::runs(context, tiles);
     let uniform = uniforms::March { runs, ..march_uniform(light, view, sheets, slabs, rows.clone()) };
     let uniform = gpu.uniform("March::uniform", uniform);
-    let own = sheets.march_bind_group(
-        gpu,
-        &pipeline,
-        &uniform,
-        &tables.lighting.buffer,
-        &tables.light_distances,
-        None,
-    );
+    let entries = sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances);
+    let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
     let leaping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
     let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };

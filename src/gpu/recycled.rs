@@ -23,6 +23,8 @@ struct Inner {
     shelves: BTreeMap<(&'static str, u64, u32), Shelf>,
     groups: HashMap<GroupKey, wgpu::BindGroup>,
     sheets: Option<Sheets>,
+    /// Groups may hold on to sheets.
+    binds_sheets: bool,
     made: u64,
 }
 
@@ -149,9 +151,21 @@ impl Recycled {
         }
     }
 
-    /// Drops sheets that are not needed for now.
+    /// Takes note that sheets are made: groups that bind those before would keep them alive.
+    pub(super) fn made_sheets(&self) {
+        let inner = &mut *self.0.borrow_mut();
+        inner.made += 1;
+        inner.groups.clear();
+        inner.binds_sheets = true;
+    }
+
+    /// Drops the sheets, because a picture fills no light volume.
     pub(super) fn drop_sheets(&self) {
-        self.0.borrow_mut().sheets = None;
+        let inner = &mut *self.0.borrow_mut();
+        inner.sheets = None;
+        if std::mem::take(&mut inner.binds_sheets) {
+            inner.groups.clear();
+        }
     }
 
     /// Bytes of sheets that wait.
@@ -162,10 +176,5 @@ impl Recycled {
     /// How many buffers and bind groups were made so far, and sheets.
     pub(super) fn made(&self) -> u64 {
         self.0.borrow().made
-    }
-
-    /// Counts one more thing that was made.
-    pub(super) fn count(&self) {
-        self.0.borrow_mut().made += 1;
     }
 }

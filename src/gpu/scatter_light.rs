@@ -100,8 +100,9 @@ impl LightScatter {
         let rows = 0..view.frame.size[1];
         let uniform = march_uniform(lamp, view, sheets, (slabs.start, slabs.end), rows);
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
-        let own =
-            sheets.march_bind_group(gpu, &pipeline, &uniform, table, &self.distances, Some(&self.deposits));
+        let mut entries = sheets.march_entries(&uniform, table, &self.distances).to_vec();
+        entries.push(entry(5, self.deposits.as_entire_binding()));
+        let own = pass::bind(context, "LightScatter::march", &pipeline, 0, &entries);
         for k in slabs {
             if self.scatterer.is_filled(k) {
                 self.scatterer.splat(gpu, voxels, counter, k, encoder)?;

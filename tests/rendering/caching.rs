@@ -41,8 +41,20 @@ fn orbiting_a_hundred_frames_rebuilds_no_light() {
 }
 
 #[test]
-fn dragging_makes_nothing_anew() {
-    let (loaded, mut settings) = (loaded(), three_lights());
+fn dragging_three_shadowed_lights_makes_nothing_anew() {
+    dragging_makes_nothing_anew(three_lights());
+}
+
+#[test]
+fn dragging_a_light_beside_a_fill_makes_nothing_anew() {
+    let mut settings = three_lights();
+    settings.lights.truncate(2);
+    settings.lights[1].casts_shadows = false;
+    dragging_makes_nothing_anew(settings);
+}
+
+fn dragging_makes_nothing_anew(mut settings: Settings) {
+    let loaded = loaded();
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let drag = |renderer: &mut Renderer, settings: &mut Settings, at: u32| {
         // Back and forth, so that sheets and lists have had every size.
