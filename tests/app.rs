@@ -225,7 +225,7 @@ fn exports_are_what_the_renderer_makes() {
     let ctx = harness.ctx.clone();
     harness.state_mut().export(&exported, [200, 150], &ctx);
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
-    export_png(&render(&harness, [200, 150]), false, None, &expected).unwrap();
+    export_png([200, 150], &render(&harness, [200, 150]).shown, false, None, &expected).unwrap();
     let pixels = |path: &PathBuf| image::open(path).expect("a picture").to_rgba8().into_raw();
     assert!(pixels(&exported) == pixels(&expected));
 
@@ -234,7 +234,8 @@ fn exports_are_what_the_renderer_makes() {
     click(&mut harness, "Export");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let options = RenderOptions { transparent: true, ..RenderOptions::default() };
-    export_png(&render_with(&harness, [200, 150], &options), true, None, &expected).unwrap();
+    export_png([200, 150], &render_with(&harness, [200, 150], &options).shown, true, None, &expected)
+        .unwrap();
     assert!(pixels(&exported) == pixels(&expected));
     assert!(harness.state().errors().is_empty());
 }
@@ -245,6 +246,8 @@ fn a_dropped_picture_brings_its_look_back() {
     let folder = tempfile::tempdir().unwrap();
     let (first, second) = (folder.path().join("first.png"), folder.path().join("second.png"));
     let ctx = harness.ctx.clone();
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
     harness.state_mut().export(&first, [120, 90], &ctx);
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let before = harness.state().settings().clone();
@@ -254,6 +257,12 @@ fn a_dropped_picture_brings_its_look_back() {
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere"));
     wait_until_idle(&mut harness);
     assert_ne!(harness.state().settings(), &before);
+
+    // What is opened last counts: no look is laid over another volume.
+    harness.state_mut().open(&first.display().to_string(), &ctx);
+    harness.state_mut().open("builtin:box:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box"));
+    assert_ne!(harness.state().settings().lights, before.lights);
 
     harness.input_mut().dropped_files.push(Arc::new(Dropped(first.clone())));
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair"));
@@ -375,9 +384,9 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     let wanted = harness.state().settings().clone();
     while !std::fs::read_to_string(&kept).is_ok_and(|text| {
         let read = chiaroscuro::model::Record::read(&text).expect("a record");
-        read.apply(&wanted).expect("settings").0 == wanted
+        read.apply(&wanted, (0.0, 1.0)).expect("settings").0 == wanted
             && text.contains("builtin:chair")
-            && read.apply(&chiaroscuro::model::Settings::default()).expect("settings").0 == wanted
+            && read.apply(&chiaroscuro::model::Settings::default(), (0.0, 1.0)).expect("settings").0 == wanted
     }) {
         assert!(begin.elapsed() < PATIENCE, "the look was not kept");
         harness.step();

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use chiaroscuro::gpu::{Picture, export_png, read_record};
+use chiaroscuro::gpu::{export_png, read_record};
 use serde_json::Value;
 
 /// Longest that any command may take here; most take well under a second.
@@ -709,8 +709,7 @@ fn pictures_can_be_made_again_from_themselves() {
     let changed = text.replace("\"gain\": 1.3", "\"gain\": 0.4");
     assert_ne!(changed, text);
     let pixels = image::open(folder.path("shot.png")).expect("a picture").to_rgba8().into_raw();
-    let picture = Picture { size: [48, 36], light: Vec::new(), shown: pixels };
-    export_png(&picture, true, Some(&changed), &folder.path("changed.png")).expect("written");
+    export_png([48, 36], &pixels, true, Some(&changed), &folder.path("changed.png")).expect("written");
     assert!(folder.succeed("replay changed.png").contains("different"));
     let outcome = folder.run("replay changed.png --check");
     assert_eq!(outcome.code, Some(1), "{outcome:?}");
@@ -727,7 +726,7 @@ fn pictures_can_be_made_again_from_themselves() {
     std::fs::rename(folder.path("x_8x8x8_uint8.raw"), folder.path("z_8x8x8_uint8.raw")).expect("moved");
     assert_ne!(folder.run("replay shot.png").code, Some(0));
     assert!(folder.succeed("replay shot.png --check --volume z_8x8x8_uint8.raw").contains("identical"));
-    export_png(&picture, true, None, &folder.path("plain.png")).expect("written");
+    export_png([48, 36], &pixels, true, None, &folder.path("plain.png")).expect("written");
     let outcome = folder.run("replay plain.png");
     assert_eq!(outcome.code, Some(3), "{outcome:?}");
     assert!(outcome.stderr.contains("carries no settings"), "{outcome:?}");

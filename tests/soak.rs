@@ -143,7 +143,7 @@ fn what_only_light_needs_goes_with_it() {
         soak.draw(true);
         orbit(&mut soak);
     }
-    let mut drag = |soak: &mut Soak| {
+    let drag = |soak: &mut Soak| {
         soak.settings.lights[0].position[0] += 0.1;
         soak.draw(true);
         orbit(soak);

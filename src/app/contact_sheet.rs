@@ -98,7 +98,7 @@ impl ContactSheet {
             tried
                 .map(|(name, lights)| {
                     let settings = quick(&subject.settings, lights.clone());
-                    let shown = worker.render(&subject, &settings, SIZE, false)?.shown;
+                    let shown = worker.render(&subject, &settings, SIZE, false)?;
                     let picture = ColorImage::from_rgba_unmultiplied(SIZE.map(|n| n as usize), &shown);
                     Ok(Tried { name, lights, picture })
                 })

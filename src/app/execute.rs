@@ -7,13 +7,11 @@ use eframe::egui;
 use super::commands::Command;
 use super::export::Exported;
 use super::files::{self, Purpose};
-use super::history::History;
-use super::loader::{Opened, Outcome};
-use super::volume_facts::VolumeFacts;
+use super::loader::Outcome;
 use super::work::Work;
 use super::{App, export, light_keys, light_slice, panels};
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{COLOR_MAPS, Record, Settings, VolumeRecord, auto};
+use crate::model::{COLOR_MAPS, auto};
 
 impl App {
     /// Does what the user asked for.
@@ -21,12 +19,9 @@ impl App {
         match command {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
-            Command::Open(source) if files::is_record(Path::new(&source)) => {
-                self.load_settings(Path::new(&source), ctx);
-            }
             Command::Open(source) => self.open(&source, ctx),
             Command::GoOn => match self.memory.before() {
-                Some(path) => self.load_settings(&path, ctx),
+                Some(path) => self.open_record(&path, ctx),
                 None => self.messages.note("There is nothing to go on with"),
             },
             Command::CancelOpening => self.loader.cancel(),
@@ -216,7 +211,7 @@ impl App {
                     Err(err) => self.messages.error("the light volume was not exported", err),
                 }
             }
-            Purpose::LoadSettings => self.load_settings(path, ctx),
+            Purpose::LoadSettings => self.load_settings(path),
             Purpose::ImportTransfer => match files::import_transfer(path) {
                 Ok(function) => self.settings.transfer = function,
                 Err(err) => self.messages.error("the transfer function was not imported", err),
@@ -227,107 +222,12 @@ impl App {
             },
             Purpose::CompareSettings => {
                 let read = files::load_record(path);
-                match read.and_then(|read| read.apply(&self.settings).map_err(|err| err.to_string())) {
-                    Ok((look, _)) => self.compare.with(look),
+                match read.and_then(|read| self.with_record(&read, self.value_range())) {
+                    Ok(look) => self.compare.with(look),
                     Err(err) => self.messages.error("the settings were not loaded", err),
                 }
             }
         }
-    }
-
-    /// The open volume, for records.
-    fn volume_record(&self) -> Option<(&str, u64)> {
-        let (volume, _) = self.viewport.volume()?;
-        Some((&self.volume.as_ref()?.source, volume.content_id()))
-    }
-
-    fn save_settings(&mut self, path: &Path) {
-        match files::save_settings(path, &self.settings, self.volume_record()) {
-            Ok(()) => self.messages.note(format!("Saved {}", path.display())),
-            Err(err) => self.messages.error("the settings were not saved", err),
-        }
-    }
-
-    /// Takes over the look of a session, a preset or a picture. If it is of another volume, that is opened
-    /// first.
-    pub(super) fn load_settings(&mut self, path: &Path, ctx: &egui::Context) {
-        let record = match files::load_record(path) {
-            Ok(record) => record,
-            Err(err) => return self.messages.error("the settings were not loaded", err),
-        };
-        let open = self.volume_record().map(|(_, content_id)| content_id);
-        match &record.volume {
-            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => {
-                let source = volume.source_from(path.parent());
-                self.pending = Some(record);
-                self.open(&source, ctx);
-            }
-            _ => self.apply_record(&record),
-        }
-    }
-
-    fn apply_record(&mut self, record: &Record) {
-        match record.apply(&self.settings) {
-            Ok((settings, warnings)) => {
-                self.settings = settings;
-                if !warnings.is_empty() {
-                    self.messages.note(warnings.join("; "));
-                }
-            }
-            Err(err) => self.messages.error("the settings were not loaded", err.to_string()),
-        }
-    }
-
-    /// Keeps the look, so that the next run can go on with it.
-    pub(super) fn keep_look(&mut self) {
-        if !self.memory.is_due() {
-            return;
-        }
-        if let Some((source, content_id)) = self.volume_record() {
-            let volume = VolumeRecord::new(source, content_id, None);
-            let text = Record::text(&self.settings, Some(&volume), None);
-            self.memory.keep(text);
-        }
-    }
-
-    /// A volume is ready: it replaces the one before.
-    fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
-        let Opened { source, volume, bricks, histogram, renderer, settings } = opened;
-        self.messages.clear();
-        self.defaults = settings.clone();
-        if self.keeps_look && self.volume.is_some() {
-            // As it was, but for where the object is: that is another one.
-            let camera = settings.camera.clone();
-            self.settings = Settings { camera, ..std::mem::take(&mut self.settings) };
-        } else {
-            self.settings = settings;
-        }
-        // Session and command line speak of the first volume.
-        if std::mem::take(&mut self.session_is_due)
-            && let Some(path) = self.session.clone().filter(|path| path.exists())
-        {
-            match files::load_record(&path) {
-                Ok(record) => self.apply_record(&record),
-                Err(err) => self.messages.error("the session was not loaded", err),
-            }
-        }
-        self.memory.opened(&source);
-        if let Some(record) = self.pending.take() {
-            if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
-                self.messages.note("The settings were made for other values than the file has now");
-            }
-            self.apply_record(&record);
-        }
-        if let Some(adjust) = self.adjust.take() {
-            self.settings = adjust(std::mem::take(&mut self.settings));
-            self.settings.sanitise();
-        }
-        self.volume = Some(VolumeFacts::of(source, &volume, histogram));
-        self.viewport.set_scene(renderer, volume, bricks);
-        self.history = History::default();
-        self.selected_light = 0;
-        let name = self.volume_name().unwrap_or_default();
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{name} – Chiaroscuro")));
     }
 
     fn start_balance(&mut self, ctx: &egui::Context) {

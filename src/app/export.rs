@@ -8,7 +8,7 @@ use eframe::egui;
 
 use super::work::Work;
 use crate::data::{Bricks, Volume};
-use crate::gpu::{Context, Picture, RenderOptions, Renderer, animated_png, export_png, write_atomically};
+use crate::gpu::{Animation, Context, ExportError, RenderOptions, Renderer, export_png};
 use crate::model::{PictureRecord, Record, Settings, VolumeRecord};
 
 /// Longest edge of an exported picture, in pixels.
@@ -45,18 +45,29 @@ impl Worker {
         Ok(Self { renderer, adapter: beside.description() })
     }
 
-    /// A picture of the subject with settings of one's own.
+    /// A picture of the subject with settings of one's own, as it is shown.
     pub(super) fn render(
         &mut self,
         subject: &Subject,
         settings: &Settings,
         size: [u32; 2],
         transparent: bool,
-    ) -> Result<Picture, String> {
+    ) -> Result<Vec<u8>, String> {
         let options = RenderOptions { transparent, ..RenderOptions::default() };
-        let picture = self.renderer.render(&subject.volume, &subject.bricks, settings, size, &options);
-        picture.map_err(|err| err.to_string())
+        let shown = self.renderer.render_shown(&subject.volume, &subject.bricks, settings, size, &options);
+        shown.map_err(|err| err.to_string())
     }
+}
+
+/// Renders and writes one picture.
+fn still(subject: &Subject, size: [u32; 2], transparent: bool, path: PathBuf) -> Result<Exported, String> {
+    let mut worker = Worker::new(subject)?;
+    let shown = worker.render(subject, &subject.settings, size, transparent)?;
+    let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), path.parent());
+    let how = PictureRecord::new(size, transparent, worker.adapter);
+    let record = Record::text(&subject.settings, Some(&volume), Some(&how));
+    export_png(size, &shown, transparent, Some(&record), &path).map_err(|err| err.to_string())?;
+    Ok(Exported::File(path))
 }
 
 /// What an export ended with.
@@ -168,33 +179,27 @@ impl Export {
     /// Starts to render and write.
     pub(super) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
         let (size, transparent, path) = (self.size, self.transparent, PathBuf::from(self.path.trim()));
-        let (frames, rate, light) = match self.kind {
-            Kind::Still => (1, self.rate, None),
-            Kind::Turntable => (self.frames, self.rate, None),
-            Kind::LightTurn => (self.frames, self.rate, Some(subject.selected_light)),
-        };
+        let (frames, rate) = (self.frames, self.rate);
         self.progress = Arc::default();
         let progress = Arc::clone(&self.progress);
+        let light = match self.kind {
+            Kind::Still => return self.run(ctx, move || still(&subject, size, transparent, path)),
+            Kind::Turntable => None,
+            Kind::LightTurn => Some(subject.selected_light),
+        };
         self.run(ctx, move || {
+            let said = |err: ExportError| err.to_string();
             let mut worker = Worker::new(&subject)?;
-            let mut pictures = Vec::new();
+            let mut file = Animation::create(&path, size, frames, transparent, rate).map_err(said)?;
             for frame in 0..frames {
                 if progress.cancelled.load(Ordering::Relaxed) {
                     return Ok(Exported::Cancelled);
                 }
                 let settings = subject.settings.turned(light, f64::from(frame) / f64::from(frames));
-                pictures.push(worker.render(&subject, &settings, size, transparent)?);
+                file.add(&worker.render(&subject, &settings, size, transparent)?).map_err(said)?;
                 progress.done.store(frame + 1, Ordering::Relaxed);
             }
-            if let ([picture], 1) = (&pictures[..], frames) {
-                let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), path.parent());
-                let how = PictureRecord::new(size, transparent, worker.adapter);
-                let record = Record::text(&subject.settings, Some(&volume), Some(&how));
-                export_png(picture, transparent, Some(&record), &path).map_err(|err| err.to_string())?;
-            } else {
-                let png = animated_png(&pictures, transparent, rate).map_err(|err| err.to_string())?;
-                write_atomically(&path, &png).map_err(|err| err.to_string())?;
-            }
+            file.finish().map_err(said)?;
             Ok(Exported::File(path))
         })
     }
@@ -208,9 +213,9 @@ impl Export {
     ) -> Result<(), String> {
         let transparent = self.transparent;
         self.run(ctx, move || {
-            let picture = Worker::new(&subject)?.render(&subject, &subject.settings, size, transparent)?;
+            let shown = Worker::new(&subject)?.render(&subject, &subject.settings, size, transparent)?;
             let size = size.map(|n| n as usize);
-            Ok(Exported::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &picture.shown)))
+            Ok(Exported::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &shown)))
         })
     }
 

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 
 use super::work::Work;
+use crate::data::read_small;
 use crate::model::{Record, Settings, TransferFunction, VolumeRecord, from_paraview, to_paraview};
 
 /// What a dialog is for.
@@ -200,16 +201,10 @@ pub(super) fn save_settings(
     crate::gpu::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
 }
 
-/// Largest file that is read as settings: a thousand times the size of a real one.
-const MOST_BYTES: u64 = 4 << 20;
-
-/// Reads a text, but not a huge one, nor a device.
-fn read_text(path: &Path) -> std::io::Result<String> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() || metadata.len() > MOST_BYTES {
-        return Err(std::io::Error::other("it is no file of a few kilobytes, as settings are"));
-    }
-    std::fs::read_to_string(path)
+/// A small file as text.
+fn read_text(path: &Path) -> Result<String, String> {
+    let bytes = read_small(path).map_err(|err| err.to_string())?;
+    String::from_utf8(bytes).map_err(|err| format!("it is no text: {err}"))
 }
 
 /// Reads what a session, a preset or an exported picture says.
@@ -254,15 +249,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_small_files_are_read_as_settings() {
+    fn settings_are_small_texts() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.json");
         std::fs::write(&path, "{\"shadows\": {\"gain\": 2.0}}").unwrap();
-        let settings = load_record(&path).unwrap().apply(&Settings::default()).unwrap().0;
+        let settings = load_record(&path).unwrap().apply(&Settings::default(), (0.0, 1.0)).unwrap().0;
         assert_eq!(settings.shadows.gain, 2.0);
-        std::fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
-        assert!(load_record(&path).unwrap_err().contains("few kilobytes"));
-        assert!(load_record(folder.path()).unwrap_err().contains("few kilobytes"));
+        std::fs::write(&path, [0xff, 0xfe]).unwrap();
+        assert!(load_record(&path).unwrap_err().contains("no text"));
+        assert!(load_record(folder.path()).unwrap_err().contains("regular"));
         assert!(import_transfer(&folder.path().join("none.json")).is_err());
     }
 

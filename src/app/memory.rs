@@ -1,17 +1,54 @@
 //! What is remembered from one run to the next: files that were opened, and the look as it was at last.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+
+use crate::data::read_small;
 
 /// Files that the menu offers.
 const MOST_RECENT: usize = 12;
 /// The look is kept at most so often.
 const KEEP_EVERY: Duration = Duration::from_secs(5);
 
+/// Writes files on a thread of its own, one after the other, since a disk may take its time. Dropping this waits
+/// until all is written.
+#[derive(Debug)]
+struct Writer {
+    /// Name and text; none when there is nothing more to come.
+    queue: Option<mpsc::Sender<(&'static str, String)>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Writer {
+    fn new(folder: &Path) -> std::io::Result<Self> {
+        let folder = folder.to_owned();
+        let (queue, due) = mpsc::channel::<(&str, String)>();
+        let thread = std::thread::Builder::new().name("memory".to_owned()).spawn(move || {
+            for (name, text) in due {
+                if let Err(err) = crate::gpu::write_atomically(&folder.join(name), text.as_bytes()) {
+                    log::warn!("{name} was not kept: {err}");
+                }
+            }
+        })?;
+        Ok(Self { queue: Some(queue), thread: Some(thread) })
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        self.queue = None;
+        // That it panicked is logged where it did.
+        self.thread.take().map(JoinHandle::join);
+    }
+}
+
 /// Files in the folder that the system gives us; without one, nothing is remembered.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
     folder: Option<PathBuf>,
+    writer: Option<Writer>,
     recent: Vec<String>,
     /// There was no run before.
     is_first: bool,
@@ -27,9 +64,13 @@ impl Memory {
             memory.is_first = !["now.json", "before.json"].iter().any(|name| folder.join(name).exists());
             std::fs::create_dir_all(folder).ok();
             std::fs::rename(folder.join("now.json"), folder.join("before.json")).ok();
-            let text = std::fs::read_to_string(folder.join("recent.json")).unwrap_or_default();
-            memory.recent = serde_json::from_str(&text).unwrap_or_default();
+            let list = read_small(&folder.join("recent.json")).unwrap_or_default();
+            memory.recent = serde_json::from_slice(&list).unwrap_or_default();
             memory.recent.truncate(MOST_RECENT);
+            match Writer::new(folder) {
+                Ok(writer) => memory.writer = Some(writer),
+                Err(err) => log::warn!("nothing will be remembered: {err}"),
+            }
         }
         memory
     }
@@ -54,7 +95,7 @@ impl Memory {
         self.recent.retain(|known| *known != whole);
         self.recent.insert(0, whole);
         self.recent.truncate(MOST_RECENT);
-        self.write("recent.json", &serde_json::to_string_pretty(&self.recent).unwrap_or_default());
+        self.write("recent.json", serde_json::to_string_pretty(&self.recent).unwrap_or_default());
     }
 
     /// The look of the run before, if there is one.
@@ -70,16 +111,16 @@ impl Memory {
     /// Keeps the look, unless it is as it was.
     pub(super) fn keep(&mut self, text: String) {
         if self.kept.as_ref().is_none_or(|(known, _)| *known != text) {
-            self.write("now.json", &text);
+            self.write("now.json", text.clone());
         }
         self.kept = Some((text, Instant::now()));
     }
 
-    fn write(&self, name: &str, text: &str) {
-        if let Some(folder) = &self.folder
-            && let Err(err) = crate::gpu::write_atomically(&folder.join(name), text.as_bytes())
+    fn write(&self, name: &'static str, text: String) {
+        if let Some(queue) = self.writer.as_ref().and_then(|writer| writer.queue.as_ref())
+            && queue.send((name, text)).is_err()
         {
-            log::warn!("{name} was not kept: {err}");
+            log::warn!("{name} was not kept: its thread has ended");
         }
     }
 }
@@ -100,6 +141,7 @@ mod tests {
         }
         memory.keep("{\"look\": 1}".to_owned());
         assert!(!memory.is_due());
+        drop(memory);
         let memory = remember();
         assert!(!memory.is_first());
         assert_eq!(memory.recent(), ["/a.nrrd", "/b.nrrd"]);

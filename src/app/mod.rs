@@ -24,6 +24,7 @@ mod marks;
 mod memory;
 mod menu;
 mod messages;
+mod opening;
 mod orbit;
 mod palette;
 mod panels;
@@ -67,9 +68,6 @@ use self::volume_facts::VolumeFacts;
 use self::work::Work;
 use crate::gpu::{Context, GpuError};
 use crate::model::{Record, Settings};
-
-/// What is opened when nothing is named.
-const DEFAULT_SOURCE: &str = "builtin:chair";
 
 /// A frame that keeps the window's thread longer is felt.
 const LONG_FRAME_MS: f64 = 50.0;
@@ -135,13 +133,7 @@ impl App {
         let context = Context::new(&paint.adapter, paint.device, paint.queue)?.sibling()?;
         theme::apply(&cc.egui_ctx);
         let Options { source, load, session, adjust, storage } = options;
-        // A session knows of which volume it is.
-        let of_session = session.as_ref().filter(|path| source.is_none() && path.exists());
-        let of_session = of_session.and_then(|path| {
-            let volume = files::load_record(path).ok()?.volume?;
-            Some(volume.source_from(path.parent()))
-        });
-        let source = source.or(of_session);
+        let source = source.or_else(|| opening::volume_of_session(session.as_deref()?));
         let pipelines = storage.as_deref().map(Path::to_owned);
         let memory = Memory::new(storage);
         let hints = Hints { on: memory.is_first() };
@@ -178,7 +170,7 @@ impl App {
             longest_ui_ms: 0.0,
             status_file: StatusFile::from_environment(),
         };
-        app.open(source.as_deref().unwrap_or(DEFAULT_SOURCE), &cc.egui_ctx);
+        app.open_first(source.as_deref(), &cc.egui_ctx);
         Ok(app)
     }
 
@@ -215,13 +207,6 @@ impl App {
     /// What went wrong since the volume was opened.
     pub fn errors(&self) -> &[String] {
         self.messages.errors()
-    }
-
-    /// Opens a file or a built-in volume; what is open stays until it is there.
-    pub fn open(&mut self, source: &str, ctx: &egui::Context) {
-        if let Err(err) = self.loader.open(source, ctx) {
-            self.messages.error("cannot open", err);
-        }
     }
 
     /// Exports the picture as the export window does.
@@ -338,7 +323,9 @@ impl eframe::App for App {
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
         self.history.observe(&ctx, &self.settings);
-        self.keep_look();
+        if self.memory.is_due() {
+            self.keep_look();
+        }
         for command in commands {
             self.execute(command, frame, &ctx);
         }
@@ -362,6 +349,10 @@ impl eframe::App for App {
             // The progress bar moves.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }
+    }
+
+    fn on_exit(&mut self) {
+        self.keep_look();
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

@@ -51,7 +51,8 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"));
         pictures.push(picture);
     }
-    export_png(&row_of(&pictures), true, None, &args.output)?;
+    let row = row_of(&pictures);
+    export_png(row.size, &row.shown, true, None, &args.output)?;
     print_line(&format!("{}", args.output.display()));
     Ok(())
 }

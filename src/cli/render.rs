@@ -90,7 +90,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
     let how = PictureRecord::new(args.size, args.transparent, context.description());
     let record = Record::text(&settings, Some(&volume), Some(&how));
-    if let Err(err) = export_png(&picture, args.transparent, Some(&record), &args.output) {
+    if let Err(err) = export_png(args.size, &picture.shown, args.transparent, Some(&record), &args.output) {
         // A report without its picture would mislead.
         if let Some(path) = &args.report {
             std::fs::remove_file(path).ok();

@@ -37,16 +37,16 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let record = Record::read(&text).map_err(preset)?;
     let how =
         record.picture.clone().ok_or_else(|| unusable("it does not say how large it was".to_owned()))?;
-    let (settings, warnings) = record.apply(&Settings::default()).map_err(preset)?;
-    for warning in warnings {
-        warn_line(&format!("warning: {warning} ({path})"));
-    }
     let stated = record.volume.as_ref();
     let source = args.volume.clone().or_else(|| stated.map(|of| of.source_from(args.picture.parent())));
     let source = source.ok_or_else(|| unusable("it does not say of which volume".to_owned()))?;
     let volume = open(&source, &args.raw.load_options()?, &LoadControl::new())?;
     if stated.is_some_and(|of| !of.is_of(volume.content_id())) {
         return Err(unusable(format!("{source} is another volume than the one that it shows")));
+    }
+    let (settings, warnings) = record.apply(&Settings::default(), volume.value_range()).map_err(preset)?;
+    for warning in warnings {
+        warn_line(&format!("warning: {warning} ({path})"));
     }
     let loaded = Loaded::new(volume);
     let context = Context::headless()?;
@@ -58,7 +58,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     }
     let options = RenderOptions { transparent: how.transparent, ..RenderOptions::default() };
     let mut renderer = Renderer::new(&context)?;
-    let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, how.size, &options)?;
+    let again = renderer.render_shown(&loaded.volume, &loaded.bricks, &settings, how.size, &options)?;
     let before = image::open(&args.picture).map_err(|err| unusable(err.to_string()))?.to_rgba8();
     if [before.width(), before.height()] != how.size {
         return Err(unusable(format!(
@@ -68,14 +68,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
             how.size
         )));
     }
-    let shown: Vec<u8> = if how.transparent {
-        picture.shown.clone()
-    } else {
-        picture.shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2], 255]).collect()
-    };
     if let Some(output) = &args.output {
-        export_png(&picture, how.transparent, Some(&text), output)?;
+        export_png(how.size, &again, how.transparent, Some(&text), output)?;
     }
+    // Pictures without transparency have no alpha in the file.
+    let shown: Vec<u8> = if how.transparent {
+        again
+    } else {
+        again.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2], 255]).collect()
+    };
     if shown == *before.as_raw() {
         print_line("identical");
         return Ok(());

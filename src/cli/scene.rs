@@ -8,12 +8,9 @@ use serde_json::Value;
 
 use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
-use crate::data::{Bricks, Histogram, Volume, VoxelType};
+use crate::data::{Bricks, Histogram, Volume, VoxelType, read_small};
 use crate::gpu::{Renderer, balance};
 use crate::model::{Engine, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
-
-/// Largest file that is read as a preset: a thousand times the size of a real one.
-const MAX_PRESET_BYTES: u64 = 4 << 20;
 
 /// How a RAW file is stored.
 #[derive(Debug, Clone, Args)]
@@ -270,7 +267,7 @@ fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliE
     let builtin = Preset::find(&name).filter(|_| what == "preset");
     let text = match builtin {
         Some(preset) => preset.text().as_bytes().to_vec(),
-        None => read_small(what, path)?,
+        None => read_small(path).map_err(|source| CliError::Read { what, path: name.clone(), source })?,
     };
     let value = serde_json::from_slice(&text).map_err(|err| CliError::Preset {
         what,
@@ -278,21 +275,6 @@ fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliE
         source: crate::model::PresetError::Syntax(err),
     })?;
     Ok((value, name))
-}
-
-/// Reads a file, but not a huge one, nor a device.
-fn read_small(what: &'static str, path: &Path) -> Result<Vec<u8>, CliError> {
-    use std::io::Read as _;
-    let failed = |source| CliError::Read { what, path: path.display().to_string(), source };
-    let metadata = std::fs::metadata(path).map_err(failed)?;
-    if !metadata.is_file() {
-        return Err(failed(std::io::Error::other("not a regular file")));
-    }
-    let mut text = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(MAX_PRESET_BYTES).read_to_end(&mut text))
-        .map_err(failed)?;
-    Ok(text)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line, warn_line};
-use crate::gpu::{Context, ExportError, RenderOptions, Renderer, animated_png, export_png, write_atomically};
+use crate::gpu::{Animation, Context, ExportError, RenderOptions, Renderer, export_png};
 use crate::model::{PictureRecord, Record, VolumeRecord};
 
 /// Arguments of `turntable`.
@@ -61,24 +61,25 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
     let how = PictureRecord::new(args.size, args.transparent, context.description());
     let options = RenderOptions { transparent: args.transparent, ..RenderOptions::default() };
-    let mut pictures = Vec::new();
+    let mut file = moves
+        .then(|| Animation::create(&args.output, args.size, args.frames, args.transparent, args.rate))
+        .transpose()?;
     for frame in 0..args.frames {
         let settings = settings.turned(light, f64::from(frame) / f64::from(args.frames));
-        let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
-        if moves {
-            pictures.push(picture);
+        let shown = renderer.render_shown(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
+        if let Some(file) = &mut file {
+            file.add(&shown)?;
         } else {
             let record = Record::text(&settings, Some(&volume), Some(&how));
             let path = args.output.join(format!("{frame:04}.png"));
-            export_png(&picture, args.transparent, Some(&record), &path)?;
+            export_png(args.size, &shown, args.transparent, Some(&record), &path)?;
         }
         if args.progress {
             warn_line(&format!("{} of {}", frame + 1, args.frames));
         }
     }
-    if moves {
-        let png = animated_png(&pictures, args.transparent, args.rate)?;
-        write_atomically(&args.output, &png)?;
+    if let Some(file) = file {
+        file.finish()?;
     }
     print_line(&format!("{}", args.output.display()));
     Ok(())

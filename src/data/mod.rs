@@ -6,10 +6,12 @@ mod bricks;
 mod cells;
 mod histogram;
 pub mod load;
+mod small_file;
 pub mod synthetic;
 mod volume;
 
 pub use bricks::{BRICK_EDGE, Bricks};
 pub use cells::{BOUNDED_SIGMA, CELL_EDGE, CELLS, CellBounds, SIGMA_TOLERANCE};
 pub use histogram::Histogram;
+pub use small_file::read_small;
 pub use volume::{Samples, Volume, VolumeError, VoxelType};

@@ -208,12 +208,12 @@ impl Context {
             wgpu::TextureDimension::D2 | wgpu::TextureDimension::D1 => limits.max_texture_dimension_2d,
         };
         let wgpu::Extent3d { width, height, depth_or_array_layers } = descriptor.size;
-        let size = match descriptor.dimension {
-            // Layers have a limit of their own, below that of the axes.
-            wgpu::TextureDimension::D2 if depth_or_array_layers > limits.max_texture_array_layers => {
-                limit + 1
-            }
-            _ => width.max(height).max(depth_or_array_layers),
+        // Layers have a limit of their own, below that of the axes.
+        let most_layers = limits.max_texture_array_layers;
+        let (size, limit) = match descriptor.dimension {
+            wgpu::TextureDimension::D3 => (width.max(height).max(depth_or_array_layers), limit),
+            _ if depth_or_array_layers > most_layers => (depth_or_array_layers, most_layers),
+            _ => (width.max(height), limit),
         };
         if size > limit {
             let help = "a smaller picture or a volume with fewer voxels helps";

@@ -14,7 +14,7 @@ use super::{GpuError, Renderer};
 pub struct LightFigures {
     /// Whether it is filled.
     pub complete: bool,
-    /// From the beginning of its filling to the end, where that is known.
+    /// From the beginning of its filling to the end, where the adapter works while it is told what to do.
     pub fill_ms: Option<f64>,
     /// Bytes of its texture.
     pub bytes: u64,
@@ -25,7 +25,9 @@ impl Renderer {
     pub fn light_figures(&self, job: &Job) -> Vec<Option<LightFigures>> {
         let figures = |key: &Option<_>| {
             let light = self.lights.iter().find(|light| Some(&light.key) == key.as_ref())?;
-            Some(LightFigures { complete: light.complete, fill_ms: light.fill_ms, bytes: light.bytes() })
+            // Others only take note of what they will do, and return at once.
+            let fill_ms = light.fill_ms.filter(|_| self.context.is_software());
+            Some(LightFigures { complete: light.complete, fill_ms, bytes: light.bytes() })
         };
         job.keys.iter().map(figures).collect()
     }

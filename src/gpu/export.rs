@@ -3,8 +3,6 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::Picture;
-
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
@@ -26,15 +24,25 @@ pub enum ExportError {
 /// # Errors
 /// When the folder cannot be written to or the disk is full; an older file of that name stays.
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), ExportError> {
+    let mut file = temporary_beside(path)?;
+    file.write_all(contents).map_err(|source| ExportError::Write { path: path.to_owned(), source })?;
+    place(file, path)
+}
+
+/// A file for what will take a name when it is complete.
+pub(super) fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, ExportError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let failed = |source| ExportError::Write { path: path.to_owned(), source };
     // The temporary file's own name means nothing to the user: keep the kind of error alone.
-    let mut file = tempfile::Builder::new()
+    tempfile::Builder::new()
         .prefix(".chiaroscuro-")
         .suffix(".part")
         .tempfile_in(folder)
-        .map_err(|err| failed(err.kind().into()))?;
-    file.write_all(contents).map_err(failed)?;
+        .map_err(|err| ExportError::Write { path: path.to_owned(), source: err.kind().into() })
+}
+
+/// Gives a complete file its name.
+pub(super) fn place(file: tempfile::NamedTempFile, path: &Path) -> Result<(), ExportError> {
+    let failed = |source| ExportError::Write { path: path.to_owned(), source };
     // Otherwise a crash just after the rename could leave an empty file under the old name.
     file.as_file().sync_all().map_err(failed)?;
     #[cfg(unix)]
@@ -54,21 +62,22 @@ const RECORD: &str = "chiaroscuro";
 /// Most bytes that are read of a picture's texts: a thousand times a real record.
 const MOST_TEXT: usize = 16 << 20;
 
-/// Writes a picture as PNG: RGB, or RGBA with straight alpha when it is transparent. It carries a record
+/// Writes a picture, as [`super::Renderer::read_shown`] gives it, as PNG: RGB, or RGBA with straight alpha when it is transparent. It carries a record
 /// ([`crate::model::Record`]) as text.
 ///
 /// # Errors
 /// As [`write_atomically`].
 pub fn export_png(
-    picture: &Picture,
+    size: [u32; 2],
+    shown: &[u8],
     transparent: bool,
     record: Option<&str>,
     path: &Path,
 ) -> Result<(), ExportError> {
     let bytes = if transparent {
-        encode(picture.size, png::ColorType::Rgba, &picture.shown, record)?
+        encode(size, png::ColorType::Rgba, shown, record)?
     } else {
-        encode(picture.size, png::ColorType::Rgb, &rgb(picture), record)?
+        encode(size, png::ColorType::Rgb, &rgb(shown), record)?
     };
     write_atomically(path, &bytes)
 }
@@ -93,33 +102,9 @@ pub(super) fn encode(
     Ok(png)
 }
 
-/// Pictures of one size as a PNG that moves (APNG), for ever; programs that do not know of it show the first.
-///
-/// # Errors
-/// When the encoder refuses.
-pub fn animated_png(pictures: &[Picture], transparent: bool, rate: u16) -> Result<Vec<u8>, ExportError> {
-    let [width, height] = pictures.first().map_or([1, 1], |picture| picture.size);
-    let mut png = Vec::new();
-    let mut encoder = png::Encoder::new(&mut png, width, height);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_color(if transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
-    encoder.set_animated(pictures.len() as u32, 0)?;
-    encoder.set_frame_delay(1, rate)?;
-    let mut writer = encoder.write_header()?;
-    for picture in pictures {
-        if transparent {
-            writer.write_image_data(&picture.shown)?;
-        } else {
-            writer.write_image_data(&rgb(picture))?;
-        }
-    }
-    writer.finish()?;
-    Ok(png)
-}
-
 /// The colours of a picture without its alpha.
-fn rgb(picture: &Picture) -> Vec<u8> {
-    picture.shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
+pub(super) fn rgb(shown: &[u8]) -> Vec<u8> {
+    shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
 }
 
 /// The record that a PNG file carries, if it does.
@@ -167,12 +152,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let shown = (0..4 * 6).map(|i| (i * 10) as u8).collect::<Vec<_>>();
-        let picture = Picture { size: [3, 2], light: vec![[0.0; 4]; 6], shown: shown.clone() };
-        export_png(&picture, true, None, &path).unwrap();
+        export_png([3, 2], &shown, true, None, &path).unwrap();
         assert_eq!(read_record(&path).unwrap(), None);
         assert_eq!(image::open(&path).unwrap().to_rgba8().into_raw(), shown);
         let record = "{\"name\": \"Größe, 体積\"}";
-        export_png(&picture, true, Some(record), &path).unwrap();
+        export_png([3, 2], &shown, true, Some(record), &path).unwrap();
         assert_eq!(image::open(&path).unwrap().to_rgba8().into_raw(), shown);
         assert_eq!(read_record(&path).unwrap().as_deref(), Some(record));
         std::fs::write(&path, b"no picture").unwrap();

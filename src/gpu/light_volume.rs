@@ -1,6 +1,7 @@
 //! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use super::listed_bricks::{self, Listed};
 use super::pass;
@@ -30,8 +31,9 @@ pub(super) struct LightVolume {
     pub reach: u8,
     /// Whether everything in `filled` is there.
     pub complete: bool,
-    /// When it began to be filled, and how long that took.
-    pub started: std::time::Instant,
+    /// When the first of its steps was recorded …
+    started: Option<Instant>,
+    /// … and how long it took from there until the last was.
     pub fill_ms: Option<f64>,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
@@ -65,7 +67,7 @@ impl LightVolume {
             filled,
             reach,
             complete: false,
-            started: std::time::Instant::now(),
+            started: None,
             fill_ms: None,
             last_used: 0,
         };
@@ -116,10 +118,15 @@ impl LightVolume {
         Ok(())
     }
 
+    /// The first of its steps is recorded.
+    pub(super) fn begin(&mut self) {
+        self.started.get_or_insert_with(Instant::now);
+    }
+
     /// Everything is there.
     pub(super) fn finish(&mut self) {
         self.complete = true;
-        self.fill_ms = Some(self.started.elapsed().as_secs_f64() * 1000.0);
+        self.fill_ms = self.started.map(|started| started.elapsed().as_secs_f64() * 1000.0);
     }
 
     /// Bytes of its texture.

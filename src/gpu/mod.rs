@@ -3,6 +3,7 @@
 //! One file per pass, with the same stem as its shader. [`Renderer`] reads top to bottom and owns
 //! every cache. Knows nothing of the window.
 
+mod animation;
 mod clock;
 mod context;
 mod counts;
@@ -45,11 +46,12 @@ pub mod uniforms;
 mod volume;
 mod warm_up;
 
+pub use animation::Animation;
 pub use context::{Context, device_descriptor};
 pub use counts::LightFigures;
 pub use distance::Distance;
 pub use error::GpuError;
-pub use export::{ExportError, ReadPictureError, animated_png, export_png, read_record, write_atomically};
+pub use export::{ExportError, ReadPictureError, export_png, read_record, write_atomically};
 pub use export_light::{LightSlice, export_slice, light_volume_nrrd};
 pub use first_look::{balance, dark_share, first_look, mean_luminance};
 pub use job::{Job, Stage};

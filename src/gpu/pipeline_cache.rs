@@ -1,9 +1,9 @@
 //! Compiled pipelines kept on disk, where the backend can (Vulkan): the next start finds them.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::Context;
+use super::export::{ExportError, write_atomically};
 
 /// Most bytes that are read: what drivers keep for our three dozen shaders is far less.
 const MOST_BYTES: u64 = 64 << 20;
@@ -43,15 +43,12 @@ impl PipelineCache {
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub(super) fn save(&self) -> std::io::Result<()> {
+    pub(super) fn save(&self) -> Result<(), ExportError> {
         let Some(data) = self.cache.get_data() else { return Ok(()) };
         let folder = self.path.parent().unwrap_or(Path::new("."));
-        std::fs::create_dir_all(folder)?;
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        file.write_all(&sum(&data).to_le_bytes())?;
-        file.write_all(&data)?;
-        file.persist(&self.path).map_err(|err| err.error)?;
-        Ok(())
+        std::fs::create_dir_all(folder)
+            .map_err(|source| ExportError::Write { path: folder.to_owned(), source })?;
+        write_atomically(&self.path, &[&sum(&data).to_le_bytes(), &data[..]].concat())
     }
 }
 

@@ -154,11 +154,31 @@ impl Renderer {
         size: [u32; 2],
         options: &RenderOptions,
     ) -> Result<Picture, GpuError> {
-        self.draw(volume, bricks, settings, size, options)?;
+        let shown = self.render_shown(volume, bricks, settings, size, options)?;
         let start = Instant::now();
-        let (light, shown) = (self.read_light()?, self.read_shown()?);
+        let light = self.read_light()?;
         self.report.readback_ms += milliseconds(start);
         Ok(Picture { size, light, shown })
+    }
+
+    /// Makes a picture, waits for it and reads back what is shown, as [`Self::read_shown`] does, but not its
+    /// light, which takes four times the memory.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    pub fn render_shown(
+        &mut self,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+        settings: &Settings,
+        size: [u32; 2],
+        options: &RenderOptions,
+    ) -> Result<Vec<u8>, GpuError> {
+        self.draw(volume, bricks, settings, size, options)?;
+        let start = Instant::now();
+        let shown = self.read_shown()?;
+        self.report.readback_ms += milliseconds(start);
+        Ok(shown)
     }
 
     /// Draws a picture and waits until it is complete, without reading it back.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::export::ExportError;
 use super::pipeline_cache::PipelineCache;
 use super::{Context, GpuError};
 
@@ -81,7 +82,7 @@ impl ShaderLibrary {
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn save_cache(&self) -> std::io::Result<()> {
+    pub fn save_cache(&self) -> Result<(), ExportError> {
         self.cache.as_ref().map_or(Ok(()), PipelineCache::save)
     }
 

@@ -135,6 +135,7 @@ impl Renderer {
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
         if *begin == 0 && part.0 == 0 && *view == 0 {
             self.rebuilds[build.light] += 1;
+            self.lights.iter_mut().filter(|light| light.key == build.key).for_each(LightVolume::begin);
         }
         Ok(())
     }
@@ -197,6 +198,7 @@ impl Renderer {
         raycast(gpu, tables, lamp, &self.options, &self.lights[at], list, encoder)?;
         if bricks.start == 0 {
             self.rebuilds[build.light] += 1;
+            self.lights[at].begin();
         }
         if bricks.end == build.bricks.len() {
             self.lights[at].finish();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{PresetError, Settings, apply_json};
+use super::{PresetError, Settings, apply_relative};
 
 /// The volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -112,12 +112,12 @@ impl Record {
         Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
     }
 
-    /// Its settings laid over others, and warnings of what was not understood.
+    /// Its settings laid over others, for a volume with these values, and warnings of what was not understood.
     ///
     /// # Errors
-    /// As [`apply_json`].
-    pub fn apply(&self, over: &Settings) -> Result<(Settings, Vec<String>), PresetError> {
-        apply_json(over, &self.overlay)
+    /// As [`apply_relative`].
+    pub fn apply(&self, over: &Settings, range: (f64, f64)) -> Result<(Settings, Vec<String>), PresetError> {
+        apply_relative(over, &self.overlay, range)
     }
 }
 
@@ -145,7 +145,7 @@ mod tests {
         let text = Record::text(&settings, Some(&volume), Some(&picture));
         let record = Record::read(&text).unwrap();
         assert_eq!((record.volume.as_ref(), record.picture.as_ref()), (Some(&volume), Some(&picture)));
-        let (read, warnings) = record.apply(&Settings::default()).unwrap();
+        let (read, warnings) = record.apply(&Settings::default(), (0.0, 1.0)).unwrap();
         assert_eq!((read, warnings), (settings, vec![]));
         assert!(volume.is_of(0x1234) && !volume.is_of(0x1235));
     }
@@ -154,7 +154,7 @@ mod tests {
     fn presets_are_records_of_nothing_and_nonsense_is_refused() {
         let record = Record::read(r#"{"shadows": {"gain": 2.0}}"#).unwrap();
         assert_eq!((&record.volume, &record.picture), (&None, &None));
-        assert_eq!(record.apply(&Settings::default()).unwrap().0.shadows.gain, 2.0);
+        assert_eq!(record.apply(&Settings::default(), (0.0, 1.0)).unwrap().0.shadows.gain, 2.0);
         assert!(Record::read("[1]").is_err() && Record::read("{").is_err());
         assert!(Record::read(r#"{"_volume": {"source": 3}}"#).is_err());
     }

@@ -1,0 +1,172 @@
+//! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
+
+use std::path::Path;
+
+use eframe::egui;
+
+use super::history::History;
+use super::loader::Opened;
+use super::volume_facts::VolumeFacts;
+use super::{App, files};
+use crate::model::{Record, Settings, VolumeRecord};
+
+/// What is opened when nothing is named.
+const DEFAULT_SOURCE: &str = "builtin:chair";
+
+/// The volume that a session is of, where it says so.
+pub(super) fn volume_of_session(session: &Path) -> Option<String> {
+    if !session.exists() {
+        return None;
+    }
+    // That the session cannot be read is said when it is due.
+    let volume = files::load_record(session).ok()?.volume?;
+    Some(volume.source_from(session.parent()))
+}
+
+impl App {
+    /// Opens a file or a built-in volume, or the volume of a session or of an exported picture with the look
+    /// that is kept there. What is open stays until it is there.
+    pub fn open(&mut self, source: &str, ctx: &egui::Context) {
+        if files::is_record(Path::new(source)) {
+            self.open_record(Path::new(source), ctx);
+        } else if self.start_loading(source, ctx) {
+            self.pending = None;
+        }
+    }
+
+    /// Opens what was named at the start. A look that cannot be used leaves the default volume.
+    pub(super) fn open_first(&mut self, source: Option<&str>, ctx: &egui::Context) {
+        if let Some(source) = source {
+            self.open(source, ctx);
+        }
+        if self.loader.progress().is_none() {
+            self.start_loading(DEFAULT_SOURCE, ctx);
+        }
+    }
+
+    fn start_loading(&mut self, source: &str, ctx: &egui::Context) -> bool {
+        let started = self.loader.open(source, ctx);
+        if let Err(err) = &started {
+            self.messages.error("cannot open", err.clone());
+        }
+        started.is_ok()
+    }
+
+    /// Takes over the look of a session, a preset or a picture. If it is of another volume than the open one,
+    /// that is opened first; a preset is of any volume.
+    pub(super) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
+        let record = match files::load_record(path) {
+            Ok(record) => record,
+            Err(err) => return self.messages.error("the settings were not loaded", err),
+        };
+        let open = self.volume_record().map(|(_, content_id)| content_id);
+        let source = match &record.volume {
+            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => volume.source_from(path.parent()),
+            // What is being opened is what the user will see it on.
+            None if self.loader.progress().is_some() => return self.pending = Some(record),
+            None if open.is_none() => DEFAULT_SOURCE.to_owned(),
+            _ => return self.apply_record(&record, self.value_range()),
+        };
+        if self.start_loading(&source, ctx) {
+            self.pending = Some(record);
+        }
+    }
+
+    /// Takes over a look for the open volume, whatever volume it was made for.
+    pub(super) fn load_settings(&mut self, path: &Path) {
+        match files::load_record(path) {
+            Ok(record) => {
+                let open = self.volume_record().map(|(_, content_id)| content_id);
+                if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
+                    self.messages.note("The settings were made for another volume: Open… opens that one");
+                }
+                self.apply_record(&record, self.value_range());
+            }
+            Err(err) => self.messages.error("the settings were not loaded", err),
+        }
+    }
+
+    /// Smallest and largest value of the open volume.
+    pub(super) fn value_range(&self) -> (f64, f64) {
+        self.volume.as_ref().map_or((0.0, 1.0), |volume| volume.range)
+    }
+
+    /// The settings with a record laid over them, for a volume with these values.
+    pub(super) fn with_record(&mut self, record: &Record, range: (f64, f64)) -> Result<Settings, String> {
+        let (settings, warnings) = record.apply(&self.settings, range).map_err(|err| err.to_string())?;
+        if !warnings.is_empty() {
+            self.messages.note(warnings.join("; "));
+        }
+        Ok(settings)
+    }
+
+    fn apply_record(&mut self, record: &Record, range: (f64, f64)) {
+        match self.with_record(record, range) {
+            Ok(settings) => self.settings = settings,
+            Err(err) => self.messages.error("the settings were not loaded", err),
+        }
+    }
+
+    /// The open volume, for records.
+    pub(super) fn volume_record(&self) -> Option<(&str, u64)> {
+        let (volume, _) = self.viewport.volume()?;
+        Some((&self.volume.as_ref()?.source, volume.content_id()))
+    }
+
+    pub(super) fn save_settings(&mut self, path: &Path) {
+        match files::save_settings(path, &self.settings, self.volume_record()) {
+            Ok(()) => self.messages.note(format!("Saved {}", path.display())),
+            Err(err) => self.messages.error("the settings were not saved", err),
+        }
+    }
+
+    /// Keeps the look, so that the next run can go on with it.
+    pub(super) fn keep_look(&mut self) {
+        if let Some((source, content_id)) = self.volume_record() {
+            let volume = VolumeRecord::new(source, content_id, None);
+            let text = Record::text(&self.settings, Some(&volume), None);
+            self.memory.keep(text);
+        }
+    }
+
+    /// A volume is ready: it replaces the one before.
+    pub(super) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
+        let Opened { source, volume, bricks, histogram, renderer, settings } = opened;
+        self.messages.clear();
+        self.defaults = settings.clone();
+        if self.keeps_look && self.volume.is_some() {
+            // As it was, but for where the object is: that is another one.
+            let camera = settings.camera.clone();
+            self.settings = Settings { camera, ..std::mem::take(&mut self.settings) };
+        } else {
+            self.settings = settings;
+        }
+        let range = volume.value_range();
+        // Session and command line speak of the first volume.
+        if std::mem::take(&mut self.session_is_due)
+            && let Some(path) = self.session.clone().filter(|path| path.exists())
+        {
+            match files::load_record(&path) {
+                Ok(record) => self.apply_record(&record, range),
+                Err(err) => self.messages.error("the session was not loaded", err),
+            }
+        }
+        self.memory.opened(&source);
+        if let Some(record) = self.pending.take() {
+            if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
+                self.messages.note("The settings were made for other values than the file has now");
+            }
+            self.apply_record(&record, range);
+        }
+        if let Some(adjust) = self.adjust.take() {
+            self.settings = adjust(std::mem::take(&mut self.settings));
+            self.settings.sanitise();
+        }
+        self.volume = Some(VolumeFacts::of(source, &volume, histogram));
+        self.viewport.set_scene(renderer, volume, bricks);
+        self.history = History::default();
+        self.selected_light = 0;
+        let name = self.volume_name().unwrap_or_default();
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{name} – Chiaroscuro")));
+    }
+}
