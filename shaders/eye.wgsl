@@ -43,7 +43,7 @@ fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towar
     let s = eye.shading;
     let reach = towards.distance - s.bias;
     let direction = to_index(eye.space, towards.direction);
-    return shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth)
+    return shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth, eye.shading_cut)
         * hood_share(light, towards.direction);
 }
 
@@ -78,7 +78,8 @@ fn main(
         return;
     }
     let ray = ray_of(eye.frame, vec2f(pixel));
-    let inside = slabs_inside(eye.frame, ray);
+    let span = span_within(eye.seen, ray);
+    let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
     let walk = walk_along(eye.frame, ray);
     var k = inside.x;
     var color = vec3f(0.0);
@@ -103,6 +104,7 @@ fn main(
                 break;
             }
             material = slab_material(eye.frame, ray, f32(k));
+            material.a *= share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab);
             if (material.a > 0.0) {
                 break;
             }
@@ -113,11 +115,11 @@ fn main(
         }
         let depth = depth_of(eye.frame, f32(k));
         let p = ray.origin + ray.direction * depth;
+        let level = select(0.0, stretch_level(eye.frame, depth), STRETCH);
         var slope: vec3f;
         if (SHEET_GRADIENTS) {
             slope = gradient_between_sheets(vec2f(pixel), f32(k));
         } else {
-            let level = select(0.0, stretch_level(eye.frame, depth), STRETCH);
             if (GRADIENT_TEXTURE) {
                 let coordinates = (p + 4.5) * grid.pyramid_scale;
                 slope = textureSampleLevel(gradients, clamped, coordinates, level).xyz;
@@ -126,6 +128,7 @@ fn main(
             }
             slope = gradient_to_scene(eye.space, slope);
         }
+        slope += gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
         let rgb = shade(p, slope, material.rgb);
         let passed = exp(-material.a * eye.frame.slab * ray.obliquity);
         color += t * (1.0 - passed) * rgb;

@@ -32,6 +32,6 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     let p = (vec3f(voxel) + 0.5) * collapse.voxel_step - 0.5;
-    let slope = gradient_to_scene(eye.space, index_gradient(p, 0.0));
+    let slope = gradient_to_scene(eye.space, index_gradient(p, 0.0) + face_gradient(eye.seen, p, 0.0));
     textureStore(collapsed, voxel, vec4f(lit_through_material(surface_at(p, slope)).diffuse, 1.0));
 }

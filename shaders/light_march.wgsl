@@ -22,7 +22,8 @@ fn main(
         return;
     }
     let ray = ray_of(march.frame, vec2f(id));
-    let inside = slabs_inside(march.frame, ray);
+    let span = span_within(march.shading_cut, ray);
+    let inside = slabs_within(march.frame, span, slabs_inside(march.frame, ray));
     let pixel = id.y * march.frame.size.x + id.x;
     let end = i32(march.end);
     // The first of four slabs that share a texel of the ring.
@@ -84,7 +85,8 @@ fn main(
             if (slab >= last) {
                 break;
             }
-            let extinction = slab_material(march.frame, ray, f32(slab)).a;
+            let share = share_within(span, depth_of(march.frame, f32(slab)), march.frame.slab);
+            let extinction = slab_material(march.frame, ray, f32(slab)).a * share;
             let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
             deposits = with_deposit(deposits, u32(slab), deposited(t, tau));
             t *= exp(-tau);

@@ -18,6 +18,8 @@ struct Raycast {
     // Optical depth at which a ray ends.
     dark: f32,
     pad0: u32,
+    // What attenuates light.
+    shading_cut: Cut,
 }
 
 @group(0) @binding(0) var<uniform> raycast: Raycast;
@@ -48,6 +50,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let towards = to_light(raycast.light, place_of(raycast.space, p));
     let direction = to_index(raycast.space, towards.direction);
     let scale = raycast.light.extinction_scale;
-    let arriving = shadow_ray(p, direction, towards.distance, raycast.ray_step, scale, raycast.dark);
+    let reach = towards.distance;
+    let cut = raycast.shading_cut;
+    let arriving = shadow_ray(p, direction, reach, raycast.ray_step, scale, raycast.dark, cut);
     textureStore(attenuation, voxel, vec4f(arriving * hood_share(raycast.light, towards.direction)));
 }

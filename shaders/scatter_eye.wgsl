@@ -67,8 +67,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (material.a > 0.0 && left >= eye.dark && brick.x >= 0 && in_front) {
         // Sums are complete only where the transfer function shows something at all.
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
-            let rgb = shade(p, gradient_between_sheets(pixel, k, met), material.rgb);
-            let opacity = 1.0 - exp(-material.a * met.thickness * ray.obliquity);
+            let level = stretch_level(eye.frame, met.depth);
+            let faces = gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
+            let rgb = shade(p, gradient_between_sheets(pixel, k, met) + faces, material.rgb);
+            let share = share_within(span_within(eye.seen, ray), met.depth, met.thickness);
+            let opacity = 1.0 - exp(-share * material.a * met.thickness * ray.obliquity);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);
         }
     }

@@ -76,6 +76,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let centre = vec3f(voxel);
+    if (!is_within(eye.seen, centre)) {
+        return;
+    }
     let at = locate(centre);
     let box = pixels_under(at);
     // Behind a perspective eye, or beside the picture.
@@ -83,8 +86,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     atomicAdd(&splats, 1u);
-    let rgb = shade(centre, gradient_of(vec3i(voxel)), material.rgb);
     let stretch = stretch_of(at.z);
+    let faces = gradient_to_scene(eye.space, face_gradient(eye.seen, centre, log2(max(stretch, 1.0))));
+    let rgb = shade(centre, gradient_of(vec3i(voxel)) + faces, material.rgb);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {
             let ray = ray_of(scatter.frame, vec2f(i, j));

@@ -232,6 +232,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light_backproject.wgsl", frame),
         ("eye.wgsl", grid.clone()),
         ("light_march.wgsl", grid),
+        ("eye.wgsl", layout!(Cut { low, pad0, high, pad1, plane })),
         (
             "light_march.wgsl",
             layout!(March {
@@ -250,6 +251,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 runs,
                 pad1,
                 pad2,
+                shading_cut,
             }),
         ),
         (
@@ -276,7 +278,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light_raycast.wgsl", light.clone()),
         (
             "light_raycast.wgsl",
-            layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, pad0 }),
+            layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, pad0, shading_cut }),
         ),
         ("eye.wgsl", light),
         (
@@ -324,6 +326,8 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 pad1,
                 collapsed_lookup,
                 pad2,
+                seen,
+                shading_cut,
                 lights
             }),
         ),

@@ -1,6 +1,7 @@
 // The march of light through sheets, however these were filled (P §3.5, eq. 10): from slab to slab the
 // transmittance falls, and each keeps in a ring of layers what it will deposit in the light volume.
 #import "common/sheet_frame.wgsl"
+#import "common/cut.wgsl"
 
 struct March {
     frame: SheetFrame,
@@ -26,6 +27,8 @@ struct March {
     runs: u32,
     pad1: i32,
     pad2: i32,
+    // What attenuates light.
+    shading_cut: Cut,
 }
 
 @group(0) @binding(0) var<uniform> march: March;

@@ -5,6 +5,7 @@
 #import "common/lights.wgsl"
 #import "common/space.wgsl"
 #import "common/sheet_frame.wgsl"
+#import "common/cut.wgsl"
 
 struct Eye {
     frame: SheetFrame,
@@ -29,6 +30,10 @@ struct Eye {
     // Index space to texture coordinates of the volume into which lights have been collapsed.
     collapsed_lookup: vec3f,
     pad2: f32,
+    // What is seen.
+    seen: Cut,
+    // What attenuates light.
+    shading_cut: Cut,
     lights: array<Light, MAX_LIGHTS>,
 }
 

@@ -1,6 +1,6 @@
 //! The eye pass: from density and attenuation to linear light.
 
-use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
+use super::kernel::{classification_constant, cut_constant, kernel_constants, quadrature_constant};
 use super::light_collapse::CollapsedLight;
 use super::light_volume::{LightVolume, light_bind_group};
 use super::pass;
@@ -64,6 +64,9 @@ impl EyePass {
         if collapsed.is_some() {
             constants.push(("COLLAPSED", 1.0));
         }
+        let (seen, shading_cut) = (settings.cuts.seen(), settings.cuts.shading());
+        // Rays to lights are the eye pass's own.
+        constants.push(cut_constant(if direct && seen.is_everything() { shading_cut } else { seen }));
         let (eye, w) = match settings.camera.projection {
             Projection::Perspective => (settings.camera.eye(), 1.0),
             Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
@@ -84,6 +87,8 @@ impl EyePass {
             pad1: 0,
             collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
             pad2: 0.0,
+            seen: uniforms::Cut::new(&seen.region(scene)),
+            shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
             lights: packed,
         };
         let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
@@ -121,7 +126,7 @@ impl EyePass {
     pub(super) fn scatter_constants(&self) -> Vec<(&'static str, f64)> {
         self.constants
             .iter()
-            .filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED" | "COLLAPSED"))
+            .filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED" | "COLLAPSED" | "CUT"))
             .copied()
             .collect()
     }

@@ -1,7 +1,7 @@
 //! How a kernel is said to a shader: override constants of `common/kernel.wgsl`,
-//! `common/volume.wgsl` and `common/classify.wgsl`.
+//! `common/volume.wgsl`, `common/classify.wgsl` and `common/cut.wgsl`.
 
-use crate::model::{Classification, Kernel, Quadrature};
+use crate::model::{Classification, Kernel, Quadrature, Remains};
 
 /// `KERNEL` and `SIGMA`.
 pub(super) fn kernel_constants(kernel: Kernel) -> [(&'static str, f64); 2] {
@@ -21,4 +21,9 @@ pub(super) fn quadrature_constant(quadrature: Quadrature) -> (&'static str, f64)
 /// `PRECLASSIFY`.
 pub(super) fn classification_constant(classification: Classification) -> (&'static str, f64) {
     ("PRECLASSIFY", f64::from(u8::from(classification == Classification::Pre)))
+}
+
+/// `CUT`.
+pub(super) fn cut_constant(remains: Remains) -> (&'static str, f64) {
+    ("CUT", f64::from(u8::from(!remains.is_everything())))
 }

@@ -11,7 +11,7 @@ use super::uniforms;
 use super::volume::{Gpu, entry, texture_3d};
 use super::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
-use crate::model::Settings;
+use crate::model::{Remains, Settings};
 use crate::plan::{CellSet, LightKey};
 
 /// Bricks per submission: 2048 × 512 voxels take a software adapter some 0.1 s.
@@ -23,6 +23,8 @@ pub(super) const BRICKS_PER_STEP: usize = 2048;
 pub(super) struct CollapsedKey {
     lights: Vec<LightKey>,
     shading: Vec<u8>,
+    /// Faces that are seen have normals of their own.
+    seen: Remains,
 }
 
 impl CollapsedKey {
@@ -47,7 +49,7 @@ impl CollapsedKey {
             let packed = pack_light(&light.in_world(&settings.camera), None, true, settings);
             bytes.extend_from_slice(bytemuck::bytes_of(&packed));
         }
-        Self { lights, shading: bytes }
+        Self { lights, shading: bytes, seen: settings.cuts.seen() }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::kernel::{classification_constant, kernel_constants, quadrature_constant};
+use super::kernel::{classification_constant, cut_constant, kernel_constants, quadrature_constant};
 use super::pass;
 use super::recycled::Recycled;
 use super::shader::ring_format;
@@ -10,6 +10,7 @@ use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
 use super::{Context, GpuError, RenderOptions};
+use crate::math::Region;
 use crate::model::{Deposit, Light, Settings};
 use crate::plan::{LightView, sample_reach};
 
@@ -147,7 +148,7 @@ impl Sheets {
 }
 
 /// The variant of the shader for a kernel and deposit, for pixels wider than voxels or not.
-pub(super) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f64); 6] {
+pub(super) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f64); 7] {
     let shadows = &settings.shadows;
     let [kernel, sigma] = kernel_constants(shadows.kernel);
     let flag = |on: bool| f64::from(u8::from(on));
@@ -157,6 +158,7 @@ pub(super) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f
         quadrature_constant(shadows.quadrature),
         classification_constant(settings.sampling.classification),
         ("STRETCH", flag(stretch)),
+        cut_constant(settings.cuts.shading()),
         ("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)),
     ]
 }
@@ -167,9 +169,10 @@ fn rows_of(height: u32, part: (u32, u32)) -> Range<u32> {
     cut(part.0)..cut(part.0 + 1)
 }
 
-/// What the shaders know about the light and the slabs `slabs.0 .. slabs.1` of a view.
+/// What the shaders know about the light, what attenuates it and the slabs `slabs.0 .. slabs.1` of a view.
 pub(super) fn march_uniform(
     light: &Light,
+    shading_cut: &Region,
     view: &LightView,
     sheets: &Sheets,
     slabs: (u32, u32),
@@ -192,6 +195,7 @@ pub(super) fn march_uniform(
         runs: 1,
         pad1: 0,
         pad2: 0,
+        shading_cut: uniforms::Cut::new(shading_cut),
     }
 }
 
@@ -214,7 +218,9 @@ pub(super) fn march(
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, stretch > 0.0))?;
     let tiles = pass::tiles([view.frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
-    let uniform = uniforms::March { runs, ..march_uniform(light, view, sheets, slabs, rows.clone()) };
+    let cut = settings.cuts.shading().region(&volume.scene);
+    let uniform = march_uniform(light, &cut, view, sheets, slabs, rows.clone());
+    let uniform = uniforms::March { runs, ..uniform };
     let uniform = gpu.uniform("March::uniform", uniform);
     let entries = sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances);
     let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);

@@ -1,7 +1,7 @@
 //! Fills a light volume by a ray from every voxel to the light.
 
 use super::eye::pack_light;
-use super::kernel::{kernel_constants, quadrature_constant};
+use super::kernel::{cut_constant, kernel_constants, quadrature_constant};
 use super::light_volume::LightVolume;
 use super::listed_bricks::{self, Listed};
 use super::pass;
@@ -9,7 +9,7 @@ use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
-use crate::model::{Deposit, Light, Settings, Shadows};
+use crate::model::{Deposit, Light, Settings};
 use crate::plan::ray_reach;
 
 /// Bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a
@@ -17,10 +17,17 @@ use crate::plan::ray_reach;
 pub(super) const BRICKS_PER_STEP: usize = 16;
 
 /// The variant of the shader for a kernel.
-pub(super) fn constants(shadows: &Shadows) -> [(&'static str, f64); 4] {
+pub(super) fn constants(settings: &Settings) -> [(&'static str, f64); 5] {
+    let shadows = &settings.shadows;
     let [kernel, sigma] = kernel_constants(shadows.kernel);
     let front = f64::from(u8::from(shadows.deposit == Deposit::Front));
-    [kernel, sigma, quadrature_constant(shadows.quadrature), ("DEPOSIT_FRONT", front)]
+    [
+        kernel,
+        sigma,
+        quadrature_constant(shadows.quadrature),
+        ("DEPOSIT_FRONT", front),
+        cut_constant(settings.cuts.shading()),
+    ]
 }
 
 /// Fills the listed bricks of a light volume. The light's position refers to the scene.
@@ -37,11 +44,8 @@ pub(super) fn raycast(
         return Ok(());
     }
     let Gpu { shaders, volume, .. } = gpu;
-    let pipeline = shaders.pipeline_into(
-        "light_raycast.wgsl",
-        &constants(&settings.shadows),
-        target.texture.format(),
-    )?;
+    let pipeline =
+        shaders.pipeline_into("light_raycast.wgsl", &constants(settings), target.texture.format())?;
     let uniform = uniforms::Raycast {
         light: pack_light(light, Some(target), true, settings),
         space: uniforms::Space::new(&volume.scene),
@@ -51,6 +55,7 @@ pub(super) fn raycast(
         ray_step: settings.shadows.ray_step(&volume.scene) as f32,
         dark: options.dark_depth(),
         pad0: 0,
+        shading_cut: uniforms::Cut::new(&settings.cuts.shading().region(&volume.scene)),
     };
     let uniform = gpu.uniform("Raycast::uniform", uniform);
     let list = listed_bricks::upload(gpu, bricks);

@@ -9,9 +9,10 @@ use super::pipeline_cache::PipelineCache;
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 36] = [
+pub const SHADERS: [(&str, &str); 37] = [
     ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
+    ("common/cut.wgsl", include_str!("../../shaders/common/cut.wgsl")),
     ("common/footprint.wgsl", include_str!("../../shaders/common/footprint.wgsl")),
     ("common/gradient.wgsl", include_str!("../../shaders/common/gradient.wgsl")),
     ("common/kernel.wgsl", include_str!("../../shaders/common/kernel.wgsl")),

@@ -6,7 +6,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec2, DVec3};
 
-use crate::math::SceneSpace;
+use crate::math::{Region, SceneSpace};
 use crate::plan::SheetFrame as Frame;
 
 fn vec3(v: DVec3) -> [f32; 3] {
@@ -69,6 +69,35 @@ impl SheetFrame {
             slope_di: vec2(frame.slope.per_i),
             slope_dj: vec2(frame.slope.per_j),
             size: frame.size,
+        }
+    }
+}
+
+/// `common/cut.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Cut {
+    pub low: [f32; 3],
+    pub pad0: f32,
+    pub high: [f32; 3],
+    pub pad1: f32,
+    pub plane: [f32; 4],
+}
+
+impl Cut {
+    /// Where nothing is cut, faces are so many voxels away: far from every volume, and far from overflow.
+    const AWAY: f64 = 1e9;
+
+    pub fn new(region: &Region) -> Self {
+        let near = |v: DVec3| vec3(v.clamp(DVec3::splat(-Self::AWAY), DVec3::splat(Self::AWAY)));
+        let plane =
+            region.plane.map_or(DVec3::ZERO.extend(Self::AWAY), |half| half.normal.extend(half.offset));
+        Self {
+            low: near(region.low),
+            pad0: 0.0,
+            high: near(region.high),
+            pad1: 0.0,
+            plane: plane.as_vec4().into(),
         }
     }
 }
@@ -161,6 +190,7 @@ pub struct March {
     pub runs: u32,
     pub pad1: i32,
     pub pad2: i32,
+    pub shading_cut: Cut,
 }
 
 /// `light_backproject.wgsl`.
@@ -197,6 +227,7 @@ pub struct Raycast {
     pub ray_step: f32,
     pub dark: f32,
     pub pad0: u32,
+    pub shading_cut: Cut,
 }
 
 /// `light_collapse.wgsl`.
@@ -292,6 +323,8 @@ pub struct Eye {
     pub pad1: i32,
     pub collapsed_lookup: [f32; 3],
     pub pad2: f32,
+    pub seen: Cut,
+    pub shading_cut: Cut,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 

@@ -1,8 +1,9 @@
 //! Makes the pipelines that the first pictures and previews will need, ahead of time: each can take
 //! a driver tens of milliseconds, which a window must not wait for.
 
+use super::kernel::cut_constant;
 use super::{GpuError, ShaderLibrary, eye, light_backproject, light_march};
-use crate::model::{Kernel, Sampling, Settings, Shadows};
+use crate::model::{Kernel, Remains, Sampling, Settings, Shadows};
 
 /// Lights of a first look, and how many of them cast shadows.
 const FIRST_LIGHTS: (usize, usize) = (2, 1);
@@ -22,6 +23,7 @@ impl ShaderLibrary {
                 let sampling = Sampling { kernel, ..Sampling::default() };
                 let mut constants = eye::constants(&sampling, &Shadows::default(), flag, (lights, shadowed));
                 // Of stretched kernels only in previews.
+                constants.push(cut_constant(Remains::default()));
                 constants.push(eye::gradient_constant(!flag || kernel == Kernel::Prefiltered));
                 self.pipeline("eye.wgsl", &constants)?;
                 let shadows = Shadows { kernel, ..Shadows::default() };

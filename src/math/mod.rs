@@ -5,8 +5,10 @@
 
 mod bounds;
 mod false_color;
+mod region;
 mod scene;
 
 pub use bounds::Bounds;
 pub use false_color::false_color;
+pub use region::{HalfSpace, Region};
 pub use scene::SceneSpace;

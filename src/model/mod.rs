@@ -6,6 +6,7 @@
 pub mod auto;
 mod camera;
 mod color_map;
+mod cut;
 mod exchange;
 mod length;
 mod library;
@@ -24,6 +25,7 @@ mod view;
 
 pub use camera::{Camera, Projection};
 pub use color_map::{COLOR_MAPS, ColorMap};
+pub use cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
 pub use exchange::{ExchangeError, from_paraview, to_paraview};
 pub use length::Length;
 pub use library::{PRESETS, Preset, apply_relative};

@@ -2,8 +2,8 @@
 //! negative extinction or as an endless loop.
 
 use super::{
-    Background, Camera, ControlPoint, Hood, Interpolation, Kernel, Light, MAX_BIAS_VOXELS, Output, Sampling,
-    Settings, Shading, Shadows,
+    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Hood, Interpolation, Kernel, Light,
+    MAX_BIAS_VOXELS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling, Settings, Shading, Shadows,
 };
 
 impl Settings {
@@ -71,6 +71,18 @@ impl Settings {
             let (Interpolation::Opacity | Interpolation::Extinction) = function.interpolation;
         }
         number(&mut self.lighting.scale, 0.0, 1e3, 1.0);
+        let Cuts { crop, plane } = &mut self.cuts;
+        let CropBox { on: _, low, high, effect: _ } = crop;
+        for axis in 0..3 {
+            number(&mut low[axis], 0.0, 1.0 - MIN_CROP, 0.0);
+            number(&mut high[axis], low[axis] + MIN_CROP, 1.0, 1.0);
+        }
+        let ClipPlane { on: _, normal, offset, effect: _ } = plane;
+        point(normal, 1e6);
+        if *normal == [0.0; 3] {
+            *normal = ClipPlane::default().normal;
+        }
+        number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
         let length = self.opacity_unit.number();
         if !(length.is_finite() && length > 0.0) {
             self.opacity_unit = default.opacity_unit;

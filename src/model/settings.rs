@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::transfer::unit_in_scene;
 use super::{
-    BakedTransfer, Camera, Classification, Engine, Gradients, Kernel, Length, Light, LightStorage, Sampling,
-    ShadowAlgorithm, Shadows, TransferFunction,
+    BakedTransfer, Camera, Classification, Cuts, Engine, Gradients, Kernel, Length, Light, LightStorage,
+    Sampling, ShadowAlgorithm, Shadows, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE};
 use crate::math::SceneSpace;
@@ -35,6 +35,8 @@ pub struct Settings {
     pub shading: Shading,
     /// How light is attenuated on its way to the material.
     pub shadows: Shadows,
+    /// What of the volume is left out.
+    pub cuts: Cuts,
     /// How the eye's sheets are sampled.
     pub sampling: Sampling,
     /// What happens to the picture at the end.
@@ -54,6 +56,7 @@ impl Default for Settings {
             opacity_unit: Length::Voxels(1.0),
             shading: Shading::default(),
             shadows: Shadows::default(),
+            cuts: Cuts::default(),
             sampling: Sampling::default(),
             output: Output::default(),
             views: BTreeMap::new(),

@@ -31,8 +31,8 @@ pub use slice_order::SliceOrder;
 
 use crate::model::{
     Background, Camera, Classification, Deposit, Engine, Hood, Interpolation, Kernel, Length, Light,
-    LightKind, Output, Precision, Quadrature, Resolution, Sampling, Settings, Shading, ShadowAlgorithm,
-    Shadows, ToneMap, TransferFunction,
+    LightKind, Output, Precision, Quadrature, Remains, Resolution, Sampling, Settings, Shading,
+    ShadowAlgorithm, Shadows, ToneMap, TransferFunction,
 };
 
 /// A picture to be made: of which volume, how, and how large.
@@ -69,6 +69,7 @@ pub struct LightKey {
     quadrature: Quadrature,
     resolution: Resolution,
     precision: Precision,
+    shading_cut: Remains,
 }
 
 /// Everything that the opacities met by light are made from: no colours.
@@ -108,6 +109,7 @@ impl LightKey {
             opacity_unit,
             shading: _,
             shadows,
+            cuts,
             sampling:
                 Sampling { kernel: _, slab: _, quadrature: _, gradients: _, classification, engine, order: _ },
             output: _,
@@ -176,6 +178,7 @@ impl LightKey {
             quadrature: *quadrature,
             resolution: *resolution,
             precision: *precision,
+            shading_cut: cuts.shading(),
         })
     }
 }
@@ -230,6 +233,7 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
         opacity_unit,
         shading,
         shadows,
+        cuts,
         sampling,
         output,
         views: _,
@@ -253,6 +257,7 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
         || lamps_differ(lamps, &before.lights)
         || *shading != before.shading
         || *shadows != before.shadows
+        || (cuts.seen(), cuts.shading()) != (before.cuts.seen(), before.cuts.shading())
         || *sampling != before.sampling
         || next.size != previous.size;
     Plan {

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::data::Volume;
-use crate::math::SceneSpace;
+use crate::math::{Bounds, Region, SceneSpace};
 use crate::model::{BakedTransfer, LightKind, Settings};
 
 /// Share of the light to the eye that must have been met for something to count as seen: half.
@@ -55,12 +55,13 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     let rays = Rays { volume, scene: volume.scene() };
     let scene = &rays.scene;
     let eye = settings.baked_eye(volume.value_range(), scene);
-    let point = rays.first_seen(&eye, origin, direction)?;
+    let seen = settings.cuts.seen().region(scene);
+    let point = rays.first_seen(&eye, &seen, origin, direction)?;
     let index = scene.index_from_scene.transform_point3(point);
     let value = volume.value_of(rays.density(index));
     let lighting = settings.baked_lighting(volume.value_range(), scene);
-    let gradient = rays.gradient(point);
-    let normal = -gradient.normalize_or_zero();
+    let normal = -rays.gradient(point, &seen).normalize_or_zero();
+    let shading_cut = settings.cuts.shading().region(scene);
     let lights = settings
         .lights
         .iter()
@@ -75,7 +76,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             };
             let cone = light.cone();
             let depth = if light.needs_volume() && settings.shadows.algorithm.is_on() {
-                rays.optical_depth(&lighting, point, towards, distance) * light.density_scale
+                rays.optical_depth(&lighting, &shading_cut, point, towards, distance) * light.density_scale
             } else {
                 0.0
             };
@@ -101,30 +102,26 @@ impl Rays<'_> {
         STEP * self.scene.smallest_edge()
     }
 
-    /// Where a ray enters the grid and where it leaves it, from its origin on.
-    fn span(&self, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+    /// Where a ray enters what remains of the grid and where it leaves it, from its origin on.
+    fn span(&self, remains: &Region, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
         let origin = self.scene.index_from_scene.transform_point3(origin);
         let direction = self.scene.index_from_scene.transform_vector3(direction);
-        let dims = DVec3::from(self.volume.dims().map(|n| n as f64));
-        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
-        for axis in 0..3 {
-            let (low, high) = (-0.5, dims[axis] - 0.5);
-            if direction[axis].abs() < 1e-12 {
-                if origin[axis] < low || origin[axis] > high {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((low - origin[axis]) / direction[axis], (high - origin[axis]) / direction[axis]);
-            enter = enter.max(a.min(b));
-            leave = leave.min(a.max(b));
-        }
+        let grid = Bounds::of_grid(self.volume.dims(), 0.0);
+        let (low, high) = (remains.low.max(grid.min), remains.high.min(grid.max));
+        let (enter, leave) = Region { low, high, ..*remains }.span(origin, direction);
+        let enter = enter.max(0.0);
         (enter < leave).then_some((enter, leave))
     }
 
     /// Where half of what a ray meets has been met.
-    fn first_seen(&self, table: &BakedTransfer, origin: DVec3, direction: DVec3) -> Option<DVec3> {
-        let (enter, leave) = self.span(origin, direction)?;
+    fn first_seen(
+        &self,
+        table: &BakedTransfer,
+        seen: &Region,
+        origin: DVec3,
+        direction: DVec3,
+    ) -> Option<DVec3> {
+        let (enter, leave) = self.span(seen, origin, direction)?;
         let step = self.step();
         let mut met = Vec::new();
         let mut transmittance = 1.0;
@@ -144,12 +141,20 @@ impl Rays<'_> {
     }
 
     /// ∫ extinction from a step beyond a point towards a light: what is seen does not shade itself.
-    fn optical_depth(&self, table: &BakedTransfer, point: DVec3, towards: DVec3, distance: f64) -> f64 {
-        let Some((_, leave)) = self.span(point, towards) else { return 0.0 };
+    fn optical_depth(
+        &self,
+        table: &BakedTransfer,
+        remains: &Region,
+        point: DVec3,
+        towards: DVec3,
+        distance: f64,
+    ) -> f64 {
+        let Some((enter, leave)) = self.span(remains, point, towards) else { return 0.0 };
         let step = self.step();
-        let count = (leave.min(distance) / step).floor().max(1.0) as usize;
+        let first = (enter / step).ceil().max(1.0) as usize;
+        let last = (leave.min(distance) / step).floor().max(1.0) as usize;
         let sum: f64 =
-            (1..count).map(|k| self.extinction(table, point + towards * ((k as f64 + 0.5) * step))).sum();
+            (first..last).map(|k| self.extinction(table, point + towards * ((k as f64 + 0.5) * step))).sum();
         sum * step
     }
 
@@ -177,11 +182,13 @@ impl Rays<'_> {
         (0..8).map(voxel).sum()
     }
 
-    /// ∇ density in scene space, by central differences over a voxel.
-    fn gradient(&self, point: DVec3) -> DVec3 {
+    /// ∇ density in scene space, by central differences over a voxel; what is cut away has none.
+    fn gradient(&self, point: DVec3, seen: &Region) -> DVec3 {
         let edge = self.scene.smallest_edge();
-        let at =
-            |offset: DVec3| self.density(self.scene.index_from_scene.transform_point3(point + offset * edge));
+        let at = |offset: DVec3| {
+            let index = self.scene.index_from_scene.transform_point3(point + offset * edge);
+            if seen.contains(index) { self.density(index) } else { 0.0 }
+        };
         DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)
     }
 }
@@ -234,6 +241,32 @@ mod tests {
             None,
             "between the layers there is nothing"
         );
+    }
+
+    #[test]
+    fn what_is_cut_away_is_not_met() {
+        use crate::model::{ClipPlane, CutEffect};
+        let (volume, mut settings) = slab_over_block();
+        let look = |settings: &Settings| {
+            probe(&volume, settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).expect("something")
+        };
+        let whole = look(&settings);
+        // Between the layers: the upper one is cut away.
+        settings.cuts.plane =
+            ClipPlane { on: true, normal: [0.0, 0.0, 1.0], offset: 0.1, ..ClipPlane::default() };
+        let below = look(&settings);
+        assert!(below.index.z < 7.0 && whole.index.z > 9.0, "{below:?}");
+        settings.cuts.plane.effect = CutEffect::Hidden;
+        let shaded = look(&settings);
+        assert_eq!(shaded.index, below.index);
+        assert!(shaded.lights[0].transmittance < 0.4 * below.lights[0].transmittance, "{shaded:?} {below:?}");
+        settings.cuts.plane.effect = CutEffect::Shadowless;
+        assert_eq!(look(&settings).index, whole.index);
+        // Through the block: the face looks where the plane does.
+        settings.cuts.plane =
+            ClipPlane { on: true, normal: [0.0, 0.6, 0.8], offset: -0.5, ..ClipPlane::default() };
+        let facing = look(&settings).lights[0].facing.expect("a face");
+        assert!((facing - 0.8).abs() < 0.2, "{facing}");
     }
 
     #[test]

@@ -32,6 +32,7 @@ impl Reference<'_> {
     pub fn picture(&self, size: [u32; 2], attenuations: &[Option<Attenuation>]) -> Vec<[f64; 4]> {
         let frame = self.eye_frame(size);
         let stack = self.eye_stack(&frame);
+        let seen = self.seen();
         let shader = Shader::new(self, attenuations);
         // Colour so far, and in place of alpha the transmittance.
         let mut rays = vec![[0.0, 0.0, 0.0, 1.0]; stack.pixel_count()];
@@ -47,12 +48,14 @@ impl Reference<'_> {
                     else {
                         continue;
                     };
+                    let level = frame.stretch_level(frame.depth_of(f64::from(k)));
                     let gradient = if self.settings.has_sheet_gradients() {
                         let in_index = sheets.gradient(pixel as u32, k);
                         self.scene.index_from_scene.matrix3.transpose() * in_index
                     } else {
-                        shader.gradient(sample.point, frame.stretch_level(frame.depth_of(f64::from(k))))
+                        shader.gradient(sample.point, level)
                     };
+                    let gradient = gradient + self.face_gradient(&seen, sample.point, level);
                     let color = shader.color(sample.point, sample.rgb, gradient);
                     let opacity = -(-sample.optical_depth).exp_m1();
                     for channel in 0..3 {
@@ -68,7 +71,7 @@ impl Reference<'_> {
     fn eye_stack<'r>(&'r self, frame: &'r SheetFrame) -> Stack<'r> {
         let sampling = &self.settings.sampling;
         let table = self.settings.baked_eye(self.range, &self.scene);
-        Stack::new(self, frame, (sampling.kernel, sampling.quadrature), table)
+        Stack::new(self, frame, (sampling.kernel, sampling.quadrature), table, self.seen())
     }
 }
 

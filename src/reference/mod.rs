@@ -10,12 +10,14 @@
 //! |---|---|---|
 //! | prefiltered volume and its pyramid | `pyramid` | [`Reference::density`] |
 //! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
+//! | crop box and clip plane | `cut` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
+mod cut;
 mod eye;
 mod field;
 mod footprint;
@@ -74,6 +76,8 @@ pub enum Fault {
     NoObliquity,
     /// Normals point inwards: specular light only, since diffuse light is two-sided.
     FlippedNormal,
+    /// Slabs that are cut count as a whole: only where something is cut.
+    WholeSlabs,
     /// Densities are looked up half a voxel further along x.
     ShiftedKernel,
 }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
+use super::cut::Remaining;
 use super::kernel::Profile;
 use super::{Reference, gather};
 use crate::model::{BakedTransfer, Deposit, Kernel, Light, LightKind, Quadrature};
@@ -16,6 +17,7 @@ pub(super) struct ShadowRays<'r> {
     profile: Profile,
     quadrature: Quadrature,
     table: BakedTransfer,
+    remaining: Remaining,
 }
 
 impl<'r> ShadowRays<'r> {
@@ -31,6 +33,7 @@ impl<'r> ShadowRays<'r> {
             profile: reference.profile(kernel),
             quadrature,
             table: reference.settings.baked_lighting(reference.range, &reference.scene),
+            remaining: reference.shading(),
         }
     }
 
@@ -71,7 +74,9 @@ impl<'r> ShadowRays<'r> {
                     gather::density(reference, &self.profile, at, 0.0)
                 };
                 let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
-                self.table.sample(density)[3] * step * self.light.density_scale
+                let [front, back] = [-0.5, 0.5].map(|side| at + forward * (side * step));
+                let share = reference.share_of(&self.remaining, front, back);
+                share * self.table.sample(density)[3] * step * self.light.density_scale
             })
             .sum();
         (-optical_depth).exp() * cone.share(-cone.axis.dot(towards))

@@ -4,6 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::cut::Remaining;
 use super::field::Field;
 use super::kernel::Profile;
 use super::{Fault, Reference, Weights, footprint, gather};
@@ -18,6 +19,7 @@ pub(super) struct Stack<'r> {
     profile: Profile,
     quadrature: Quadrature,
     table: BakedTransfer,
+    remaining: Remaining,
 }
 
 /// What one slab does to one ray.
@@ -37,8 +39,9 @@ impl<'r> Stack<'r> {
         frame: &'r SheetFrame,
         (kernel, quadrature): (Kernel, Quadrature),
         table: BakedTransfer,
+        remaining: Remaining,
     ) -> Self {
-        Self { reference, frame, profile: reference.profile(kernel), quadrature, table }
+        Self { reference, frame, profile: reference.profile(kernel), quadrature, table, remaining }
     }
 
     /// The mean densities of slab `k`, row by row; 0 outside the volume's support.
@@ -68,7 +71,7 @@ impl<'r> Stack<'r> {
     /// Linear colour and extinction of slab `k`, row by row: the densities classified, or the classified
     /// voxels spread.
     pub(super) fn materials(&self, k: u32) -> Vec<[f64; 4]> {
-        let Self { reference, frame, profile, quadrature, table } = self;
+        let Self { reference, frame, profile, quadrature, table, remaining: _ } = self;
         if reference.settings.sampling.classification == Classification::Post {
             return self.densities(k).into_iter().map(|density| table.sample(density)).collect();
         }
@@ -120,12 +123,14 @@ impl<'r> Stack<'r> {
     /// τ = μ(ρ̄) · Δs / cos θ, so that the opacity is 1 − e^−τ (P eq. 6).
     pub(super) fn sample(&self, pixel: u32, k: u32, material: [f64; 4]) -> Option<Sample> {
         let width = self.frame.size[0];
-        let at @ [i, j, _] = [pixel % width, pixel / width, k].map(f64::from);
+        let at @ [i, j, k] = [pixel % width, pixel / width, k].map(f64::from);
         let point = self.material_at(at)?;
         let [r, g, b, extinction] = material;
         let lengthening =
             if self.reference.options.fault == Fault::NoObliquity { 1.0 } else { self.frame.obliquity(i, j) };
-        let optical_depth = extinction * self.frame.slab * lengthening;
+        let [front, back] = [k, k + 1.0].map(|k| self.frame.point(i, j, self.frame.depth_of(k - 0.5)));
+        let share = self.reference.share_of(&self.remaining, front, back);
+        let optical_depth = share * extinction * self.frame.slab * lengthening;
         (optical_depth > 0.0).then_some(Sample { point, rgb: [r, g, b], optical_depth })
     }
 

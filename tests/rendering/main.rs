@@ -9,6 +9,7 @@ mod closed_form;
 mod collapse;
 mod common;
 mod compare;
+mod cuts;
 mod gpu_vs_reference;
 mod mutations;
 mod preview;

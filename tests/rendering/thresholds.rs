@@ -104,3 +104,10 @@ pub(crate) const COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };
 /// Mean luminance of previews, exposed as at the beginning of a drag, against whole pictures: above
 /// that a swap is seen.
 pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.03;
+
+/// What a crop box and a plane leave of the sum of opacities, in other orders of sheets than image-aligned:
+/// single footprints are cut by whole voxels, of which faces of 32 voxels' edge have 3 % to either side.
+pub(crate) const CUT_ORDERS: f64 = 0.03;
+
+/// Collapsed light at cut faces: it is stored once per voxel, and normals turn within one there.
+pub(crate) const CUT_COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 255.0 };

@@ -1,0 +1,206 @@
+//! Parts of the volume that are left out: a box and a plane, each for the eye, for the light or for both.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::math::{Bounds, HalfSpace, Region, SceneSpace};
+
+/// The largest distance of a clip plane from the middle: that of a cube's corner, √3, and some room.
+pub const MAX_PLANE_OFFSET: f64 = 2.0;
+
+/// A crop box is never thinner than this share of the volume.
+pub const MIN_CROP: f64 = 0.001;
+
+/// What becomes of the part that is cut away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CutEffect {
+    /// It is not seen, and casts no shadow.
+    #[default]
+    Removed,
+    /// It is not seen, but still casts its shadow.
+    Hidden,
+    /// It is seen, but casts no shadow.
+    Shadowless,
+}
+
+impl CutEffect {
+    /// All of them, in the order in which they are offered.
+    pub const ALL: [Self; 3] = [Self::Removed, Self::Hidden, Self::Shadowless];
+
+    fn hides(self) -> bool {
+        self != Self::Shadowless
+    }
+
+    fn lets_light_pass(self) -> bool {
+        self != Self::Hidden
+    }
+}
+
+/// A box along the axes of the grid; what lies outside is cut away.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CropBox {
+    /// Whether it cuts.
+    pub on: bool,
+    /// Where it begins along each axis, as a share of the grid: 0 … 1.
+    pub low: [f64; 3],
+    /// Where it ends.
+    pub high: [f64; 3],
+    /// What becomes of the rest.
+    pub effect: CutEffect,
+}
+
+impl Default for CropBox {
+    fn default() -> Self {
+        Self { on: false, low: [0.0; 3], high: [1.0; 3], effect: CutEffect::Removed }
+    }
+}
+
+/// A plane; what lies in front of it, where its normal points, is cut away.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ClipPlane {
+    /// Whether it cuts.
+    pub on: bool,
+    /// In scene space; its length means nothing.
+    pub normal: [f64; 3],
+    /// Distance from the middle of the volume along the normal, in scene units.
+    pub offset: f64,
+    /// What becomes of the part in front.
+    pub effect: CutEffect,
+}
+
+impl Default for ClipPlane {
+    fn default() -> Self {
+        // The half that is nearer to the eye of the first look.
+        Self { on: false, normal: [0.0, -1.0, 0.0], offset: 0.0, effect: CutEffect::Removed }
+    }
+}
+
+impl ClipPlane {
+    /// The normal, of length 1.
+    pub fn unit_normal(&self) -> DVec3 {
+        DVec3::from(self.normal).normalize_or(DVec3::NEG_Y)
+    }
+}
+
+/// What is left out of a picture.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Cuts {
+    /// A box along the grid's axes.
+    pub crop: CropBox,
+    /// One free plane.
+    pub plane: ClipPlane,
+}
+
+/// What remains for one of the passes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Remains {
+    crop: Option<[[f64; 3]; 2]>,
+    plane: Option<([f64; 3], f64)>,
+}
+
+impl Cuts {
+    /// What the eye sees.
+    pub fn seen(&self) -> Remains {
+        self.remains(CutEffect::hides)
+    }
+
+    /// What attenuates light.
+    pub fn shading(&self) -> Remains {
+        self.remains(CutEffect::lets_light_pass)
+    }
+
+    fn remains(&self, counts: impl Fn(CutEffect) -> bool) -> Remains {
+        let Self { crop, plane } = self;
+        let cuts = crop.low.iter().chain(&crop.high).any(|&at| at > 0.0 && at < 1.0);
+        Remains {
+            crop: (crop.on && cuts && counts(crop.effect)).then_some([crop.low, crop.high]),
+            plane: (plane.on && counts(plane.effect)).then_some((plane.normal, plane.offset)),
+        }
+    }
+}
+
+impl Remains {
+    /// Whether nothing is cut away.
+    pub fn is_everything(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The same in index space. Faces at the border of the grid cut nothing, so that what the kernel spreads
+    /// beyond it stays.
+    pub fn region(&self, scene: &SceneSpace) -> Region {
+        let mut region = Region::EVERYTHING;
+        if let Some([low, high]) = self.crop {
+            let grid = Bounds::of_grid(scene.dims, 0.0);
+            for axis in 0..3 {
+                let at = |share: f64| grid.min[axis] + share * (grid.max[axis] - grid.min[axis]);
+                if low[axis] > 0.0 {
+                    region.low[axis] = at(low[axis]);
+                }
+                if high[axis] < 1.0 {
+                    region.high[axis] = at(high[axis]);
+                }
+            }
+        }
+        region.plane = self.plane.map(|(normal, offset)| {
+            let unit = DVec3::from(normal).normalize_or(DVec3::NEG_Y);
+            // n · (A p + t) ≤ d is (Aᵀ n) · p ≤ d − n · t.
+            let map = &scene.scene_from_index;
+            let in_index = map.matrix3.transpose() * unit;
+            let length = in_index.length();
+            HalfSpace { normal: in_index / length, offset: (offset - unit.dot(map.translation)) / length }
+        });
+        region
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DAffine3, DMat3};
+
+    #[test]
+    fn effects_say_who_is_concerned() {
+        let mut cuts = Cuts { plane: ClipPlane { on: true, ..ClipPlane::default() }, ..Cuts::default() };
+        for (effect, eye, light) in [
+            (CutEffect::Removed, false, false),
+            (CutEffect::Hidden, false, true),
+            (CutEffect::Shadowless, true, false),
+        ] {
+            cuts.plane.effect = effect;
+            assert_eq!(
+                (cuts.seen().is_everything(), cuts.shading().is_everything()),
+                (eye, light),
+                "{effect:?}"
+            );
+        }
+        cuts.plane.on = false;
+        cuts.crop.on = true;
+        assert!(cuts.seen().is_everything(), "a box around all cuts nothing");
+        cuts.crop.low[1] = 0.25;
+        assert!(!cuts.seen().is_everything() && !cuts.shading().is_everything());
+    }
+
+    #[test]
+    fn regions_lie_where_the_scene_says() {
+        let turned = DMat3::from_rotation_z(0.4) * DMat3::from_diagonal(DVec3::new(1.0, 0.5, 2.0));
+        let scene = SceneSpace::new([40, 80, 20], DAffine3::from_mat3_translation(turned, DVec3::splat(7.0)));
+        let cuts = Cuts {
+            crop: CropBox { on: true, low: [0.25, 0.0, 0.0], high: [1.0, 0.5, 1.0], ..CropBox::default() },
+            plane: ClipPlane { on: true, normal: [1.0, 2.0, -2.0], offset: 0.1, ..ClipPlane::default() },
+        };
+        let region = cuts.seen().region(&scene);
+        assert_eq!(region.low, DVec3::new(9.5, f64::NEG_INFINITY, f64::NEG_INFINITY));
+        assert_eq!(region.high, DVec3::new(f64::INFINITY, 39.5, f64::INFINITY));
+        let plane = region.plane.unwrap();
+        assert!((plane.normal.length() - 1.0).abs() < 1e-12);
+        let normal = cuts.plane.unit_normal();
+        for point in [DVec3::new(3.0, 8.0, 1.0), DVec3::new(30.0, 60.0, 19.0), DVec3::new(12.0, 0.0, 5.0)] {
+            let within = 0.1 - normal.dot(scene.scene_from_index.transform_point3(point));
+            assert_eq!(plane.depth_of(point) > 0.0, within > 0.0, "{point}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What the crop box and the clip plane leave of a stretch of a ray, and the normals of their faces: a list of
+//! half-spaces in scene space, one after the other.
+
+use glam::DVec3;
+
+use super::kernel::cubic_b_spline;
+use super::{Fault, Reference};
+use crate::model::{ClipPlane, CropBox, CutEffect};
+
+/// The half-spaces whose intersection remains: all p with normal · p ≤ offset.
+pub(super) struct Remaining {
+    bounds: Vec<(DVec3, f64)>,
+}
+
+impl Reference<'_> {
+    /// What the eye sees.
+    pub(super) fn seen(&self) -> Remaining {
+        self.remaining(&[CutEffect::Removed, CutEffect::Hidden])
+    }
+
+    /// What attenuates light.
+    pub(super) fn shading(&self) -> Remaining {
+        self.remaining(&[CutEffect::Removed, CutEffect::Shadowless])
+    }
+
+    fn remaining(&self, effects: &[CutEffect]) -> Remaining {
+        let to_scene = |index: DVec3| self.scene.scene_from_index.transform_point3(index);
+        let CropBox { on, low, high, effect } = &self.settings.cuts.crop;
+        let mut bounds = Vec::new();
+        if *on && effects.contains(effect) {
+            for axis in 0..3 {
+                let n = self.scene.dims[axis] as f64;
+                // A face is spanned by the two other axes, and may be no right angle to its own.
+                let side = |k: usize| to_scene(DVec3::AXES[(axis + k) % 3]) - to_scene(DVec3::ZERO);
+                let across = side(1).cross(side(2)).normalize();
+                let up = across * across.dot(side(0)).signum();
+                let mut face = |normal: DVec3, share: f64| {
+                    let at = to_scene(DVec3::AXES[axis] * (share * n - 0.5));
+                    bounds.push((normal, normal.dot(at)));
+                };
+                if low[axis] > 0.0 {
+                    face(-up, low[axis]);
+                }
+                if high[axis] < 1.0 {
+                    face(up, high[axis]);
+                }
+            }
+        }
+        let ClipPlane { on, normal, offset, effect } = &self.settings.cuts.plane;
+        if *on && effects.contains(effect) {
+            bounds.push((DVec3::from(*normal).normalize(), *offset));
+        }
+        Remaining { bounds }
+    }
+
+    /// The gradient in scene space of something solid that ends where it is cut: for each face the kernel's
+    /// value, at the distance in voxels.
+    pub(super) fn face_gradient(&self, seen: &Remaining, index: DVec3, stretch_level: f64) -> DVec3 {
+        let place = self.scene.scene_from_index.transform_point3(index);
+        let faces = seen.bounds.iter().map(|&(normal, offset)| {
+            // Scene units per voxel across the face: |Aᵀ n|, where A takes index space to the scene.
+            let per_voxel = (self.scene.scene_from_index.matrix3.transpose() * normal).length();
+            let width = stretch_level.exp2() * per_voxel;
+            -normal * cubic_b_spline((offset - normal.dot(place)) / width) / width
+        });
+        faces.sum()
+    }
+
+    /// The share of a straight stretch, between two points of index space, that remains.
+    pub(super) fn share_of(&self, remaining: &Remaining, from: DVec3, to: DVec3) -> f64 {
+        let [from, to] = [from, to].map(|point| self.scene.scene_from_index.transform_point3(point));
+        let (mut begin, mut end) = (0.0_f64, 1.0_f64);
+        for &(normal, offset) in &remaining.bounds {
+            // How far outside both ends are.
+            let [a, b] = [from, to].map(|point| normal.dot(point) - offset);
+            match (a > 0.0, b > 0.0) {
+                (true, true) => return 0.0,
+                (true, false) => begin = begin.max(a / (a - b)),
+                (false, true) => end = end.min(a / (a - b)),
+                (false, false) => {}
+            }
+        }
+        let share = (end - begin).max(0.0);
+        if self.options.fault == Fault::WholeSlabs { share.ceil() } else { share }
+    }
+}
