@@ -4,6 +4,7 @@ use eframe::egui::{self, Rect, Role, Sense, Shape, WidgetInfo, pos2};
 
 use super::commands::Command;
 use super::compare::Compare;
+use super::cut_handles::CutHandles;
 use super::hints::Hints;
 use super::light_handles::LightHandles;
 use super::light_probe::LightProbe;
@@ -49,6 +50,8 @@ pub(super) struct Stage<'a> {
     pub viewport: &'a mut Viewport,
     /// The handles of the lights.
     pub handles: &'a mut LightHandles,
+    /// The handles of the crop box and the clip plane.
+    pub cut_handles: &'a mut CutHandles,
     /// The light whose handle is marked.
     pub selected_light: &'a mut usize,
     /// Two looks in one picture.
@@ -73,6 +76,7 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
         settings,
         viewport,
         handles,
+        cut_handles,
         selected_light,
         compare,
         marks,
@@ -87,7 +91,13 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
     // Where no picture is, the window's clear colour is seen: filling costs a software driver 15 ms.
     let Some((scene, is_anatomical)) = scene else { return (canvas, Ok(())) };
-    orbit::navigate(ui, &response, settings, *selected_light, !handles.takes_wheel);
+    orbit::navigate(
+        ui,
+        &response,
+        settings,
+        *selected_light,
+        !(handles.takes_wheel || cut_handles.takes_wheel),
+    );
     if response.double_clicked()
         && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())
         && let Some(found) = light_probe::seen_at(&volume, settings, canvas.rect, at)
@@ -99,6 +109,9 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     let moving =
         ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
     marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
+    if !handles.hidden {
+        cut_handles.show(ui, canvas.rect, settings, &scene);
+    }
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
     if let Some(view) = marks.show(ui, canvas.rect, &settings.camera, (&scene, is_anatomical)) {
         commands.push(Command::LookFrom(view));

@@ -87,6 +87,12 @@ pub(super) enum Command {
     ExportTransfer,
     /// Opacities the other way round.
     InvertTransfer,
+    /// Crop to the box, or show all.
+    ToggleCrop,
+    /// Cut at the plane, or show all.
+    TogglePlane,
+    /// The plane across the line of sight, through what the eye turns about.
+    FacePlane,
     /// Measure the brightness and set the balance.
     Balance,
     /// Show or hide the side panel.
@@ -114,7 +120,7 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
 }
 
 /// A command with its key, as help shows it.
-pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 34] = [
+pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 37] = [
     control(Key::O, Command::OpenDialog),
     control(Key::L, Command::OpenPath),
     control(Key::S, Command::SaveSettings),
@@ -143,6 +149,9 @@ pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 34] = [
     plain(Key::S, Command::Solo),
     plain(Key::M, Command::Mute),
     plain(Key::B, Command::Balance),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::X), Command::FacePlane),
+    plain(Key::X, Command::TogglePlane),
+    plain(Key::K, Command::ToggleCrop),
     plain(Key::I, Command::ToggleProbe),
     plain(Key::G, Command::ToggleMarks),
     plain(Key::H, Command::ToggleHandles),
@@ -177,6 +186,9 @@ pub(super) fn listed() -> Vec<Command> {
         Command::ToggleFullScreen,
         Command::ToggleMarks,
         Command::ToggleProbe,
+        Command::ToggleCrop,
+        Command::TogglePlane,
+        Command::FacePlane,
         Command::AddLight,
         Command::TryLights,
         Command::NextLight,
@@ -231,6 +243,9 @@ impl Command {
             Self::ToggleFullScreen => "Full screen",
             Self::ToggleMarks => "Marks over the picture",
             Self::ToggleProbe => "Why is this dark? (probe)",
+            Self::ToggleCrop => "Crop box",
+            Self::TogglePlane => "Clip plane",
+            Self::FacePlane => "Clip plane towards the eye",
             Self::ShowPalette => "Find a command…",
             Self::UseLights(_) => "Use lights",
             Self::TryLights => "Try lights…",
@@ -258,7 +273,7 @@ impl Command {
             Self::AutomaticTransfer => "Automatic transfer function",
             Self::Balance => "Balance brightness",
             Self::ToggleSide => "Side panel",
-            Self::ToggleHandles => "Light handles",
+            Self::ToggleHandles => "Handles",
             Self::ToggleCompare => "Compare two looks",
             Self::ShowLightVolume => "Light volume…",
             Self::CompareWithFile => "Compare with settings…",
@@ -293,7 +308,7 @@ pub(super) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
     let typing = is_typing(ctx);
     commands.extend(view_slots(ctx));
     for (shortcut, command) in &SHORTCUTS {
-        let plain = shortcut.modifiers == Modifiers::NONE;
+        let plain = !shortcut.modifiers.command;
         if !(typing && plain) && ctx.input_mut(|input| input.consume_shortcut(shortcut)) {
             commands.push(command.clone());
         }

@@ -11,7 +11,7 @@ use super::loader::Outcome;
 use super::work::Work;
 use super::{App, export, light_keys, light_slice, panels};
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{COLOR_MAPS, auto};
+use crate::model::{COLOR_MAPS, Camera, auto};
 
 impl App {
     /// Does what the user asked for.
@@ -63,6 +63,12 @@ impl App {
             Command::ImportTransfer => self.files.ask(Purpose::ImportTransfer, frame, ctx),
             Command::ExportTransfer => self.files.ask(Purpose::ExportTransfer, frame, ctx),
             Command::InvertTransfer => self.settings.transfer.invert(),
+            Command::ToggleCrop => self.settings.cuts.crop.on ^= true,
+            Command::TogglePlane => self.settings.cuts.plane.on ^= true,
+            Command::FacePlane => {
+                let Camera { target, .. } = self.settings.camera;
+                self.settings.cuts.plane.face(self.settings.camera.scene_from_view().z_axis, target.into());
+            }
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => self.settings.camera.frame_as(&self.defaults.camera),
             Command::LookFrom(view) => self.settings.camera.look_from(view),

@@ -6,7 +6,7 @@ use super::commands::{SHORTCUTS, key_text};
 use super::viewport::Facts;
 
 /// What the mouse does, in the picture and in the editor.
-const MOUSE: [(&str, &str); 13] = [
+const MOUSE: [(&str, &str); 15] = [
     ("Drag the picture", "orbit"),
     ("Double click on the volume", "turn about what is there"),
     ("Hold L and drag", "turn the selected light"),
@@ -16,6 +16,8 @@ const MOUSE: [(&str, &str); 13] = [
     ("Wheel", "nearer to the pointer, or further"),
     ("Drag a light's handle", "move the light"),
     ("Wheel on a perspective light's handle", "its distance"),
+    ("Drag the sides of the crop box", "see less, or more again"),
+    ("Drag or wheel on the clip plane's square", "move it; turn it by the arrow"),
     ("Drag the line between two looks", "see more of one of them"),
     ("Click in the transfer function", "add a point"),
     ("Drag a point, or arrow keys", "move it"),

@@ -7,6 +7,7 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
+use super::sight::Sight;
 use super::theme;
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};
@@ -52,13 +53,12 @@ impl Marks {
             return;
         }
         let painter = ui.painter_at(picture);
-        let (width, height) = (f64::from(picture.width()), f64::from(picture.height()));
+        let sight = Sight { camera: camera.clone(), picture };
         let dims = DVec3::from(scene.dims.map(|n| n as f64));
         let corner = |at: usize| {
             let side = |axis: usize| if at >> axis & 1 == 0 { -0.5 } else { dims[axis] - 0.5 };
             let point = scene.scene_from_index.transform_point3(DVec3::new(side(0), side(1), side(2)));
-            let (x, y, _) = camera.pixel_from_scene(point, width, height)?;
-            Some(picture.min + vec2(x as f32, y as f32))
+            sight.point(point)
         };
         let stroke = Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.45 * strength));
         for from in 0..8_usize {

@@ -135,11 +135,16 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     });
     item(ui, menu, Command::ToggleFullScreen, true);
     ui.separator();
+    item(ui, menu, Command::FacePlane, true);
+    ui.separator();
     let projection = &mut menu.settings.camera.projection;
     ui.radio_value(projection, Projection::Perspective, "Perspective");
     ui.radio_value(projection, Projection::Orthographic, "Orthographic");
     ui.separator();
+    let cuts = &menu.settings.cuts;
     let switches = [
+        (Command::ToggleCrop, cuts.crop.on),
+        (Command::TogglePlane, cuts.plane.on),
         (Command::ToggleSide, menu.shown.side),
         (Command::ToggleHandles, menu.shown.handles),
         (Command::ToggleMarks, menu.shown.marks),

@@ -7,6 +7,7 @@ mod canvas;
 mod commands;
 mod compare;
 mod contact_sheet;
+mod cut_handles;
 mod execute;
 mod export;
 mod files;
@@ -29,6 +30,7 @@ mod orbit;
 mod palette;
 mod panels;
 mod refine;
+mod sight;
 mod start;
 mod status;
 mod status_file;
@@ -48,6 +50,7 @@ use self::canvas::{Canvas, Stage};
 use self::commands::Command;
 use self::compare::Compare;
 use self::contact_sheet::ContactSheet;
+use self::cut_handles::CutHandles;
 use self::export::Export;
 use self::files::Files;
 use self::help::Help;
@@ -95,6 +98,7 @@ pub struct App {
     adjust: Option<Adjustment>,
     history: History,
     handles: LightHandles,
+    cut_handles: CutHandles,
     compare: Compare,
     marks: Marks,
     probe: LightProbe,
@@ -155,6 +159,7 @@ impl App {
             adjust,
             history: History::default(),
             handles: LightHandles::default(),
+            cut_handles: CutHandles::default(),
             compare: Compare::default(),
             marks: Marks::default(),
             probe: LightProbe::default(),
@@ -285,6 +290,7 @@ impl App {
             settings: &mut self.settings,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
+            cut_handles: &mut self.cut_handles,
             selected_light: &mut self.selected_light,
             compare: &mut self.compare,
             marks: self.marks,

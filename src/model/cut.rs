@@ -83,6 +83,12 @@ impl ClipPlane {
     pub fn unit_normal(&self) -> DVec3 {
         DVec3::from(self.normal).normalize_or(DVec3::NEG_Y)
     }
+
+    /// Turns it on, across a direction (to the eye, say) and through a point of the scene.
+    pub fn face(&mut self, direction: DVec3, through: DVec3) {
+        let normal = direction.normalize_or(DVec3::NEG_Y);
+        *self = Self { on: true, normal: normal.into(), offset: normal.dot(through), effect: self.effect };
+    }
 }
 
 /// What is left out of a picture.

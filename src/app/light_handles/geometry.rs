@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use eframe::egui::{Pos2, Rect, pos2};
 use glam::DVec3;
 
+use super::super::sight::Sight;
 use super::theme;
 use crate::model::{Camera, Light, LightKind, Projection};
 
@@ -31,8 +32,7 @@ pub(super) struct Handle {
 /// The camera over the picture's rectangle.
 #[derive(Debug, Clone)]
 pub(super) struct View {
-    camera: Camera,
-    picture: Rect,
+    sight: Sight,
     radius: f64,
 }
 
@@ -51,29 +51,17 @@ impl View {
             Projection::Perspective => camera.distance * tan / (1.0 + tan * tan).sqrt(),
             Projection::Orthographic => camera.distance * tan,
         };
-        Self { radius: (SPHERE_PER_SUPPORT * support_radius).min(fits), camera, picture }
-    }
-
-    fn size(&self) -> (f64, f64) {
-        (f64::from(self.picture.width()), f64::from(self.picture.height()))
+        Self { sight: Sight { camera, picture }, radius: (SPHERE_PER_SUPPORT * support_radius).min(fits) }
     }
 
     /// Where a scene point is seen, in points; `None` behind the eye.
     pub(super) fn point(&self, scene: DVec3) -> Option<Pos2> {
-        let (width, height) = self.size();
-        let (x, y, _) = self.camera.pixel_from_scene(scene, width, height)?;
-        Some(self.picture.min + eframe::egui::vec2(x as f32, y as f32))
-    }
-
-    fn ray(&self, at: Pos2) -> (DVec3, DVec3) {
-        let (width, height) = self.size();
-        let offset = at - self.picture.min;
-        self.camera.ray_through(f64::from(offset.x), f64::from(offset.y), width, height)
+        self.sight.point(scene)
     }
 
     /// From the eye to a point along the axis of view.
     fn depth(&self, scene: DVec3) -> f64 {
-        (self.camera.eye() - scene).dot(self.camera.scene_from_view().z_axis)
+        (self.sight.camera.eye() - scene).dot(self.sight.camera.scene_from_view().z_axis)
     }
 
     /// The handle of a light; `None` for one behind the eye.
@@ -83,7 +71,7 @@ impl View {
             LightKind::Perspective => DVec3::from(light.position),
         };
         let position = self.point(scene)?;
-        let inner = self.picture.shrink(theme::HANDLE_INSET);
+        let inner = self.sight.picture.shrink(theme::HANDLE_INSET);
         let position = pos2(
             position.x.clamp(inner.min.x, inner.max.x.max(inner.min.x)),
             position.y.clamp(inner.min.y, inner.max.y.max(inner.min.y)),
@@ -93,14 +81,14 @@ impl View {
 
     /// Moves a light so that its handle comes to lie at a point of the window.
     pub(super) fn move_light(&self, light: &mut Light, to: Pos2, behind: bool) {
-        let (origin, direction) = self.ray(to);
+        let (origin, direction) = self.sight.ray(to);
         let position = DVec3::from(light.position);
         light.position = match light.kind {
             LightKind::Parallel => {
                 (self.on_sphere(origin, direction, behind) * position.length().max(1e-3)).into()
             }
             LightKind::Perspective => {
-                let normal = self.camera.scene_from_view().z_axis;
+                let normal = self.sight.camera.scene_from_view().z_axis;
                 let along = (position - origin).dot(normal) / direction.dot(normal);
                 if along.is_finite() { (origin + direction * along).into() } else { light.position }
             }
@@ -129,24 +117,26 @@ impl View {
         }
         let position = DVec3::from(light.position);
         let factor = SIGHT_PER_NOTCH.powf(notches);
-        light.position = match self.camera.projection {
-            Projection::Perspective => (self.camera.eye() + (position - self.camera.eye()) * factor).into(),
+        light.position = match self.sight.camera.projection {
+            Projection::Perspective => {
+                (self.sight.camera.eye() + (position - self.sight.camera.eye()) * factor).into()
+            }
             Projection::Orthographic => {
                 let step = self.depth(position) * (factor - 1.0);
-                (position - self.camera.scene_from_view().z_axis * step).into()
+                (position - self.sight.camera.scene_from_view().z_axis * step).into()
             }
         };
     }
 
     /// The circle of the sphere that faces the eye.
     pub(super) fn silhouette(&self) -> Vec<Pos2> {
-        let view = self.camera.scene_from_view();
+        let view = self.sight.camera.scene_from_view();
         self.circle(view.x_axis, view.y_axis)
     }
 
     /// The great circle through a direction and the line of sight.
     pub(super) fn meridian(&self, direction: DVec3) -> Vec<Pos2> {
-        let view = self.camera.scene_from_view();
+        let view = self.sight.camera.scene_from_view();
         let across = direction.reject_from(view.z_axis).normalize_or(view.x_axis);
         self.circle(across, view.z_axis)
     }
@@ -208,10 +198,12 @@ mod tests {
         // Far beyond the silhouette, towards the lower right.
         view.move_light(&mut light, pos2(5000.0, 4000.0), false);
         let handle = view.handle(&light).unwrap();
-        assert!(view.picture.contains(handle.position) && handle.position.x > view.picture.center().x);
+        assert!(
+            view.sight.picture.contains(handle.position) && handle.position.x > view.sight.picture.center().x
+        );
         let far = Light { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..Light::default() };
         if let Some(handle) = view.handle(&far) {
-            assert!(view.picture.contains(handle.position));
+            assert!(view.sight.picture.contains(handle.position));
         }
     }
 

@@ -3,6 +3,7 @@
 mod camera;
 mod compare;
 pub(super) mod controls;
+mod cuts;
 mod data;
 mod lights;
 mod sampling;
@@ -46,6 +47,7 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
         controls::section(ui, "Lights", true, |ui| lights::show(ui, panels));
         controls::section(ui, "Shadows", true, |ui| shadows::show(ui, panels));
         controls::section(ui, "Shading", false, |ui| shading::show(ui, panels));
+        controls::section(ui, "Cut", false, |ui| cuts::show(ui, panels));
         controls::section(ui, "Camera", false, |ui| camera::show(ui, panels));
         controls::section(ui, "Compare", false, |ui| {
             compare::show(ui, panels.compare, panels.settings, panels.commands);
