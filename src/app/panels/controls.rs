@@ -75,7 +75,7 @@ pub(super) fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut 
 }
 
 /// The button that puts a value back; it is there only when there is something to put back.
-fn reset(ui: &mut Ui, label: &str, differs: bool) -> bool {
+pub(super) fn reset(ui: &mut Ui, label: &str, differs: bool) -> bool {
     let size = Vec2::new(theme::RESET_WIDTH, ui.spacing().interact_size.y);
     if !differs {
         ui.allocate_exact_size(size, egui::Sense::hover());

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::super::commands::Command;
 use super::super::volume_facts::VolumeFacts;
 use super::Panels;
-use super::controls::{Number, row, switch};
+use super::controls::{Number, reset, row, switch};
 use crate::model::{ClipPlane, CropBox, CutEffect, MIN_CROP};
 
 /// Shows the section.
@@ -39,7 +39,9 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
                 cuts.plane.normal = (-cuts.plane.unit_normal()).into();
                 cuts.plane.offset = -cuts.plane.offset;
             }
-            if ui.button("To the eye").on_hover_text("Across the line of sight").clicked() {
+        });
+        row(ui, "", "Where the plane looks; what lies in front of it is cut away", |ui| {
+            if ui.button("Towards the eye").on_hover_text("Across the line of sight").clicked() {
                 panels.commands.push(Command::FacePlane);
             }
         });
@@ -56,22 +58,22 @@ fn extent(ui: &mut Ui, crop: &mut CropBox, axis: usize, volume: &VolumeFacts) {
         let least = MIN_CROP * voxels;
         // All of it is 300 points of the mouse.
         let speed = voxels / 300.0;
-        let begins = DragValue::new(&mut from).range(0.0..=to - least).speed(speed).max_decimals(1);
+        let begins = DragValue::new(&mut from).range(0.0..=to - least).speed(speed).max_decimals(0);
         let response = ui.name_inputs(format!("Crop {name} from"), |ui| ui.add(begins));
         if response.changed() {
             crop.low[axis] = from / voxels;
         }
         ui.label("–");
-        let ends = DragValue::new(&mut to).range(from + least..=voxels).speed(speed).max_decimals(1);
+        let ends = DragValue::new(&mut to).range(from + least..=voxels).speed(speed).max_decimals(0);
         if ui.name_inputs(format!("Crop {name} to"), |ui| ui.add(ends)).changed() {
             crop.high[axis] = to / voxels;
         }
-        ui.weak(format!("{:.1} mm", (to - from) * volume.spacing_mm[axis]));
-        if (crop.low[axis], crop.high[axis]) != (0.0, 1.0)
-            && ui.small_button("All").on_hover_text(format!("All along {name}")).clicked()
-        {
+        let differs = (crop.low[axis], crop.high[axis]) != (0.0, 1.0);
+        if reset(ui, &format!("crop {name}"), differs) {
             (crop.low[axis], crop.high[axis]) = (0.0, 1.0);
         }
+        let length_mm = (to - from) * volume.spacing_mm[axis];
+        ui.weak(if length_mm < 100.0 { format!("{length_mm:.1} mm") } else { format!("{length_mm:.0} mm") });
     });
 }
 
@@ -93,7 +95,7 @@ fn plane(ui: &mut Ui, plane: &mut ClipPlane, default: f64, volume: &VolumeFacts)
 /// What becomes of what is cut away.
 fn effect(ui: &mut Ui, label: &'static str, effect: &mut CutEffect) {
     row(ui, label, "What becomes of the part that is cut away", |ui| {
-        let combo = egui::ComboBox::from_id_salt(label).selected_text(effect_name(*effect)).width(190.0);
+        let combo = egui::ComboBox::from_id_salt(label).selected_text(effect_name(*effect)).width(150.0);
         let shown = combo.show_ui(ui, |ui| {
             for choice in CutEffect::ALL {
                 ui.selectable_value(effect, choice, effect_name(choice));
@@ -106,8 +108,8 @@ fn effect(ui: &mut Ui, label: &'static str, effect: &mut CutEffect) {
 
 fn effect_name(effect: CutEffect) -> &'static str {
     match effect {
-        CutEffect::Removed => "hidden, casts no shadow",
-        CutEffect::Hidden => "hidden, still casts its shadow",
-        CutEffect::Shadowless => "visible, casts no shadow",
+        CutEffect::Removed => "hidden, no shadow",
+        CutEffect::Hidden => "hidden, shadow stays",
+        CutEffect::Shadowless => "visible, no shadow",
     }
 }
