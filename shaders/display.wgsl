@@ -14,6 +14,8 @@ struct Display {
 
 @group(0) @binding(0) var<uniform> display: Display;
 @group(0) @binding(1) var picture: texture_2d<f32>;
+// Under it, premultiplied, too.
+@group(0) @binding(3) var floor_light: texture_2d<f32>;
 @group(0) @binding(2) var shown: texture_storage_2d<rgba8unorm, write>;
 
 // Where the shoulder of the neutral tone map begins.
@@ -43,7 +45,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= size)) {
         return;
     }
-    let light = textureLoad(picture, id.xy, 0) * vec4f(vec3f(display.exposure), 1.0);
+    let volume = textureLoad(picture, id.xy, 0) * vec4f(vec3f(display.exposure), 1.0);
+    // A floor of one texel is none.
+    let has_floor = all(textureDimensions(floor_light) == size);
+    let below = textureLoad(floor_light, select(vec2u(0u), id.xy, has_floor), 0);
+    let light = volume + (1.0 - volume.a) * below;
     let straight = light.rgb / max(light.a, 1e-6);
     let mapped = select(neutral(straight), clamp(straight, vec3f(0.0), vec3f(1.0)), display.clip != 0u);
     // Uniforms are no conditions of branches: Mesa's software driver would make each shader anew for their

@@ -93,6 +93,8 @@ pub(super) enum Command {
     TogglePlane,
     /// The plane across the line of sight, through what the eye turns about.
     FacePlane,
+    /// Show the floor under the volume, or not.
+    ToggleGround,
     /// Measure the brightness and set the balance.
     Balance,
     /// Show or hide the side panel.
@@ -120,7 +122,7 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
 }
 
 /// A command with its key, as help shows it.
-pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 37] = [
+pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 38] = [
     control(Key::O, Command::OpenDialog),
     control(Key::L, Command::OpenPath),
     control(Key::S, Command::SaveSettings),
@@ -153,6 +155,7 @@ pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 37] = [
     plain(Key::X, Command::TogglePlane),
     plain(Key::K, Command::ToggleCrop),
     plain(Key::I, Command::ToggleProbe),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleGround),
     plain(Key::G, Command::ToggleMarks),
     plain(Key::H, Command::ToggleHandles),
     plain(Key::C, Command::ToggleCompare),
@@ -189,6 +192,7 @@ pub(super) fn listed() -> Vec<Command> {
         Command::ToggleCrop,
         Command::TogglePlane,
         Command::FacePlane,
+        Command::ToggleGround,
         Command::AddLight,
         Command::TryLights,
         Command::NextLight,
@@ -246,6 +250,7 @@ impl Command {
             Self::ToggleCrop => "Crop box",
             Self::TogglePlane => "Clip plane",
             Self::FacePlane => "Clip plane towards the eye",
+            Self::ToggleGround => "Floor with shadows",
             Self::ShowPalette => "Find a command…",
             Self::UseLights(_) => "Use lights",
             Self::TryLights => "Try lights…",

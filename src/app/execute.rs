@@ -69,6 +69,7 @@ impl App {
                 let Camera { target, .. } = self.settings.camera;
                 self.settings.cuts.plane.face(self.settings.camera.scene_from_view().z_axis, target.into());
             }
+            Command::ToggleGround => self.settings.ground.on ^= true,
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => self.settings.camera.frame_as(&self.defaults.camera),
             Command::LookFrom(view) => self.settings.camera.look_from(view),

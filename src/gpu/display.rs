@@ -17,6 +17,10 @@ pub(super) struct Target {
     pub picture: wgpu::Texture,
     /// The same.
     pub picture_view: wgpu::TextureView,
+    /// The floor under it, premultiplied, too; a single texel where there is none.
+    pub floor: wgpu::Texture,
+    /// The same.
+    pub floor_view: wgpu::TextureView,
     /// sRGB bytes.
     pub shown: wgpu::Texture,
     /// The same.
@@ -24,15 +28,15 @@ pub(super) struct Target {
 }
 
 impl Target {
-    /// Makes both textures.
+    /// Makes its textures.
     ///
     /// # Errors
     /// When the picture is too large for the adapter.
-    pub(super) fn new(context: &Context, size: [u32; 2]) -> Result<Self, GpuError> {
+    pub(super) fn new(context: &Context, size: [u32; 2], has_floor: bool) -> Result<Self, GpuError> {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::STORAGE_BINDING
             | wgpu::TextureUsages::COPY_SRC;
-        let make = |label, format| {
+        let make = |label, size: [u32; 2], format| {
             context.texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -44,20 +48,32 @@ impl Target {
                 view_formats: &[],
             })
         };
-        let picture = make("Target::picture", wgpu::TextureFormat::Rgba32Float)?;
-        let shown = make("Target::shown", wgpu::TextureFormat::Rgba8Unorm)?;
+        let picture = make("Target::picture", size, wgpu::TextureFormat::Rgba32Float)?;
+        // Never written to, textures are zeros.
+        let floor_size = if has_floor { size } else { [1; 2] };
+        let floor = make("Target::floor", floor_size, wgpu::TextureFormat::Rgba16Float)?;
+        let shown = make("Target::shown", size, wgpu::TextureFormat::Rgba8Unorm)?;
         Ok(Self {
             size,
             picture_view: picture.create_view(&wgpu::TextureViewDescriptor::default()),
             picture,
+            floor_view: floor.create_view(&wgpu::TextureViewDescriptor::default()),
+            floor,
             shown_view: shown.create_view(&wgpu::TextureViewDescriptor::default()),
             shown,
         })
     }
 
-    /// Bytes of both textures.
+    /// Whether it has that size, and room for a floor if there is one.
+    pub(super) fn is_for(&self, size: [u32; 2], has_floor: bool) -> bool {
+        let floor_size = if has_floor { size } else { [1; 2] };
+        self.size == size && [self.floor.width(), self.floor.height()] == floor_size
+    }
+
+    /// Bytes of its textures.
     pub(super) fn bytes(&self) -> u64 {
-        20 * u64::from(self.size[0]) * u64::from(self.size[1])
+        let floor = 8 * u64::from(self.floor.width()) * u64::from(self.floor.height());
+        20 * u64::from(self.size[0]) * u64::from(self.size[1]) + floor
     }
 }
 
@@ -90,6 +106,7 @@ pub(super) fn display(
             entry(0, uniform.as_entire_binding()),
             view_entry(1, &target.picture_view),
             view_entry(2, &target.shown_view),
+            view_entry(3, &target.floor_view),
         ],
     );
     pass::dispatch(

@@ -79,6 +79,8 @@ pub(super) enum Step {
     /// Index of the light build, and which of its bricks.
     Raycast(usize, Range<usize>),
     Eye(Range<u32>),
+    /// Rows of the floor.
+    Ground(Range<u32>),
     /// Bricks of the volume into which all lights collapse: which of them.
     Collapse(Range<usize>),
     /// Slabs of the eye's scattered sheets.
@@ -94,7 +96,7 @@ impl Step {
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) | Self::Collapse(_) => Stage::LightBackproject,
             Self::Raycast(..) => Stage::LightRaycast,
-            Self::Eye(_) | Self::ScatterEye(_) => Stage::Eye,
+            Self::Eye(_) | Self::ScatterEye(_) | Self::Ground(_) => Stage::Eye,
             Self::Display => Stage::Display,
         }
     }
@@ -252,20 +254,9 @@ impl Job {
         let mut cut = VecDeque::with_capacity(before);
         for step in self.steps.drain(..) {
             match step {
-                Step::Eye(Range { start, end }) => {
-                    let mut at = start;
-                    // Adjoining bands are joined again when the band grows.
-                    if let Some(Step::Eye(last)) = cut.back()
-                        && last.end == start
-                        && last.end - last.start < rows
-                    {
-                        at = last.start;
-                        cut.pop_back();
-                    }
-                    while at < end {
-                        cut.push_back(Step::Eye(at..end.min(at + rows)));
-                        at += rows;
-                    }
+                Step::Eye(range) => cut_rows(&mut cut, range, rows, Step::Eye),
+                Step::Ground(range) => {
+                    cut_rows(&mut cut, range, (rows / super::ground::COST).max(1), Step::Ground);
                 }
                 other => cut.push_back(other),
             }
@@ -273,5 +264,22 @@ impl Job {
         // Progress counts what is left of what there is.
         self.total = self.total - before + cut.len();
         self.steps = cut;
+    }
+}
+
+/// Adds bands of rows. Adjoining bands are joined again when the band grows.
+fn cut_rows(steps: &mut VecDeque<Step>, range: Range<u32>, rows: u32, step: fn(Range<u32>) -> Step) {
+    let Range { mut start, end } = range;
+    if let Some(Step::Eye(last) | Step::Ground(last)) = steps.back()
+        && steps.back() == Some(&step(last.clone()))
+        && last.end == start
+        && last.end - last.start < rows
+    {
+        start = last.start;
+        steps.pop_back();
+    }
+    while start < end {
+        steps.push_back(step(start..end.min(start + rows)));
+        start += rows;
     }
 }

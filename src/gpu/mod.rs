@@ -16,6 +16,7 @@ mod eye;
 mod first_look;
 mod footprint_table;
 mod gradients;
+mod ground;
 mod inspect;
 mod job;
 mod kernel;

@@ -142,6 +142,19 @@ impl Renderer {
         Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect())
     }
 
+    /// Reads back the floor under what is shown now: linear, premultiplied RGBA, row by row from the top left.
+    ///
+    /// # Errors
+    /// As [`Self::read_shown`]; when there is no floor.
+    pub fn read_floor(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        let none = || GpuError::Refused("no floor was drawn".to_owned());
+        let target = self.front.as_ref().filter(|target| target.is_for(target.size, true));
+        let bytes = read_texture(&self.context, &target.ok_or_else(none)?.floor)?;
+        let float = |word: &[u8]| half::f16::from_le_bytes([word[0], word[1]]).to_f32();
+        let texels = bytes.chunks_exact(8);
+        Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[2 * c..]))).collect())
+    }
+
     /// Makes a picture and waits for it.
     ///
     /// # Errors
@@ -254,12 +267,16 @@ impl Renderer {
             let end = |first: usize| bricks.min(first + light_collapse::BRICKS_PER_STEP);
             steps.extend(firsts.map(|first| Step::Collapse(first..end(first))));
         }
-        if self.back.as_ref().is_none_or(|target| target.size != request.size) {
+        let has_floor = request.settings.ground.on;
+        if self.back.as_ref().is_none_or(|target| !target.is_for(request.size, has_floor)) {
             self.back = None;
             self.recycled.forget_groups();
-            self.back = Some(Target::new(&self.context, request.size)?);
+            self.back = Some(Target::new(&self.context, request.size, has_floor)?);
         }
         steps.extend(self.eye_steps(&request)?);
+        if request.settings.ground.on {
+            steps.push(Step::Ground(0..request.size[1]));
+        }
         steps.push(Step::Display);
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(self.gpu_bytes());
         let total = steps.len();

@@ -9,7 +9,7 @@ use super::pipeline_cache::PipelineCache;
 use super::{Context, GpuError};
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 37] = [
+pub const SHADERS: [(&str, &str); 38] = [
     ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/cut.wgsl", include_str!("../../shaders/common/cut.wgsl")),
@@ -34,6 +34,7 @@ pub const SHADERS: [(&str, &str); 37] = [
     ("downsample.wgsl", include_str!("../../shaders/downsample.wgsl")),
     ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
     ("gradients.wgsl", include_str!("../../shaders/gradients.wgsl")),
+    ("ground.wgsl", include_str!("../../shaders/ground.wgsl")),
     ("light_around.wgsl", include_str!("../../shaders/light_around.wgsl")),
     ("light_backproject.wgsl", include_str!("../../shaders/light_backproject.wgsl")),
     ("light_collapse.wgsl", include_str!("../../shaders/light_collapse.wgsl")),

@@ -15,7 +15,7 @@ use super::scatter_light::LightScatter;
 use super::scatter_voxels::ScatterVoxels;
 use super::tables::{EVERYWHERE, Tables};
 use super::volume::Gpu;
-use super::{GpuError, Renderer, gradients, prefilter};
+use super::{GpuError, Renderer, gradients, ground, prefilter};
 
 /// What went away between `begin` and `step`.
 fn out_of_date() -> GpuError {
@@ -52,6 +52,14 @@ impl Renderer {
             Step::Raycast(build, bricks) => self.encode_raycast(job, *build, bricks, encoder),
             Step::Collapse(bricks) => self.encode_collapse(job, bricks, encoder),
             Step::Eye(_) | Step::ScatterEye(_) => self.encode_eye(job, step, encoder),
+            Step::Ground(rows) => {
+                let target = self.back.as_ref().ok_or_else(out_of_date)?;
+                let (gpu, tables) = self.gpu()?;
+                let eye = job.eye.as_ref().ok_or_else(out_of_date)?;
+                let of = (eye, &job.request.settings);
+                let views = (&target.picture_view, &target.floor_view);
+                ground::draw(gpu, tables, of, &self.options, views, rows.clone(), encoder)
+            }
             Step::Display => {
                 let target = self.back.as_ref().ok_or_else(out_of_date)?;
                 let output = &job.request.settings.output;

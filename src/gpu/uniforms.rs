@@ -328,6 +328,28 @@ pub struct Eye {
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 
+/// `ground.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Ground {
+    pub frame: SheetFrame,
+    pub space: Space,
+    pub shading: Shading,
+    pub shading_cut: Cut,
+    pub plane: [f32; 4],
+    pub color: [f32; 3],
+    pub opacity: f32,
+    pub radius: f32,
+    pub fade: f32,
+    pub light_share: f32,
+    pub shadow_only: f32,
+    pub first_row: u32,
+    pub end_row: u32,
+    pub runs: u32,
+    pub pad0: u32,
+    pub lights: [Light; crate::model::MAX_LIGHTS],
+}
+
 /// `display.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -168,6 +168,16 @@ fn outline(settings: &Settings, volume: &Volume) -> Vec<DVec3> {
         .collect()
 }
 
+/// Share of the outline that may lie below the floor: single voxels of noise.
+const BELOW_FLOOR: f64 = 0.001;
+
+/// The z below which next to nothing of an outline lies.
+fn floor_under(outline: &[DVec3]) -> f64 {
+    let mut heights: Vec<f64> = outline.iter().map(|point| point.z).collect();
+    let at = (heights.len() as f64 * BELOW_FLOOR) as usize;
+    *heights.select_nth_unstable_by(at, f64::total_cmp).1
+}
+
 /// Points the camera at what the transfer function shows, from three quarters above, near enough
 /// that it fills the picture.
 fn frame_object(settings: &mut Settings, volume: &Volume) {
@@ -175,6 +185,7 @@ fn frame_object(settings: &mut Settings, volume: &Volume) {
     if corners.is_empty() {
         return;
     }
+    settings.ground.height = floor_under(&corners) - volume.scene().smallest_edge() / 2.0;
     let camera = &mut settings.camera;
     let view = camera.scene_from_view();
     let half_angle = (camera.fov_y_deg.to_radians() / 2.0).tan();
@@ -218,6 +229,15 @@ mod tests {
             })
             .collect();
         Volume::with_spacing("ball", [n; 3], DVec3::ONE, Samples::F32(values)).unwrap()
+    }
+
+    #[test]
+    fn the_floor_lies_under_the_object() {
+        let volume = ball(200.0, 0.0);
+        let settings = first_settings(&volume, &Histogram::of(&volume, BINS));
+        // The ball's radius is ten of 32 voxels, and a scene unit 16.
+        assert!((settings.ground.height + 10.0 / 16.0).abs() < 0.07, "{}", settings.ground.height);
+        assert!(!settings.ground.on);
     }
 
     #[test]

@@ -2,8 +2,9 @@
 //! negative extinction or as an endless loop.
 
 use super::{
-    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Hood, Interpolation, Kernel, Light,
-    MAX_BIAS_VOXELS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling, Settings, Shading, Shadows,
+    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Ground, Hood, Interpolation, Kernel, Light,
+    MAX_BIAS_VOXELS, MAX_GROUND_HEIGHT, MAX_GROUND_RADIUS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling,
+    Settings, Shading, Shadows,
 };
 
 impl Settings {
@@ -83,6 +84,11 @@ impl Settings {
             *normal = ClipPlane::default().normal;
         }
         number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
+        let Ground { on: _, height, radius, color, opacity, shadow_only: _ } = &mut self.ground;
+        number(height, -MAX_GROUND_HEIGHT, MAX_GROUND_HEIGHT, default.ground.height);
+        number(radius, 0.1, MAX_GROUND_RADIUS, default.ground.radius);
+        rgb(color);
+        number(opacity, 0.0, 1.0, 1.0);
         let length = self.opacity_unit.number();
         if !(length.is_finite() && length > 0.0) {
             self.opacity_unit = default.opacity_unit;

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::transfer::unit_in_scene;
 use super::{
-    BakedTransfer, Camera, Classification, Cuts, Engine, Gradients, Kernel, Length, Light, LightStorage,
-    Sampling, ShadowAlgorithm, Shadows, TransferFunction,
+    BakedTransfer, Camera, Classification, Cuts, Engine, Gradients, Ground, Kernel, Length, Light,
+    LightStorage, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE};
 use crate::math::SceneSpace;
@@ -37,6 +37,8 @@ pub struct Settings {
     pub shadows: Shadows,
     /// What of the volume is left out.
     pub cuts: Cuts,
+    /// The floor under the volume.
+    pub ground: Ground,
     /// How the eye's sheets are sampled.
     pub sampling: Sampling,
     /// What happens to the picture at the end.
@@ -57,6 +59,7 @@ impl Default for Settings {
             shading: Shading::default(),
             shadows: Shadows::default(),
             cuts: Cuts::default(),
+            ground: Ground::default(),
             sampling: Sampling::default(),
             output: Output::default(),
             views: BTreeMap::new(),

@@ -110,6 +110,7 @@ impl LightKey {
             shading: _,
             shadows,
             cuts,
+            ground: _,
             sampling:
                 Sampling { kernel: _, slab: _, quadrature: _, gradients: _, classification, engine, order: _ },
             output: _,
@@ -234,6 +235,7 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
         shading,
         shadows,
         cuts,
+        ground,
         sampling,
         output,
         views: _,
@@ -257,6 +259,7 @@ pub fn plan(previous: Option<&Request>, next: &Request) -> Plan {
         || lamps_differ(lamps, &before.lights)
         || *shading != before.shading
         || *shadows != before.shadows
+        || *ground != before.ground
         || (cuts.seen(), cuts.shading()) != (before.cuts.seen(), before.cuts.shading())
         || *sampling != before.sampling
         || next.size != previous.size;

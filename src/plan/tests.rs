@@ -103,6 +103,7 @@ fn every_setting_causes_what_the_design_says() {
         ("cuts.plane", r#"{"offset": 0.1}"#, Effect::Nothing),
         ("cuts.plane", r#"{"on": true}"#, Effect::AllLights),
         ("cuts.plane", r#"{"on": true, "effect": "shadowless"}"#, Effect::AllLights),
+        ("ground", r#"{"on": true}"#, Effect::Eye),
         ("sampling.kernel", "prefiltered", Effect::Eye),
         ("sampling.slab", "0.5", Effect::Eye),
         ("sampling.quadrature", "two", Effect::Eye),

@@ -14,6 +14,7 @@
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
+//! | the floor | `ground` | [`Reference::ground`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
@@ -22,6 +23,7 @@ mod eye;
 mod field;
 mod footprint;
 mod gather;
+mod ground;
 mod kernel;
 mod light;
 mod pyramid;

@@ -33,7 +33,7 @@ enum Attenuated<'r> {
 }
 
 /// One sRGB component to linear light (IEC 61966-2-1); the reference has its own.
-fn linear_from_srgb(encoded: f32) -> f64 {
+pub(super) fn linear_from_srgb(encoded: f32) -> f64 {
     let encoded = f64::from(encoded);
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
@@ -120,8 +120,7 @@ impl<'r> Shader<'r> {
             Attenuated::Volume(volume) => volume.at(place),
             Attenuated::Rays(rays) => rays.attenuation(place),
         };
-        let light = (shadows.gain * looked_up + shadows.ambient_offset).min(1.0);
-        1.0 - shadows.strength * (1.0 - light)
+        self.reference.cured(looked_up)
     }
 
     /// Central differences of the prefiltered density, one voxel (or one stretched voxel) to either
@@ -156,6 +155,15 @@ impl<'r> Shader<'r> {
             Projection::Orthographic => backward,
             Projection::Perspective => (camera.eye() - place).normalize_or(backward),
         }
+    }
+}
+
+impl Reference<'_> {
+    /// What of a light counts, with the cures for darkness (P §4), if so much of it is left.
+    pub(super) fn cured(&self, left: f64) -> f64 {
+        let shadows = &self.settings.shadows;
+        let light = (shadows.gain * left + shadows.ambient_offset).min(1.0);
+        1.0 - shadows.strength * (1.0 - light)
     }
 }
 

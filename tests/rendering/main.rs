@@ -11,6 +11,7 @@ mod common;
 mod compare;
 mod cuts;
 mod gpu_vs_reference;
+mod ground;
 mod mutations;
 mod preview;
 mod scatter;

@@ -111,3 +111,6 @@ pub(crate) const CUT_ORDERS: f64 = 0.03;
 
 /// Collapsed light at cut faces: it is stored once per voxel, and normals turn within one there.
 pub(crate) const CUT_COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 255.0 };
+
+/// Light on the floor, absolute: a 16-bit float near 1, and the error of the midpoint rule along a ray.
+pub(crate) const FLOOR_SHADOW: f64 = 2e-3;

@@ -5,6 +5,7 @@ mod compare;
 pub(super) mod controls;
 mod cuts;
 mod data;
+mod ground;
 mod lights;
 mod sampling;
 mod shading;
@@ -48,6 +49,7 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
         controls::section(ui, "Shadows", true, |ui| shadows::show(ui, panels));
         controls::section(ui, "Shading", false, |ui| shading::show(ui, panels));
         controls::section(ui, "Cut", false, |ui| cuts::show(ui, panels));
+        controls::section(ui, "Floor", false, |ui| ground::show(ui, panels));
         controls::section(ui, "Camera", false, |ui| camera::show(ui, panels));
         controls::section(ui, "Compare", false, |ui| {
             compare::show(ui, panels.compare, panels.settings, panels.commands);

@@ -9,8 +9,13 @@ use crate::model::{Classification, Engine, Gradients, Kernel, Quadrature, Sampli
 /// σ where a Gaussian is chosen anew.
 const SIGMA: f64 = 0.6;
 
-/// Shows the three rows.
-pub(super) fn show(ui: &mut Ui, kernel: &mut Kernel, slab: &mut f64, quadrature: &mut Quadrature) {
+/// Shows the three rows. `default_slab`: what the reset button puts back.
+pub(super) fn show(
+    ui: &mut Ui,
+    kernel: &mut Kernel,
+    (slab, default_slab): (&mut f64, f64),
+    quadrature: &mut Quadrature,
+) {
     let sigma = if let Kernel::Gaussian { sigma } = kernel { *sigma } else { SIGMA };
     let kernels = [
         (Kernel::BSpline, "B-spline", "The default: smooth, an exact partition of unity"),
@@ -31,7 +36,7 @@ pub(super) fn show(ui: &mut Ui, kernel: &mut Kernel, slab: &mut f64, quadrature:
         Number::new("Sigma", 0.4..=0.8, tip).unit(" vox").show(ui, sigma, SIGMA);
     }
     let tip = "Thickness of a sheet in edges of the smallest voxel; thinner is slower and more exact";
-    Number::new("Slab", 0.25..=2.0, tip).unit(" vox").show(ui, slab, 1.0);
+    Number::new("Slab", 0.25..=2.0, tip).unit(" vox").show(ui, slab, default_slab);
     let quadratures = [
         (Quadrature::One, "1 point", "The middle of every slab: fast"),
         (Quadrature::Two, "2 points", "Twice the work; for export and comparison"),

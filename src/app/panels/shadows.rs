@@ -53,7 +53,8 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             let tip = "Each voxel takes only the light of the first sheet that touches it: crisper and brighter, \
                        with faint steps";
             switch(ui, "First touch", tip, &mut shadows.first_touch);
-            sampling::show(ui, &mut shadows.kernel, &mut shadows.slab, &mut shadows.quadrature);
+            let default_slab = panels.defaults.shadows.slab;
+            sampling::show(ui, &mut shadows.kernel, (&mut shadows.slab, default_slab), &mut shadows.quadrature);
             let deposits = [
                 (Deposit::SlabMean, "Mean", "The mean over the slab: hardly depends on its thickness"),
                 (Deposit::Front, "Front", "What arrives in front of the slab: a little brighter; the paper's equation"),

@@ -1,5 +1,8 @@
 //! The real window, driven without a display: pointer, keys and widgets by their names.
 
+mod names;
+mod snapshots;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -19,7 +22,7 @@ const PATIENCE: Duration = Duration::from_mins(1);
 const SCENE: &str = "builtin:chair:32";
 
 /// The window of the tests. It is taller than wide panels need, so that nothing is scrolled away.
-fn window() -> Harness<'static, App> {
+pub(crate) fn window() -> Harness<'static, App> {
     let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
     let mut setup = wgpu_setup();
     // As the tests of the renderer: the first adapter that there is, software included.
@@ -42,7 +45,7 @@ fn bare_window() -> Harness<'static, App> {
 }
 
 /// Lets frames pass until a condition holds.
-fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: impl Fn(&App) -> bool) {
+pub(crate) fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: impl Fn(&App) -> bool) {
     let start = Instant::now();
     loop {
         harness.step();
@@ -54,7 +57,7 @@ fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: impl Fn(&Ap
     }
 }
 
-fn wait_until_idle(harness: &mut Harness<'_, App>) {
+pub(crate) fn wait_until_idle(harness: &mut Harness<'_, App>) {
     wait_until(harness, "never idle", App::is_idle);
 }
 
@@ -111,7 +114,7 @@ fn render_with(harness: &Harness<'_, App>, size: [u32; 2], options: &RenderOptio
     renderer.render(&volume, &bricks, settings, size, options).expect("a picture")
 }
 
-fn click(harness: &mut Harness<'_, App>, label: &str) {
+pub(crate) fn click(harness: &mut Harness<'_, App>, label: &str) {
     harness.get_by_label(label).click();
     harness.run_steps(3);
 }
@@ -337,6 +340,26 @@ fn box_and_plane_are_dragged_in_the_picture() {
     wait_until_idle(&mut harness);
     harness.run_steps(20);
     assert!(picture(&mut harness).0 == whole, "as it was");
+}
+
+#[test]
+fn a_floor_takes_shadows() {
+    let mut harness = bare_window();
+    let (bare, _) = picture(&mut harness);
+    let fills = harness.state().light_rebuilds();
+    harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::G);
+    harness.run_steps(2);
+    wait_until_idle(&mut harness);
+    harness.run_steps(20);
+    assert!(harness.state().settings().ground.on);
+    let (floor, size) = picture(&mut harness);
+    assert!(floor != bare);
+    assert!(floor == render(&harness, size).shown);
+    assert_eq!(harness.state().light_rebuilds(), fills, "the floor needs no light volume");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    wait_until_idle(&mut harness);
+    harness.run_steps(20);
+    assert!(picture(&mut harness).0 == bare);
 }
 
 #[test]

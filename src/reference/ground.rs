@@ -1,0 +1,75 @@
+//! The floor: rays from the eye that meet it, and rays from there to the lights.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Reference;
+use super::shade::linear_from_srgb;
+use super::shadow_ray::ShadowRays;
+use crate::model::{Light, LightKind, Projection, ShadowAlgorithm};
+
+impl Reference<'_> {
+    /// The floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
+    pub fn ground(&self, size: [u32; 2]) -> Vec<[f64; 4]> {
+        let settings = self.settings;
+        let kernel = (settings.shadows.kernel, settings.shadows.quadrature);
+        let attenuates = settings.shadows.algorithm != ShadowAlgorithm::Off;
+        let lamps: Vec<_> = (0..settings.lights.len())
+            .filter(|&index| settings.lights[index].on)
+            .map(|index| {
+                let rays = attenuates && settings.lights[index].needs_volume();
+                (self.light(index), rays.then(|| ShadowRays::new(self, index, kernel)))
+            })
+            .collect();
+        let [width, height] = size.map(f64::from);
+        let camera = &settings.camera;
+        let pixel = |at: u32| {
+            let (i, j) = (f64::from(at % size[0]) + 0.5, f64::from(at / size[0]) + 0.5);
+            let (eye, direction) = camera.ray_through(i, j, width, height);
+            self.floor_along(eye, direction, &lamps)
+        };
+        (0..size[0] * size[1]).into_par_iter().map(pixel).collect()
+    }
+
+    fn floor_along(
+        &self,
+        eye: DVec3,
+        direction: DVec3,
+        lamps: &[(Light, Option<ShadowRays<'_>>)],
+    ) -> [f64; 4] {
+        let (ground, shading) = (&self.settings.ground, &self.settings.shading);
+        // An orthographic eye is nowhere: its rays begin behind everything.
+        let along = (ground.height - eye.z) / direction.z;
+        let is_in_front = along > 0.0 || self.settings.camera.projection == Projection::Orthographic;
+        if direction.z >= 0.0 || !is_in_front {
+            return [0.0; 4];
+        }
+        let place = eye + direction * along;
+        let presence = ground.presence(place.truncate().length());
+        let index = self.scene.index_from_scene.transform_point3(place);
+        let (mut fallen, mut bare) = ([0.0; 3], [0.0; 3]);
+        for (light, rays) in lamps {
+            let to_light = match light.kind {
+                LightKind::Parallel => light.direction(),
+                LightKind::Perspective => (DVec3::from(light.position) - place).normalize(),
+            };
+            let cone = light.cone();
+            let hood = cone.share(-cone.axis.dot(to_light));
+            let arriving = rays.as_ref().map_or(hood, |rays| self.cured(rays.attenuation(index)));
+            for channel in 0..3 {
+                let rgb = linear_from_srgb(light.color[channel]) * light.intensity * to_light.z.max(0.0);
+                fallen[channel] += rgb * arriving;
+                bare[channel] += rgb * hood;
+            }
+        }
+        let reflected = |light: [f64; 3]| light.map(|c| shading.ambient + shading.diffuse * c);
+        let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
+        let (shown, unshadowed) = (reflected(fallen), reflected(bare));
+        if ground.shadow_only {
+            let missing = (1.0 - luminance(shown) / luminance(unshadowed).max(1e-6)).clamp(0.0, 1.0);
+            return [0.0, 0.0, 0.0, presence * missing];
+        }
+        let [r, g, b] = [0, 1, 2].map(|c| presence * linear_from_srgb(ground.color[c]) * shown[c]);
+        [r, g, b, presence]
+    }
+}

@@ -1,0 +1,102 @@
+//! Every widget has a name that a screen reader can say: in the panels with all their sections, in every menu
+//! and in every window.
+
+use chiaroscuro::app::App;
+use eframe::egui::{self, Key, Modifiers, Role, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::{click, wait_until, window};
+
+/// All sections unfolded, and a window that is tall enough for them.
+pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
+    let mut harness = window();
+    // Pictures of a window that high are larger than egui assumes to be safe.
+    harness.input_mut().max_texture_side = Some(8192);
+    harness.set_size(Vec2::new(width, 2300.0));
+    harness.run_steps(3);
+    for section in ["Shading", "Cut", "Floor", "Camera", "Compare", "Data"] {
+        click(&mut harness, section);
+        harness.run_steps(8);
+    }
+    // A section that is unfolded has another further down.
+    for at in 0..harness.get_all_by_label("Advanced").count() {
+        harness.get_all_by_label("Advanced").nth(at).expect("as many as before").click();
+        harness.run_steps(8);
+    }
+    harness
+}
+
+/// Fails if any widget has no name, and says which, and where.
+fn check(harness: &Harness<'_, App>, place: &str) {
+    let unnamed = harness.unnamed_widgets();
+    assert!(unnamed.is_empty(), "{place}: {unnamed:#?}");
+}
+
+fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run_steps(6);
+}
+
+/// The menu bar comes first: other buttons may have the same name.
+fn open_menu(harness: &mut Harness<'_, App>, name: &str) {
+    harness.get_all_by_label(name).next().expect("a menu").click();
+    harness.run_steps(6);
+}
+
+#[test]
+fn every_widget_has_a_name() {
+    let mut harness = unfolded(1100.0);
+    check(&harness, "the panels");
+    for on in ["Crop box", "Clip plane", "Floor under the volume", "Compare two looks", "Hood"] {
+        if harness.query_by_label(on).is_some() {
+            click(&mut harness, on);
+            harness.run_steps(4);
+        }
+    }
+    // The light's; the camera's is further down.
+    harness.get_all_by_label("Perspective").next().expect("the light's kind").click();
+    harness.hover_at(egui::pos2(300.0, 400.0));
+    harness.run_steps(4);
+    check(&harness, "the panels, with everything on");
+
+    for menu in ["File", "Edit", "View", "Light", "Help"] {
+        open_menu(&mut harness, menu);
+        check(&harness, menu);
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+    }
+    for button in ["Presets", "Colours"] {
+        click(&mut harness, button);
+        harness.run_steps(4);
+        check(&harness, button);
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+    }
+    for (modifiers, key, what) in [
+        (Modifiers::COMMAND, Key::E, "the export window"),
+        (Modifiers::COMMAND, Key::L, "the window for a path"),
+        (Modifiers::NONE, Key::F1, "keys and mouse"),
+        (Modifiers::COMMAND, Key::P, "the palette"),
+    ] {
+        press(&mut harness, modifiers, key);
+        check(&harness, what);
+    }
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    for item in ["Try lights…", "Light volume…"] {
+        open_menu(&mut harness, "Light");
+        harness.get_by_label_contains(item).click();
+        harness.run_steps(6);
+        wait_until(&mut harness, item, App::is_idle);
+        check(&harness, item);
+    }
+}
+
+/// The check itself: a button without a name is found.
+#[test]
+fn nameless_widgets_are_found() {
+    let harness = Harness::builder().with_accessibility_check(false).build_ui(|ui| {
+        ui.button("named").clicked();
+        let area = ui.allocate_exact_size(Vec2::splat(20.0), egui::Sense::click());
+        area.1.widget_info(|| egui::WidgetInfo::new(Role::Button));
+    });
+    assert_eq!(harness.unnamed_widgets().len(), 1, "{:?}", harness.unnamed_widgets());
+}
