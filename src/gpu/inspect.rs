@@ -1,9 +1,9 @@
-//! Looking into the renderer: light volumes and sheets, read back for export and for tests.
+//! Looking into the renderer: pictures, light volumes and sheets, read back for export and for tests.
 
 use std::sync::Arc;
 
 use super::light_march::{Sheets, march};
-use super::readback::{Attenuation, read_floats};
+use super::readback::{Attenuation, read_floats, read_texture};
 use super::recycled::Recycled;
 use super::scatter_light::LightScatter;
 use super::{GpuError, RenderOptions, Renderer};
@@ -12,6 +12,41 @@ use crate::model::Settings;
 use crate::plan::{FARTHEST, LightKey, Request, light_views};
 
 impl Renderer {
+    /// Reads back what is shown now: sRGB bytes, RGBA, row by row from the top left.
+    ///
+    /// # Errors
+    /// When there is no picture or the GPU cannot do it.
+    pub fn read_shown(&self) -> Result<Vec<u8>, GpuError> {
+        let none = || GpuError::Refused("no picture was drawn".to_owned());
+        read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.shown)
+    }
+
+    /// Reads back the light of what is shown now: linear, premultiplied RGBA before tone mapping, row by
+    /// row from the top left.
+    ///
+    /// # Errors
+    /// As [`Self::read_shown`].
+    pub fn read_light(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        let none = || GpuError::Refused("no picture was drawn".to_owned());
+        let bytes = read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.picture)?;
+        let float = |word: &[u8]| f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+        let texels = bytes.chunks_exact(16);
+        Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect())
+    }
+
+    /// Reads back the floor under what is shown now: linear, premultiplied RGBA, row by row from the top left.
+    ///
+    /// # Errors
+    /// As [`Self::read_shown`]; when there is no floor.
+    pub fn read_floor(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        let none = || GpuError::Refused("no floor was drawn".to_owned());
+        let target = self.front.as_ref().filter(|target| target.is_for(target.size, true));
+        let bytes = read_texture(&self.context, &target.ok_or_else(none)?.floor)?;
+        let float = |word: &[u8]| half::f16::from_le_bytes([word[0], word[1]]).to_f32();
+        let texels = bytes.chunks_exact(8);
+        Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[2 * c..]))).collect())
+    }
+
     /// Reads back the attenuation volume that a light of the last picture used.
     ///
     /// # Errors
