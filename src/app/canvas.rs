@@ -9,6 +9,8 @@ use super::hints::Hints;
 use super::light_handles::LightHandles;
 use super::light_probe::LightProbe;
 use super::marks::Marks;
+use super::sight::Sight;
+use super::slices::Slices;
 use super::viewport::{Facts, Viewport};
 use super::{light_chips, light_probe, orbit, theme};
 use crate::gpu::GpuError;
@@ -60,6 +62,8 @@ pub(super) struct Stage<'a> {
     pub marks: Marks,
     /// What is under the pointer.
     pub probe: &'a mut LightProbe,
+    /// Cuts through the data, and their cursor.
+    pub slices: &'a mut Slices,
     /// What the first picture says.
     pub hints: &'a mut Hints,
     /// Of the open volume, and whether it is a body that knows its sides; `None` without one.
@@ -81,6 +85,7 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
         compare,
         marks,
         probe,
+        slices,
         hints,
         scene,
         facts,
@@ -104,11 +109,20 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     {
         settings.camera.turn_about(found.point);
     }
+    if slices.open
+        && response.clicked()
+        && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())
+        && let Some(found) = light_probe::seen_at(&volume, settings, canvas.rect, at)
+    {
+        slices.point_at(found.index, volume.dims());
+    }
     // Painted first, filled in when the lights have been moved: no frame of delay.
     let picture = ui.painter().add(Shape::Noop);
     let moving =
         ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
     marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
+    let sight = Sight { camera: settings.camera.clone(), picture: canvas.rect };
+    slices.mark(&ui.painter_at(canvas.rect), &sight, &scene);
     if !handles.hidden {
         cut_handles.show(ui, canvas.rect, settings, &scene);
     }

@@ -103,6 +103,8 @@ pub(super) enum Command {
     ToggleHandles,
     /// Show two looks in one picture, or one again.
     ToggleCompare,
+    /// Show cuts through the data, or not.
+    ShowSlices,
     /// Show a slice of a light volume.
     ShowLightVolume,
     /// Ask for settings to compare with.
@@ -122,7 +124,7 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
 }
 
 /// A command with its key, as help shows it.
-pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 38] = [
+pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 39] = [
     control(Key::O, Command::OpenDialog),
     control(Key::L, Command::OpenPath),
     control(Key::S, Command::SaveSettings),
@@ -159,6 +161,7 @@ pub(super) const SHORTCUTS: [(KeyboardShortcut, Command); 38] = [
     plain(Key::G, Command::ToggleMarks),
     plain(Key::H, Command::ToggleHandles),
     plain(Key::C, Command::ToggleCompare),
+    plain(Key::D, Command::ShowSlices),
     plain(Key::N, Command::ToggleSide),
     plain(Key::Questionmark, Command::ShowHelp),
     plain(Key::F1, Command::ShowHelp),
@@ -210,6 +213,7 @@ pub(super) fn listed() -> Vec<Command> {
         Command::ToggleHandles,
         Command::ToggleCompare,
         Command::CompareWithFile,
+        Command::ShowSlices,
         Command::ShowLightVolume,
         Command::ShowHelp,
         Command::ShowAbout,
@@ -280,6 +284,7 @@ impl Command {
             Self::ToggleSide => "Side panel",
             Self::ToggleHandles => "Handles",
             Self::ToggleCompare => "Compare two looks",
+            Self::ShowSlices => "Slices of the data",
             Self::ShowLightVolume => "Light volume…",
             Self::CompareWithFile => "Compare with settings…",
             Self::ShowHelp => "Keys and mouse",

@@ -116,6 +116,7 @@ impl App {
             Command::ToggleSide => self.side_open ^= true,
             Command::ToggleHandles => self.handles.hidden ^= true,
             Command::ToggleCompare => self.compare.on ^= true,
+            Command::ShowSlices => self.slices.open ^= true,
             Command::ShowLightVolume => self.light_slice.open = true,
             Command::CompareWithFile => self.files.ask(Purpose::CompareSettings, frame, ctx),
             Command::ShowHelp => self.help.keys = true,
@@ -183,6 +184,8 @@ impl App {
         if let Some((purpose, path)) = self.files.ui(ctx) {
             self.chosen(purpose, &path, ctx);
         }
+        let volume = self.viewport.volume().map(|(volume, _)| volume);
+        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), &self.settings.transfer);
         let scene = light_slice::Scene {
             settings: &self.settings,
             volume: self.viewport.volume(),

@@ -25,7 +25,7 @@ const MOUSE: [(&str, &str); 15] = [
 ];
 
 /// Room that keys and mouse take.
-const TABLES: egui::Vec2 = egui::vec2(960.0, 500.0);
+const TABLES: egui::Vec2 = egui::vec2(960.0, 524.0);
 
 /// Two columns: what is done, and what happens.
 fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, String)>) {

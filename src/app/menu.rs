@@ -135,6 +135,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     });
     item(ui, menu, Command::ToggleFullScreen, true);
     ui.separator();
+    item(ui, menu, Command::ShowSlices, true);
     item(ui, menu, Command::FacePlane, true);
     ui.separator();
     let projection = &mut menu.settings.camera.projection;

@@ -31,6 +31,7 @@ mod palette;
 mod panels;
 mod refine;
 mod sight;
+mod slices;
 mod start;
 mod status;
 mod status_file;
@@ -64,6 +65,7 @@ use self::marks::Marks;
 use self::memory::Memory;
 use self::messages::Messages;
 use self::palette::Palette;
+use self::slices::Slices;
 use self::status_file::StatusFile;
 use self::transfer_editor::TransferEditor;
 use self::viewport::{Facts, Viewport};
@@ -104,6 +106,7 @@ pub struct App {
     probe: LightProbe,
     palette: Palette,
     light_slice: LightSlice,
+    slices: Slices,
     contact_sheet: ContactSheet,
     editor: TransferEditor,
     selected_light: usize,
@@ -165,6 +168,7 @@ impl App {
             probe: LightProbe::default(),
             palette: Palette::default(),
             light_slice: LightSlice::default(),
+            slices: Slices::default(),
             contact_sheet: ContactSheet::default(),
             editor: TransferEditor::default(),
             selected_light: 0,
@@ -295,6 +299,7 @@ impl App {
             compare: &mut self.compare,
             marks: self.marks,
             probe: &mut self.probe,
+            slices: &mut self.slices,
             hints: &mut self.hints,
             scene: self.volume.as_ref().map(|volume| (volume.scene, volume.is_anatomical)),
             facts,

@@ -35,6 +35,12 @@ pub(super) const CHECKER: [Color32; 2] =
     [Color32::from_rgb(0x22, 0x25, 0x2b), Color32::from_rgb(0x2b, 0x2f, 0x36)];
 /// Edge of a field of the checkerboard.
 pub(super) const CHECKER_EDGE: f32 = 8.0;
+/// The axes of the grid, x, y and z.
+pub(super) const AXES: [Color32; 3] = [
+    Color32::from_rgb(0xf0, 0x6a, 0x5e),
+    Color32::from_rgb(0x6c, 0xc9, 0x72),
+    Color32::from_rgb(0x62, 0xa4, 0xf2),
+];
 /// Around handles and points, so that they can be told from any picture.
 pub(super) const OUTLINE: Color32 = Color32::from_rgb(0x0c, 0x0d, 0x10);
 /// Lines that help while a light is moved.

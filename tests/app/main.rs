@@ -343,6 +343,54 @@ fn box_and_plane_are_dragged_in_the_picture() {
 }
 
 #[test]
+fn slices_and_picture_share_a_cursor() {
+    let mut harness = window();
+    let camera = harness.state().settings().camera.clone();
+    harness.key_press(egui::Key::D);
+    harness.run_steps(4);
+    assert!(harness.query_by_label("16, 16, 16").is_some(), "in the middle");
+    let slice = harness.get_by_label("Slice across z").rect();
+    let (at, by) = (slice.center(), vec2(slice.width() / 4.0, -slice.height() / 4.0));
+    drag(&mut harness, at, by);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("24, 24, 16").is_some(), "a quarter to the right and up");
+    harness.hover_at(at);
+    harness.step();
+    // 50 points to a notch.
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        source: egui::MouseWheelSource::Wheel,
+        delta: vec2(0.0, 110.0),
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    assert!(harness.query_by_label("24, 24, 18").is_some(), "two slices further");
+    click(&mut harness, "As in the picture");
+
+    // What the picture shows under the pointer; the seat is below the window with the slices.
+    let (rect, _) = harness.state().viewport_rect().expect("a picture");
+    let seat = rect.center() + vec2(20.0, 30.0);
+    harness.get_by_label("Slices").rect();
+    let title = harness.get_by_label("Slices").rect().center();
+    drag(&mut harness, title, vec2(0.0, rect.height() / 2.0 + 60.0));
+    harness.hover_at(seat);
+    harness.step();
+    for pressed in [true, false] {
+        harness.event(Event::PointerButton {
+            pos: seat,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.step();
+    }
+    harness.run_steps(3);
+    assert!(harness.query_by_label("24, 24, 18").is_none(), "the cursor went where the picture was clicked");
+    assert_eq!(harness.state().settings().camera, camera);
+}
+
+#[test]
 fn a_floor_takes_shadows() {
     let mut harness = bare_window();
     let (bare, _) = picture(&mut harness);

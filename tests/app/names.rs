@@ -74,6 +74,7 @@ fn every_widget_has_a_name() {
     for (modifiers, key, what) in [
         (Modifiers::COMMAND, Key::E, "the export window"),
         (Modifiers::COMMAND, Key::L, "the window for a path"),
+        (Modifiers::NONE, Key::D, "slices"),
         (Modifiers::NONE, Key::F1, "keys and mouse"),
         (Modifiers::COMMAND, Key::P, "the palette"),
     ] {
