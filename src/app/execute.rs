@@ -134,6 +134,10 @@ impl App {
                 self.pending = None;
                 self.messages.note("Opening was cancelled");
             }
+            Some(Outcome::NotDescribed { path, why, guess }) => {
+                self.pending = None;
+                self.raw_dialog.ask(&path, why, guess);
+            }
             Some(Outcome::Failed { short, details }) => {
                 self.pending = None;
                 self.messages.error(short, details);
@@ -180,6 +184,9 @@ impl App {
         }
         if let Err(err) = self.contact_sheet.ui(ctx, commands) {
             self.messages.error("lights could not be tried", err);
+        }
+        if let Some(described) = self.raw_dialog.ui(ctx) {
+            self.open_described(&described, ctx);
         }
         if let Some((purpose, path)) = self.files.ui(ctx) {
             self.chosen(purpose, &path, ctx);

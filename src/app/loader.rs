@@ -1,13 +1,13 @@
 //! Opens volumes on a thread of their own, up to the first look.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use eframe::egui;
 
 use super::work::Work;
-use crate::data::load::{self, LoadControl, LoadOptions};
+use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
 use crate::data::{Bricks, Histogram, Volume};
 use crate::gpu::{Context, Renderer, ShaderLibrary, first_look};
 use crate::model::Settings;
@@ -39,6 +39,8 @@ pub(super) enum Outcome {
     Opened(Box<Opened>),
     /// The user stopped it.
     Cancelled,
+    /// It is a file of bare voxels, and how these are stored is not known, or not right.
+    NotDescribed { path: PathBuf, why: String, guess: RawGuess },
     /// With a message: what, and all that is known.
     Failed { short: String, details: String },
 }
@@ -88,13 +90,20 @@ impl Loader {
     }
 
     /// Starts to open a file or a built-in volume.
-    pub(super) fn open(&mut self, source: &str, ctx: &egui::Context) -> Result<(), String> {
+    /// `raw` says how it is stored, if it is a file of bare voxels.
+    pub(super) fn open(
+        &mut self,
+        source: &str,
+        raw: Option<RawFormat>,
+        ctx: &egui::Context,
+    ) -> Result<(), String> {
         self.cancel();
         let control = Arc::new(LoadControl::new());
         let phase = Arc::new(AtomicU8::new(0));
         let task = {
-            let (context, shaders, options) =
-                (self.context.clone(), self.shaders.clone(), self.options.clone());
+            let (context, shaders) = (self.context.clone(), self.shaders.clone());
+            let mut options = self.options.clone();
+            options.raw = raw.unwrap_or(options.raw);
             let (control, phase, source) = (Arc::clone(&control), Arc::clone(&phase), source.to_owned());
             move || open(source, (&context, shaders), &options, &control, &phase)
         };
@@ -131,6 +140,19 @@ impl Loader {
     }
 }
 
+/// Endings of files that hold bare voxels.
+const BARE: [&str; 8] = [".raw", ".raw.gz", ".bin", ".dat", ".vol", ".img", ".bytes", ".u8"];
+
+/// Whether a file could be opened if it were said how it is stored.
+fn not_described(source: &str, err: &LoadError) -> Option<Outcome> {
+    let LoadError::BadInput(explanation) = err else { return None };
+    let name = source.to_lowercase();
+    let path = PathBuf::from(source);
+    let guess = RawLayout::guess(&path).ok()??;
+    let is_bare = BARE.iter().any(|ending| name.ends_with(ending));
+    is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
+}
+
 fn open(
     source: String,
     (context, shaders): (&Context, ShaderLibrary),
@@ -142,6 +164,9 @@ fn open(
         Ok(volume) => Arc::new(volume),
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
         Err(err) => {
+            if let Some(asked) = not_described(&source, &err) {
+                return asked;
+            }
             let short =
                 err.explanation().map_or_else(|| err.to_string(), |why| format!("{}: {}", why.what, why.why));
             return Outcome::Failed { short, details: err.to_string() };

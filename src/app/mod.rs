@@ -29,6 +29,7 @@ mod opening;
 mod orbit;
 mod palette;
 mod panels;
+mod raw_dialog;
 mod refine;
 mod sight;
 mod slices;
@@ -65,6 +66,7 @@ use self::marks::Marks;
 use self::memory::Memory;
 use self::messages::Messages;
 use self::palette::Palette;
+use self::raw_dialog::RawDialog;
 use self::slices::Slices;
 use self::status_file::StatusFile;
 use self::transfer_editor::TransferEditor;
@@ -107,6 +109,7 @@ pub struct App {
     palette: Palette,
     light_slice: LightSlice,
     slices: Slices,
+    raw_dialog: RawDialog,
     contact_sheet: ContactSheet,
     editor: TransferEditor,
     selected_light: usize,
@@ -169,6 +172,7 @@ impl App {
             palette: Palette::default(),
             light_slice: LightSlice::default(),
             slices: Slices::default(),
+            raw_dialog: RawDialog::default(),
             contact_sheet: ContactSheet::default(),
             editor: TransferEditor::default(),
             selected_light: 0,

@@ -6,8 +6,10 @@ use eframe::egui;
 
 use super::history::History;
 use super::loader::Opened;
+use super::raw_dialog::Described;
 use super::volume_facts::VolumeFacts;
 use super::{App, files};
+use crate::data::load::RawFormat;
 use crate::model::{Record, Settings, VolumeRecord};
 
 /// What is opened when nothing is named.
@@ -29,7 +31,7 @@ impl App {
     pub fn open(&mut self, source: &str, ctx: &egui::Context) {
         if files::is_record(Path::new(source)) {
             self.open_record(Path::new(source), ctx);
-        } else if self.start_loading(source, ctx) {
+        } else if self.start_loading(source, None, ctx) {
             self.pending = None;
         }
     }
@@ -40,12 +42,29 @@ impl App {
             self.open(source, ctx);
         }
         if self.loader.progress().is_none() {
-            self.start_loading(DEFAULT_SOURCE, ctx);
+            self.start_loading(DEFAULT_SOURCE, None, ctx);
         }
     }
 
-    fn start_loading(&mut self, source: &str, ctx: &egui::Context) -> bool {
-        let started = self.loader.open(source, ctx);
+    /// Opens a file of bare voxels of which the user has said how it is stored.
+    pub(super) fn open_described(&mut self, described: &Described, ctx: &egui::Context) {
+        let Described { path, layout, header, is_gzip } = described;
+        if let Some(header) = header {
+            let data_file = path.file_name().unwrap_or_default().to_string_lossy();
+            let text = layout.header(&data_file, *is_gzip);
+            match crate::gpu::write_atomically(header, text.as_bytes()) {
+                Ok(()) => return self.open(&header.display().to_string(), ctx),
+                // It is shown all the same.
+                Err(err) => self.messages.error("the header was not written", err.to_string()),
+            }
+        }
+        if self.start_loading(&path.display().to_string(), Some(layout.format()), ctx) {
+            self.pending = None;
+        }
+    }
+
+    fn start_loading(&mut self, source: &str, raw: Option<RawFormat>, ctx: &egui::Context) -> bool {
+        let started = self.loader.open(source, raw, ctx);
         if let Err(err) = &started {
             self.messages.error("cannot open", err.clone());
         }
@@ -67,7 +86,7 @@ impl App {
             None if open.is_none() => DEFAULT_SOURCE.to_owned(),
             _ => return self.apply_record(&record, self.value_range()),
         };
-        if self.start_loading(&source, ctx) {
+        if self.start_loading(&source, None, ctx) {
             self.pending = Some(record);
         }
     }

@@ -11,6 +11,7 @@ mod input;
 mod limits;
 mod nrrd;
 mod raw;
+mod raw_layout;
 mod samples;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ pub(crate) use error::Attempt;
 pub use error::{Explanation, LoadError, LoadErrorKind};
 pub(crate) use limits::Extent;
 pub use raw::RawFormat;
+pub use raw_layout::{RawGuess, RawLayout};
 
 use super::{Volume, synthetic};
 use error::quoted;

@@ -1,0 +1,203 @@
+//! The window that asks how a file of bare voxels is stored.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, DragValue, Ui};
+
+use crate::data::VoxelType;
+use crate::data::load::{Endian, RawGuess, RawLayout};
+
+/// The longest edge that can be typed.
+const LONGEST: usize = 65_536;
+
+/// What the user said.
+#[derive(Debug)]
+pub(super) struct Described {
+    /// The file.
+    pub path: PathBuf,
+    /// How it is stored.
+    pub layout: RawLayout,
+    /// Where to write a header that says so, if that is wanted.
+    pub header: Option<PathBuf>,
+    /// Whether the file is compressed.
+    pub is_gzip: bool,
+}
+
+#[derive(Debug)]
+struct Form {
+    path: PathBuf,
+    why: String,
+    guess: RawGuess,
+    layout: RawLayout,
+    keep: bool,
+}
+
+/// State of the window.
+#[derive(Debug, Default)]
+pub(super) struct RawDialog {
+    form: Option<Form>,
+}
+
+impl RawDialog {
+    /// Asks about a file; `why` says what is not known.
+    pub(super) fn ask(&mut self, path: &Path, why: String, guess: RawGuess) {
+        let keep = !header_of(path).exists();
+        self.form = Some(Form { path: path.to_owned(), why, layout: guess.layout, guess, keep });
+    }
+
+    /// Shows the window, if it is open. Gives what the user said, once.
+    pub(super) fn ui(&mut self, ctx: &egui::Context) -> Option<Described> {
+        let form = self.form.as_mut()?;
+        let (mut open, mut accepted, mut cancelled) = (true, false, false);
+        let window =
+            egui::Window::new("How is it stored?").open(&mut open).collapsible(false).resizable(false);
+        window.default_pos([140.0, 90.0]).show(ctx, |ui| {
+            ui.set_max_width(420.0);
+            let name = form.path.file_name().unwrap_or_default().to_string_lossy();
+            ui.strong(name);
+            ui.weak(&form.why);
+            ui.add_space(4.0);
+            form.fields(ui);
+            ui.add_space(4.0);
+            let fits = form.length(ui);
+            let header = header_of(&form.path);
+            let header_name = header.file_name().unwrap_or_default().to_string_lossy();
+            ui.add_enabled_ui(!header.exists(), |ui| {
+                let text = format!("Remember this as {header_name}, beside the file");
+                let tip = "A header as NRRD has it: that file then opens here and in other programs";
+                ui.checkbox(&mut form.keep, text).on_hover_text(tip);
+            });
+            ui.horizontal(|ui| {
+                accepted = ui.add_enabled(fits, egui::Button::new("Open")).clicked();
+                cancelled = ui.button("Cancel").clicked();
+            });
+        });
+        let described = accepted.then(|| {
+            let header = header_of(&form.path);
+            Described {
+                path: form.path.clone(),
+                layout: form.layout,
+                header: (form.keep && !header.exists()).then_some(header),
+                is_gzip: form.guess.is_gzip,
+            }
+        });
+        if described.is_some() || cancelled || !open {
+            self.form = None;
+        }
+        described
+    }
+}
+
+impl Form {
+    fn fields(&mut self, ui: &mut Ui) {
+        let layout = &mut self.layout;
+        egui::Grid::new("raw layout").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
+            ui.label("Voxels");
+            ui.horizontal(|ui| {
+                for (name, n) in ["x", "y", "z"].into_iter().zip(&mut layout.dims) {
+                    ui.name_inputs(format!("Voxels along {name}"), |ui| {
+                        ui.add(DragValue::new(n).range(1..=LONGEST))
+                    });
+                }
+                ui.weak("x, y, z; x is the fastest");
+            });
+            ui.end_row();
+            ui.label("Number type");
+            let combo = egui::ComboBox::from_id_salt("voxel type").selected_text(layout.voxel_type.name());
+            let shown = combo.show_ui(ui, |ui| {
+                for voxel_type in VoxelType::ALL {
+                    ui.selectable_value(&mut layout.voxel_type, voxel_type, voxel_type.name());
+                }
+            });
+            shown
+                .response
+                .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Number type"));
+            ui.end_row();
+            ui.label("Byte order");
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut layout.endian, Endian::Little, "Little")
+                    .on_hover_text("Lowest byte first: usual");
+                ui.selectable_value(&mut layout.endian, Endian::Big, "Big")
+                    .on_hover_text("Highest byte first");
+            });
+            ui.end_row();
+            ui.label("Spacing");
+            ui.horizontal(|ui| {
+                for (name, mm) in ["x", "y", "z"].into_iter().zip(&mut layout.spacing_mm) {
+                    let field = DragValue::new(mm).range(1e-6..=1e6).speed(0.01).max_decimals(6);
+                    ui.name_inputs(format!("Spacing along {name}"), |ui| ui.add(field));
+                }
+                ui.weak("mm");
+            });
+            ui.end_row();
+            ui.label("Header");
+            ui.horizontal(|ui| {
+                ui.name_inputs("Bytes before the first voxel", |ui| {
+                    ui.add(DragValue::new(&mut layout.offset))
+                });
+                ui.weak("bytes before the first voxel");
+            });
+            ui.end_row();
+        });
+    }
+
+    /// Says whether the file is as long as that, and what helps. Whether it is, or may be.
+    fn length(&mut self, ui: &mut Ui) -> bool {
+        if self.guess.is_gzip {
+            ui.weak("The file is compressed: whether it fits is seen when it is read");
+            return true;
+        }
+        let found = self.guess.file_bytes;
+        let expected = self.layout.file_bytes();
+        match expected {
+            Some(expected) if expected == found => {
+                ui.label(format!("{found} bytes, as the file has"));
+                true
+            }
+            Some(expected) if expected < found => {
+                ui.horizontal(|ui| {
+                    let more = found - expected;
+                    ui.colored_label(ui.visuals().warn_fg_color, format!("The file is {more} bytes longer"));
+                    if ui.button("They are a header").clicked() {
+                        self.layout.offset += more;
+                    }
+                });
+                false
+            }
+            Some(expected) => {
+                let text =
+                    format!("{} bytes are missing: the file has {found} of {expected}", expected - found);
+                ui.colored_label(ui.visuals().error_fg_color, text);
+                false
+            }
+            None => {
+                ui.colored_label(ui.visuals().error_fg_color, "That is more than any file can hold");
+                false
+            }
+        }
+    }
+}
+
+/// The header beside a data file: `scan.raw.gz` has `scan.nhdr`.
+fn header_of(path: &Path) -> PathBuf {
+    let stem = |path: &Path| path.file_stem().map(PathBuf::from).unwrap_or_default();
+    let mut name = stem(path);
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz")) {
+        name = stem(&name);
+    }
+    path.with_file_name(format!("{}.nhdr", name.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_lie_beside_their_data() {
+        for (data, header) in
+            [("/a/scan.raw", "/a/scan.nhdr"), ("scan.raw.gz", "scan.nhdr"), ("b.c/scan", "b.c/scan.nhdr")]
+        {
+            assert_eq!(header_of(Path::new(data)), Path::new(header));
+        }
+    }
+}

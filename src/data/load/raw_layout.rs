@@ -1,0 +1,199 @@
+//! How a file of bare voxels is stored: what can be guessed of it, and the header that says it for good.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use super::input::is_gzip;
+use super::{Endian, RawFormat, nrrd};
+use crate::data::VoxelType;
+
+/// Everything that must be known of a file of bare voxels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RawLayout {
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// The number type.
+    pub voxel_type: VoxelType,
+    /// Distance between voxel centres.
+    pub spacing_mm: [f64; 3],
+    /// The byte order.
+    pub endian: Endian,
+    /// Bytes before the first voxel, after inflating.
+    pub offset: u64,
+}
+
+/// What can be told of a file without knowing how it is stored.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RawGuess {
+    /// The best guess.
+    pub layout: RawLayout,
+    /// Length of the file.
+    pub file_bytes: u64,
+    /// Whether it is compressed, so that its length says nothing.
+    pub is_gzip: bool,
+}
+
+impl RawLayout {
+    /// Bytes of a file that is stored like that and not compressed; `None` beyond 64 bits.
+    pub fn file_bytes(&self) -> Option<u64> {
+        let voxels = self.dims.iter().try_fold(1u64, |product, &n| product.checked_mul(n as u64))?;
+        voxels.checked_mul(self.voxel_type.bytes() as u64)?.checked_add(self.offset)
+    }
+
+    /// As the options of a reader.
+    pub fn format(&self) -> RawFormat {
+        RawFormat {
+            dims: Some(self.dims),
+            voxel_type: Some(self.voxel_type),
+            spacing_mm: Some(self.spacing_mm),
+            endian: Some(self.endian),
+            offset: Some(self.offset),
+        }
+    }
+
+    /// A detached NRRD header for a data file in the same folder: every program that reads NRRD then knows.
+    pub fn header(&self, data_file: &str, is_gzip: bool) -> String {
+        let [x, y, z] = self.dims;
+        let [sx, sy, sz] = self.spacing_mm;
+        let voxel_type = match self.voxel_type {
+            VoxelType::F32 => "float",
+            VoxelType::F64 => "double",
+            other => other.name(),
+        };
+        let endian = match self.endian {
+            Endian::Little => "little",
+            Endian::Big => "big",
+        };
+        let encoding = if is_gzip { "gzip" } else { "raw" };
+        format!(
+            "NRRD0004\ntype: {voxel_type}\ndimension: 3\nsizes: {x} {y} {z}\nspacings: {sx} {sy} {sz}\n\
+             endian: {endian}\nencoding: {encoding}\nbyte skip: {}\ndata file: {data_file}\n",
+            self.offset
+        )
+    }
+
+    /// What the name and the length of a file suggest; `None` for NRRD, which needs no guess.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn guess(path: &Path) -> std::io::Result<Option<RawGuess>> {
+        let file = std::fs::File::open(path)?;
+        let file_bytes = file.metadata()?.len();
+        let mut magic = Vec::new();
+        file.take(8).read_to_end(&mut magic)?;
+        if nrrd::is_nrrd(&magic) {
+            return Ok(None);
+        }
+        let is_gzip = is_gzip(&magic);
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+        let length = (!is_gzip).then_some(file_bytes);
+        let (dims, voxel_type) = guess_from(&name, length);
+        let layout = Self { dims, voxel_type, spacing_mm: [1.0; 3], endian: Endian::Little, offset: 0 };
+        Ok(Some(RawGuess { layout, file_bytes, is_gzip }))
+    }
+}
+
+/// Words for number types in file names.
+const TYPE_WORDS: [(&str, VoxelType); 13] = [
+    ("uint8", VoxelType::U8),
+    ("uchar", VoxelType::U8),
+    ("byte", VoxelType::U8),
+    ("uint16", VoxelType::U16),
+    ("ushort", VoxelType::U16),
+    ("uint32", VoxelType::U32),
+    ("int8", VoxelType::I8),
+    ("int16", VoxelType::I16),
+    ("short", VoxelType::I16),
+    ("int32", VoxelType::I32),
+    ("float64", VoxelType::F64),
+    ("double", VoxelType::F64),
+    ("float", VoxelType::F32),
+];
+
+/// Types by how often they are met.
+const USUAL: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, VoxelType::F64];
+
+/// What is offered when nothing is known.
+const NO_IDEA: [usize; 3] = [256; 3];
+
+fn guess_from(name: &str, length: Option<u64>) -> ([usize; 3], VoxelType) {
+    let said = TYPE_WORDS.iter().find(|(word, _)| name.contains(word)).map(|(_, voxel_type)| *voxel_type);
+    if let Some(dims) = three_numbers(name) {
+        // Below 10¹⁵.
+        let voxels: u64 = dims.iter().map(|&n| n as u64).product();
+        let fitting = |t: &VoxelType| length == Some(voxels.saturating_mul(t.bytes() as u64));
+        let voxel_type = said.or_else(|| USUAL.into_iter().find(fitting)).unwrap_or(VoxelType::U8);
+        return (dims, voxel_type);
+    }
+    // As many voxels along all axes.
+    let cube = |voxel_type: VoxelType| {
+        let voxels = length? / voxel_type.bytes() as u64;
+        let n = (voxels as f64).cbrt().round() as u64;
+        let length_of_cube = n.checked_pow(3)?.checked_mul(voxel_type.bytes() as u64);
+        (n > 0 && length_of_cube == length).then_some(([n as usize; 3], voxel_type))
+    };
+    let types = said.map_or(USUAL.to_vec(), |voxel_type| vec![voxel_type]);
+    types.into_iter().find_map(cube).unwrap_or((NO_IDEA, said.unwrap_or(VoxelType::U8)))
+}
+
+/// Three numbers in a row with an `x` or an underscore between, each at most a hundred thousand.
+fn three_numbers(name: &str) -> Option<[usize; 3]> {
+    let pieces: Vec<Option<usize>> = name
+        .split(['x', '_', '-', '.', ' '])
+        .map(|piece| piece.parse().ok().filter(|n| (1..=100_000).contains(n)))
+        .collect();
+    pieces.windows(3).find_map(|window| Some([window[0]?, window[1]?, window[2]?]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::load::{LoadControl, LoadOptions, load};
+
+    #[test]
+    fn names_and_lengths_are_guessed_from() {
+        for (name, length, expected) in [
+            ("foot_256x255x254.raw", Some(256 * 255 * 254 * 2), ([256, 255, 254], VoxelType::U16)),
+            ("head 64x64x93 int16.bin", None, ([64, 64, 93], VoxelType::I16)),
+            ("sim_10_20_30_float.dat", Some(1), ([10, 20, 30], VoxelType::F32)),
+            ("cube.raw", Some(27), ([3; 3], VoxelType::U8)),
+            ("cube.raw", Some(54), ([3; 3], VoxelType::U16)),
+            ("cube_float.raw", Some(108), ([3; 3], VoxelType::F32)),
+            ("scan_short.raw", Some(1001), (NO_IDEA, VoxelType::I16)),
+            ("empty", Some(0), (NO_IDEA, VoxelType::U8)),
+            ("999999999x2x2.raw", Some(u64::MAX), (NO_IDEA, VoxelType::U8)),
+        ] {
+            assert_eq!(guess_from(name, length), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn headers_say_it_for_good() {
+        let folder = tempfile::tempdir().unwrap();
+        let values: Vec<u8> = (0..3 * 4 * 5 * 2 + 7).map(|at| (at * 13) as u8).collect();
+        let path = folder.path().join("odd name.bin");
+        std::fs::write(&path, &values).unwrap();
+        let guess = RawLayout::guess(&path).unwrap().unwrap();
+        assert_eq!((guess.file_bytes, guess.is_gzip), (values.len() as u64, false));
+        let layout = RawLayout {
+            dims: [3, 4, 5],
+            voxel_type: VoxelType::U16,
+            spacing_mm: [0.5, 0.5, 1.25],
+            endian: Endian::Big,
+            offset: 7,
+        };
+        assert_eq!(layout.file_bytes(), Some(values.len() as u64));
+        let header = folder.path().join("odd name.nhdr");
+        std::fs::write(&header, layout.header("odd name.bin", false)).unwrap();
+        let control = LoadControl::new();
+        let by_header = load(&header, &LoadOptions::default(), &control).unwrap();
+        let options = LoadOptions { raw: layout.format(), ..LoadOptions::default() };
+        let by_options = load(&path, &options, &control).unwrap();
+        assert_eq!(by_header.samples(), by_options.samples());
+        assert_eq!(by_header.spacing_mm(), by_options.spacing_mm());
+        assert_eq!(RawLayout::guess(&header).unwrap(), None, "it needs no guess");
+        assert!(RawLayout::guess(&folder.path().join("none")).is_err());
+        let endless = RawLayout { dims: [usize::MAX; 3], ..layout };
+        assert_eq!(endless.file_bytes(), None);
+    }
+}
