@@ -351,6 +351,7 @@ impl eframe::App for App {
         self.longest_ui_ms = self.longest_ui_ms.max(ui_ms);
         let state = status_file::State {
             longest_ui_ms: self.longest_ui_ms,
+            response: self.viewport.response(),
             loading: self.loader.progress().is_some(),
             idle: self.is_idle(),
             canvas: self.canvas.filter(|_| self.volume.is_some()),

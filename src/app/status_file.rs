@@ -2,7 +2,9 @@
 //!
 //! With `CHIAROSCURO_STATUS=PATH` in the environment this small JSON file is rewritten whenever it
 //! changes: `{"state": "idle" | "refining" | "loading", "viewport": {"x", "y", "width", "height"},
-//! "light_handles": [{"x", "y"}, …], "light_rebuilds": n, "longest_ui_ms": n, "errors": […]}`.
+//! "light_handles": [{"x", "y"}, …], "light_rebuilds": n, "longest_ui_ms": n, "response_ms":
+//! {"count": n, "mean": n, "worst": n}, "errors": […]}`. A response is from the frame that reads an input to the
+//! one that shows its effect, preview or not.
 //! Lengths are physical pixels from the window's inner top left. `idle` means that the full-quality picture of the
 //! current settings is on screen.
 
@@ -12,6 +14,7 @@ use eframe::egui::Pos2;
 use serde_json::{Value, json};
 
 use super::canvas::Canvas;
+use super::viewport::Response;
 
 /// Names the file.
 const VARIABLE: &str = "CHIAROSCURO_STATUS";
@@ -31,6 +34,8 @@ pub(super) struct State<'a> {
     pub light_rebuilds: u64,
     /// The longest that one frame of the window kept its thread, in milliseconds.
     pub longest_ui_ms: f64,
+    /// How long pictures took to show what was done.
+    pub response: Response,
     /// Errors so far.
     pub errors: &'a [String],
     /// Physical pixels per point.
@@ -59,6 +64,11 @@ impl State<'_> {
             "light_handles": handles,
             "light_rebuilds": self.light_rebuilds,
             "longest_ui_ms": self.longest_ui_ms.round(),
+            "response_ms": {
+                "count": self.response.count,
+                "mean": self.response.mean_ms.round(),
+                "worst": self.response.worst_ms.round(),
+            },
             "errors": self.errors,
         })
     }

@@ -9,14 +9,17 @@ mod easel;
 mod exposure;
 mod facts;
 mod painter;
+mod response;
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 
 pub(super) use self::facts::{Doing, Facts};
 use self::painter::{Frame, Painter};
+pub(super) use self::response::Response;
+use self::response::Waiting;
 use super::refine::Look;
 use crate::data::{Bricks, Volume};
 pub(super) use crate::gpu::LightFigures;
@@ -83,6 +86,7 @@ pub(super) struct Viewport {
     painter: Painter,
     /// What the painter was last told.
     wanted: Option<Wanted>,
+    waiting: Waiting<Wanted>,
     generation: u64,
     volume: Option<(Arc<Volume>, Arc<Bricks>)>,
     /// The picture, or of a comparison left, right and their difference.
@@ -116,6 +120,7 @@ impl Viewport {
             context,
             painter,
             wanted: None,
+            waiting: Waiting::default(),
             generation: 0,
             volume: None,
             textures: [None, None, None],
@@ -134,6 +139,7 @@ impl Viewport {
         self.volume = Some((Arc::clone(&volume), Arc::clone(&bricks)));
         self.painter.set_scene(Scene { renderer, volume, bricks });
         (self.wanted, self.shown, self.failed) = (None, None, None);
+        self.waiting.clear();
     }
 
     /// The device of the pictures.
@@ -160,6 +166,11 @@ impl Viewport {
             fading,
             other: other.map(|((right, difference), distance)| Other { right, difference, distance }),
         }
+    }
+
+    /// How long the user has waited for pictures of this volume.
+    pub(super) fn response(&self) -> Response {
+        self.waiting.answers()
     }
 
     /// Whether the device is gone and nothing will be rendered any more.
@@ -202,6 +213,7 @@ impl Viewport {
         if self.wanted.as_ref() != Some(&wanted) {
             patience = if self.context.is_software() { SOFTWARE_PATIENCE } else { PATIENCE };
             self.painter.set_wanted(wanted.clone());
+            self.waiting.ask(wanted.clone(), Instant::now());
             self.wanted = Some(wanted);
         }
         if let Some(frame) =
@@ -239,6 +251,7 @@ impl Viewport {
             }
             None => self.differs = None,
         }
+        self.waiting.answer(&wanted, Instant::now());
         self.shown = Some((wanted, look));
     }
 
