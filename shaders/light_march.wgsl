@@ -85,7 +85,8 @@ fn main(
             if (slab >= last) {
                 break;
             }
-            let share = share_within(span, depth_of(march.frame, f32(slab)), march.frame.slab);
+            let place = ray.origin + ray.direction * depth_of(march.frame, f32(slab));
+            let share = share_that_shades(march.shading_cut, place);
             let extinction = slab_material(march.frame, ray, f32(slab)).a * share;
             let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
             deposits = with_deposit(deposits, u32(slab), deposited(t, tau));

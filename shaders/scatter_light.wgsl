@@ -28,8 +28,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         // Sums are complete only where something attenuates light at all.
         if (i32(textureLoad(distances, brick, 0).g) <= DILATION) {
             let extinction = select(classify(sum).a, sum * scatter.extinction_unit, SPLAT == SPLAT_EXTINCTION);
-            let depth = depth_of(march.frame, f32(scatter.k));
-            let share = share_within(span_within(march.shading_cut, ray), depth, march.frame.slab);
+            let place = ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k));
+            let share = share_that_shades(march.shading_cut, place);
             tau = share * extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
         }
     }

@@ -44,6 +44,20 @@ fn share_within(span: vec2f, depth: f32, slab: f32) -> f32 {
     return max(1.0 - before - behind, 0.0);
 }
 
+// How far below a face, in voxels, material begins to attenuate light, and where it does so fully: a light
+// volume cannot hold a step within a voxel, which would show as a pattern on the face.
+const SKIN = 2.0;
+
+// The share of the material at a point that attenuates light: softly from nothing at the faces to all.
+fn share_that_shades(cut: Cut, p: vec3f) -> f32 {
+    if (!CUT) {
+        return 1.0;
+    }
+    let inside = smoothstep(vec3f(0.0), vec3f(SKIN), p - cut.low) * smoothstep(vec3f(0.0), vec3f(SKIN), cut.high - p);
+    let behind = smoothstep(0.0, SKIN, cut.plane.w - dot(cut.plane.xyz, p));
+    return inside.x * inside.y * inside.z * behind;
+}
+
 // Those of some slabs, first and last, of which any part can lie within.
 fn slabs_within(frame: SheetFrame, span: vec2f, slabs: vec2i) -> vec2i {
     if (!CUT) {

@@ -47,7 +47,7 @@ fn shadow_ray(
         if (k > inside.y) {
             break;
         }
-        let share = share_within(span, depth_of(frame, f32(k)), ray_step);
+        let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k)));
         depth += light_extinction(slab_density(frame, ray, f32(k))) * share * ray_step * scale;
         if (depth > dark) {
             break;

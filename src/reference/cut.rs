@@ -7,6 +7,9 @@ use super::kernel::cubic_b_spline;
 use super::{Fault, Reference};
 use crate::model::{ClipPlane, CropBox, CutEffect};
 
+/// Depth below a face, in voxels, from which material attenuates light fully.
+const SKIN: f64 = 2.0;
+
 /// The half-spaces whose intersection remains: all p with normal · p ≤ offset.
 pub(super) struct Remaining {
     bounds: Vec<(DVec3, f64)>,
@@ -64,6 +67,18 @@ impl Reference<'_> {
             -normal * cubic_b_spline((offset - normal.dot(place)) / width) / width
         });
         faces.sum()
+    }
+
+    /// The share of the material at a point of index space that attenuates light: 3t² − 2t³ of its depth below
+    /// each face, up to [`SKIN`] voxels.
+    pub(super) fn share_that_shades(&self, remaining: &Remaining, index: DVec3) -> f64 {
+        let place = self.scene.scene_from_index.transform_point3(index);
+        let shares = remaining.bounds.iter().map(|&(normal, offset)| {
+            let per_voxel = (self.scene.scene_from_index.matrix3.transpose() * normal).length();
+            let t = ((offset - normal.dot(place)) / (SKIN * per_voxel)).clamp(0.0, 1.0);
+            t * t * (3.0 - 2.0 * t)
+        });
+        shares.product()
     }
 
     /// The share of a straight stretch, between two points of index space, that remains.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::Reference;
 use super::back_project::Attenuation;
 use super::shade::Shader;
-use super::sheet::Stack;
+use super::sheet::{Cutting, Stack};
 use crate::plan::{SheetFrame, eye_frame};
 
 /// So many slabs are held in memory at once.
@@ -71,7 +71,7 @@ impl Reference<'_> {
     fn eye_stack<'r>(&'r self, frame: &'r SheetFrame) -> Stack<'r> {
         let sampling = &self.settings.sampling;
         let table = self.settings.baked_eye(self.range, &self.scene);
-        Stack::new(self, frame, (sampling.kernel, sampling.quadrature), table, self.seen())
+        Stack::new(self, frame, (sampling.kernel, sampling.quadrature), table, Cutting::Seen(self.seen()))
     }
 }
 

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::sheet::Stack;
+use super::sheet::{Cutting, Stack};
 use super::{Fault, Reference};
 use crate::model::{Deposit, Light};
 use crate::plan::{LightView, light_views};
@@ -37,8 +37,13 @@ impl Reference<'_> {
     fn march(&self, light: &Light, view: LightView) -> ViewSheets {
         let shadows = &self.settings.shadows;
         let table = self.settings.baked_lighting(self.range, &self.scene);
-        let stack =
-            Stack::new(self, &view.frame, (shadows.kernel, shadows.quadrature), table, self.shading());
+        let stack = Stack::new(
+            self,
+            &view.frame,
+            (shadows.kernel, shadows.quadrature),
+            table,
+            Cutting::Shading(self.shading()),
+        );
         // Materials do not depend on light, so all slabs at once; then light, slab by slab.
         let materials: Vec<_> =
             (0..view.frame.slab_count).into_par_iter().map(|k| stack.materials(k)).collect();

@@ -74,8 +74,7 @@ impl<'r> ShadowRays<'r> {
                     gather::density(reference, &self.profile, at, 0.0)
                 };
                 let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
-                let [front, back] = [-0.5, 0.5].map(|side| at + forward * (side * step));
-                let share = reference.share_of(&self.remaining, front, back);
+                let share = reference.share_that_shades(&self.remaining, at);
                 share * self.table.sample(density)[3] * step * self.light.density_scale
             })
             .sum();

@@ -19,7 +19,15 @@ pub(super) struct Stack<'r> {
     profile: Profile,
     quadrature: Quadrature,
     table: BakedTransfer,
-    remaining: Remaining,
+    remaining: Cutting,
+}
+
+/// How what is cut away ends: at once for the eye, softly for light.
+pub(super) enum Cutting {
+    /// What the eye sees.
+    Seen(Remaining),
+    /// What attenuates light.
+    Shading(Remaining),
 }
 
 /// What one slab does to one ray.
@@ -39,7 +47,7 @@ impl<'r> Stack<'r> {
         frame: &'r SheetFrame,
         (kernel, quadrature): (Kernel, Quadrature),
         table: BakedTransfer,
-        remaining: Remaining,
+        remaining: Cutting,
     ) -> Self {
         Self { reference, frame, profile: reference.profile(kernel), quadrature, table, remaining }
     }
@@ -128,8 +136,13 @@ impl<'r> Stack<'r> {
         let [r, g, b, extinction] = material;
         let lengthening =
             if self.reference.options.fault == Fault::NoObliquity { 1.0 } else { self.frame.obliquity(i, j) };
-        let [front, back] = [k, k + 1.0].map(|k| self.frame.point(i, j, self.frame.depth_of(k - 0.5)));
-        let share = self.reference.share_of(&self.remaining, front, back);
+        let share = match &self.remaining {
+            Cutting::Seen(remaining) => {
+                let end = |k| self.frame.point(i, j, self.frame.depth_of(k));
+                self.reference.share_of(remaining, end(k - 0.5), end(k + 0.5))
+            }
+            Cutting::Shading(remaining) => self.reference.share_that_shades(remaining, point),
+        };
         let optical_depth = share * extinction * self.frame.slab * lengthening;
         (optical_depth > 0.0).then_some(Sample { point, rgb: [r, g, b], optical_depth })
     }
