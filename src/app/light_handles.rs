@@ -5,9 +5,9 @@
 //! Handles are painted by the window over the picture and are therefore never in an export.
 
 mod geometry;
+mod guides;
 
-use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Vec2, WidgetInfo};
-use glam::DVec3;
+use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke, Vec2, WidgetInfo};
 
 use self::geometry::View;
 use super::orbit::wheel_notches;
@@ -77,13 +77,8 @@ impl LightHandles {
             let handle = seen(settings).unwrap_or(handle);
             self.positions.push(handle.position);
             if active {
-                if settings.lights[light].kind == LightKind::Parallel {
-                    guides(&painter, &view, settings.lights[light].in_world(&settings.camera).direction());
-                }
-                if let Some(middle) = view.point(DVec3::ZERO) {
-                    let stroke = Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.7));
-                    painter.extend(Shape::dashed_line(&[handle.position, middle], stroke, 4.0, 4.0));
-                }
+                let lamp = settings.lights[light].in_world(&settings.camera);
+                guides::paint(&painter, &view, &lamp, settings.ground.height);
             }
             let color = theme::color(settings.lights[light].color);
             let radius = theme::HANDLE_RADIUS + if active { 1.5 } else { 0.0 };
@@ -141,13 +136,6 @@ impl LightHandles {
                 settings.lights[light].set_world_position(moved.position.into(), &settings.camera);
             }
         }
-    }
-}
-
-/// The outline of the sphere and the meridian through the light.
-fn guides(painter: &egui::Painter, view: &View, direction: DVec3) {
-    for (circle, strength) in [(view.silhouette(), 0.5), (view.meridian(direction), 0.35)] {
-        painter.add(Shape::line(circle, Stroke::new(1.0, theme::GUIDE.gamma_multiply(strength))));
     }
 }
 

@@ -128,6 +128,11 @@ impl View {
         };
     }
 
+    /// Of the sphere on which handles of parallel lights lie, in scene units.
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// The circle of the sphere that faces the eye.
     pub(super) fn silhouette(&self) -> Vec<Pos2> {
         let view = self.sight.camera.scene_from_view();
