@@ -229,7 +229,7 @@ impl App {
                 }
             }
             Purpose::LoadSettings => self.load_settings(path),
-            Purpose::ImportTransfer => match files::import_transfer(path) {
+            Purpose::ImportTransfer => match files::import_transfer(path, self.value_range()) {
                 Ok(function) => self.settings.transfer = function,
                 Err(err) => self.messages.error("the transfer function was not imported", err),
             },

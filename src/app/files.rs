@@ -7,7 +7,7 @@ use eframe::egui;
 
 use super::work::Work;
 use crate::data::read_small;
-use crate::model::{Record, Settings, TransferFunction, VolumeRecord, from_paraview, to_paraview};
+use crate::model::{IMPORTED, Record, Settings, TransferFunction, VolumeRecord, import, to_paraview};
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +48,8 @@ impl Purpose {
         match self {
             Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
             Self::LoadSettings | Self::CompareSettings => "a .json file, or a .png picture that was exported",
-            Self::ImportTransfer | Self::ExportTransfer => "a .json file, as ParaView's colour maps",
+            Self::ImportTransfer => "ParaView .json, Slicer .vp, MRIcroGL .clut, ImageJ .lut",
+            Self::ExportTransfer => "a .json file, as ParaView's colour maps",
             Self::SaveSettings => "a .json file",
             Self::ExportPicture => "a .png file",
             Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
@@ -97,7 +98,9 @@ impl Files {
             Purpose::LoadSettings | Purpose::CompareSettings => {
                 Box::pin(dialog.add_filter("Settings and pictures", &["json", "png"]).pick_file())
             }
-            Purpose::ImportTransfer => Box::pin(dialog.add_filter("ParaView", &["json"]).pick_file()),
+            Purpose::ImportTransfer => {
+                Box::pin(dialog.add_filter("Transfer functions", &IMPORTED).pick_file())
+            }
             Purpose::ExportTransfer => {
                 Box::pin(dialog.add_filter("ParaView", &["json"]).set_file_name("colors.json").save_file())
             }
@@ -221,11 +224,11 @@ pub(super) fn load_record(path: &Path) -> Result<Record, String> {
 }
 
 /// Reads a transfer function of another program.
-pub(super) fn import_transfer(path: &Path) -> Result<TransferFunction, String> {
+pub(super) fn import_transfer(path: &Path, range: (f64, f64)) -> Result<TransferFunction, String> {
     let shown = path.display();
-    let text =
-        read_text(path).map_err(|err| format!("could not read the transfer function: {err} ({shown})"))?;
-    from_paraview(&text).map_err(|err| format!("could not use the transfer function: {err} ({shown})"))
+    let bytes =
+        read_small(path).map_err(|err| format!("could not read the transfer function: {err} ({shown})"))?;
+    import(path, &bytes, range).map_err(|err| format!("could not use the transfer function: {err} ({shown})"))
 }
 
 /// Writes a transfer function for another program.
@@ -258,7 +261,7 @@ mod tests {
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(load_record(&path).unwrap_err().contains("no text"));
         assert!(load_record(folder.path()).unwrap_err().contains("regular"));
-        assert!(import_transfer(&folder.path().join("none.json")).is_err());
+        assert!(import_transfer(&folder.path().join("none.json"), (0.0, 1.0)).is_err());
     }
 
     #[test]

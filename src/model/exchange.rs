@@ -13,8 +13,10 @@ pub enum ExchangeError {
     /// Not JSON.
     #[error("not valid JSON: {0}")]
     Syntax(#[from] serde_json::Error),
-    /// JSON, but something else.
-    #[error("{0}; a colour map that was exported from ParaView helps")]
+    /// Something else than it should be.
+    #[error(
+        "{0}; a file that ParaView (.json), Slicer (.vp), MRIcroGL (.clut) or ImageJ (.lut) has written helps"
+    )]
     Form(String),
 }
 
@@ -45,6 +47,13 @@ pub fn from_paraview(text: &str) -> Result<TransferFunction, ExchangeError> {
         // A map of colours alone: a ramp.
         None => vec![(colors[0].0, 0.0), (colors[colors.len() - 1].0, 1.0)],
     };
+    Ok(merged(colors, opacities))
+}
+
+/// A transfer function from colours and opacities at different values; neither list is empty.
+pub(super) fn merged(mut colors: Vec<(f64, [f32; 3])>, mut opacities: Vec<(f64, f64)>) -> TransferFunction {
+    colors.sort_by(|a, b| a.0.total_cmp(&b.0));
+    opacities.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut values: Vec<f64> =
         colors.iter().map(|at| at.0).chain(opacities.iter().map(|at: &(f64, f64)| at.0)).collect();
     values.sort_by(f64::total_cmp);
@@ -61,7 +70,7 @@ pub fn from_paraview(text: &str) -> Result<TransferFunction, ExchangeError> {
         .collect();
     let mut function = TransferFunction { points, ..TransferFunction::default() };
     function.sort();
-    Ok(function)
+    function
 }
 
 /// A transfer function as ParaView reads it.
@@ -82,7 +91,7 @@ pub fn to_paraview(function: &TransferFunction, name: &str) -> String {
     format!("{map:#}\n")
 }
 
-fn form(what: &str) -> ExchangeError {
+pub(super) fn form(what: &str) -> ExchangeError {
     ExchangeError::Form(what.to_owned())
 }
 
