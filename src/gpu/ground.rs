@@ -1,13 +1,13 @@
 //! The floor pass: the light on the ground under the volume.
 
 use super::eye::{EyePass, pack_light};
-use super::kernel::{cut_constant, kernel_constants, quadrature_constant};
+use super::light_raycast;
 use super::pass;
 use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, entry};
 use super::{GpuError, RenderOptions};
-use crate::model::{Deposit, Ground, Light, MAX_LIGHTS, Settings, linear_from_srgb};
+use crate::model::{Ground, Light, MAX_LIGHTS, Settings, linear_from_srgb};
 use crate::plan::ray_reach;
 
 /// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
@@ -36,7 +36,10 @@ pub(super) fn draw(
     lights.truncate(MAX_LIGHTS);
     lights.sort_by_key(|light| !(attenuates && light.needs_volume()));
     let shadowed = lights.iter().filter(|light| attenuates && light.needs_volume()).count();
-    let pipeline = shaders.pipeline("ground.wgsl", &constants(settings, (lights.len(), shadowed)))?;
+    // Rays to lights, as from the voxels of a light volume.
+    let mut constants = light_raycast::constants(settings).to_vec();
+    constants.extend([("LIGHTS", lights.len() as f64), ("SHADOWED", shadowed as f64)]);
+    let pipeline = shaders.pipeline("ground.wgsl", &constants)?;
     let tiles = pass::tiles([frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
     let uniform = uniforms::Ground {
@@ -63,22 +66,6 @@ pub(super) fn draw(
     let of_volume = gpu.bind_volume(&pipeline, dilation);
     pass::dispatch(encoder, "Ground::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
-}
-
-/// The variant of the shader for a kernel and so many lights, of which so many are attenuated.
-fn constants(settings: &Settings, (lights, shadowed): (usize, usize)) -> [(&'static str, f64); 7] {
-    let shadows = &settings.shadows;
-    let [kernel, sigma] = kernel_constants(shadows.kernel);
-    let front = f64::from(u8::from(shadows.deposit == Deposit::Front));
-    [
-        kernel,
-        sigma,
-        quadrature_constant(shadows.quadrature),
-        ("DEPOSIT_FRONT", front),
-        cut_constant(settings.cuts.shading()),
-        ("LIGHTS", lights as f64),
-        ("SHADOWED", shadowed as f64),
-    ]
 }
 
 /// What the shader knows of the eye, the floor and the lights; no rows yet.
