@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::thread::JoinHandle;
 
 use eframe::egui;
 
 use super::work::Work;
 use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
 use crate::data::{Bricks, Histogram, Volume};
-use crate::gpu::{Context, Renderer, ShaderLibrary, first_look};
+use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look};
 use crate::model::Settings;
 
 /// Bins of the histogram that the transfer function editor shows.
@@ -61,6 +62,45 @@ pub(super) struct Loader {
     shaders: ShaderLibrary,
     options: LoadOptions,
     running: Option<Running>,
+    warm_up: WarmUp,
+}
+
+/// Threads that make pipelines ahead of time. Dropping this waits for them: a driver must not be unloaded while a
+/// thread is in it.
+#[derive(Debug, Default)]
+struct WarmUp {
+    stop: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl WarmUp {
+    fn start(
+        &mut self,
+        shaders: &ShaderLibrary,
+        what: fn(&ShaderLibrary, &AtomicBool) -> Result<(), GpuError>,
+    ) -> std::io::Result<()> {
+        let (shaders, stop) = (shaders.clone(), Arc::clone(&self.stop));
+        let thread = std::thread::Builder::new().name("warm-up".to_owned());
+        self.threads.push(thread.spawn(move || {
+            if let Err(err) = what(&shaders, &stop) {
+                log::error!("pipelines could not be made ahead of time: {err}");
+            }
+            if let Err(err) = shaders.save_cache() {
+                log::warn!("pipelines could not be kept for the next start: {err}");
+            }
+        })?);
+        Ok(())
+    }
+}
+
+impl Drop for WarmUp {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        for thread in self.threads.drain(..) {
+            // That it panicked is logged where it did.
+            drop(thread.join());
+        }
+    }
 }
 
 /// What the user is told, by phase.
@@ -77,16 +117,18 @@ impl Loader {
             || ShaderLibrary::new(&context),
             |folder| ShaderLibrary::with_cache(&context, &folder.join("pipelines")),
         );
-        let ahead = shaders.clone();
-        std::thread::Builder::new().name("warm-up".to_owned()).spawn(move || {
-            if let Err(err) = ahead.warm_up() {
-                log::error!("pipelines could not be made ahead of time: {err}");
-            }
-            if let Err(err) = ahead.save_cache() {
-                log::warn!("pipelines could not be kept for the next start: {err}");
-            }
-        })?;
-        Ok(Self { context, shaders, options, running: None })
+        let mut warm_up = WarmUp::default();
+        warm_up.start(&shaders, ShaderLibrary::warm_up)?;
+        Ok(Self { context, shaders, options, running: None, warm_up })
+    }
+
+    /// Makes pipelines that may be wanted later, once; to be called when nothing else is to be done.
+    pub(super) fn prepare(&mut self) {
+        if self.warm_up.threads.len() < 2
+            && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_rest)
+        {
+            log::warn!("pipelines will be made when they are wanted: {err}");
+        }
     }
 
     /// Starts to open a file or a built-in volume.

@@ -341,6 +341,9 @@ impl eframe::App for App {
         if self.memory.is_due() {
             self.keep_look();
         }
+        if self.is_idle() {
+            self.loader.prepare();
+        }
         for command in commands {
             self.execute(command, frame, &ctx);
         }

@@ -36,10 +36,7 @@ pub(super) fn draw(
     lights.truncate(MAX_LIGHTS);
     lights.sort_by_key(|light| !(attenuates && light.needs_volume()));
     let shadowed = lights.iter().filter(|light| attenuates && light.needs_volume()).count();
-    // Rays to lights, as from the voxels of a light volume.
-    let mut constants = light_raycast::constants(settings).to_vec();
-    constants.extend([("LIGHTS", lights.len() as f64), ("SHADOWED", shadowed as f64)]);
-    let pipeline = shaders.pipeline("ground.wgsl", &constants)?;
+    let pipeline = shaders.pipeline("ground.wgsl", &constants(settings, (lights.len(), shadowed)))?;
     let tiles = pass::tiles([frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
     let uniform = uniforms::Ground {
@@ -66,6 +63,14 @@ pub(super) fn draw(
     let of_volume = gpu.bind_volume(&pipeline, dilation);
     pass::dispatch(encoder, "Ground::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
+}
+
+/// The variant of the shader for so many lights, of which so many are attenuated; rays to them are those from the
+/// voxels of a light volume.
+pub(super) fn constants(settings: &Settings, (lights, shadowed): (usize, usize)) -> Vec<(&'static str, f64)> {
+    let mut constants = light_raycast::constants(settings).to_vec();
+    constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
+    constants
 }
 
 /// What the shader knows of the eye, the floor and the lights; no rows yet.

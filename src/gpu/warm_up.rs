@@ -1,35 +1,63 @@
 //! Makes the pipelines that the first pictures and previews will need, ahead of time: each can take
 //! a driver tens of milliseconds, which a window must not wait for.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::kernel::cut_constant;
-use super::{GpuError, ShaderLibrary, eye, light_backproject, light_march};
-use crate::model::{Kernel, Remains, Sampling, Settings, Shadows};
+use super::{GpuError, ShaderLibrary, eye, ground, light_backproject, light_march};
+use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows};
 
 /// Lights of a first look, and how many of them cast shadows.
 const FIRST_LIGHTS: (usize, usize) = (2, 1);
 
 impl ShaderLibrary {
-    /// Makes the usual variants of every shader. To be called on a thread of its own.
+    /// Makes the usual variants of every shader, until `stop`. To be called on a thread of its own.
     ///
     /// # Errors
     /// When the driver refuses a shader.
-    pub fn warm_up(&self) -> Result<(), GpuError> {
+    pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
         for shader in ["prefilter.wgsl", "downsample.wgsl", "gradients.wgsl", "display.wgsl"] {
-            self.pipeline(shader, &[])?;
+            self.warm(shader, &[], stop)?;
         }
-        let (lights, shadowed) = FIRST_LIGHTS;
+        self.warm_up_passes(&Cuts::default(), stop)
+    }
+
+    fn warm(&self, shader: &str, constants: &[(&str, f64)], stop: &AtomicBool) -> Result<(), GpuError> {
+        if !stop.load(Ordering::Relaxed) {
+            self.pipeline(shader, constants)?;
+        }
+        Ok(())
+    }
+
+    /// Makes variants that the user may ask for later: the floor, and what remains after cuts. To be called on a
+    /// thread of its own when nothing else is waited for.
+    ///
+    /// # Errors
+    /// As [`Self::warm_up`].
+    pub fn warm_up_rest(&self, stop: &AtomicBool) -> Result<(), GpuError> {
+        for kernel in [Kernel::Prefiltered, Kernel::BSpline] {
+            let shadows = Shadows { kernel, ..Shadows::default() };
+            let settings = Settings { shadows, ..Settings::default() };
+            self.warm("ground.wgsl", &ground::constants(&settings, FIRST_LIGHTS), stop)?;
+        }
+        let plane = ClipPlane { on: true, ..ClipPlane::default() };
+        self.warm_up_passes(&Cuts { plane, ..Cuts::default() }, stop)
+    }
+
+    /// The passes of a splatted picture, of whole volumes or of what remains of them.
+    fn warm_up_passes(&self, cuts: &Cuts, stop: &AtomicBool) -> Result<(), GpuError> {
         for flag in [false, true] {
             for kernel in [Kernel::Prefiltered, Kernel::BSpline] {
                 let sampling = Sampling { kernel, ..Sampling::default() };
-                let mut constants = eye::constants(&sampling, &Shadows::default(), flag, (lights, shadowed));
+                let mut constants = eye::constants(&sampling, &Shadows::default(), flag, FIRST_LIGHTS);
+                constants.push(cut_constant(cuts.seen()));
                 // Of stretched kernels only in previews.
-                constants.push(cut_constant(Remains::default()));
                 constants.push(eye::gradient_constant(!flag || kernel == Kernel::Prefiltered));
-                self.pipeline("eye.wgsl", &constants)?;
+                self.warm("eye.wgsl", &constants, stop)?;
                 let shadows = Shadows { kernel, ..Shadows::default() };
-                self.pipeline("light_backproject.wgsl", &light_backproject::constants(&shadows, flag))?;
-                let settings = Settings { shadows, ..Settings::default() };
-                self.pipeline("light_march.wgsl", &light_march::constants(&settings, flag))?;
+                self.warm("light_backproject.wgsl", &light_backproject::constants(&shadows, flag), stop)?;
+                let settings = Settings { shadows, cuts: cuts.clone(), ..Settings::default() };
+                self.warm("light_march.wgsl", &light_march::constants(&settings, flag), stop)?;
             }
         }
         Ok(())
