@@ -123,9 +123,7 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
     let sight = Sight { camera: settings.camera.clone(), picture: canvas.rect };
     slices.mark(&ui.painter_at(canvas.rect), &sight, &scene);
-    if !handles.hidden {
-        cut_handles.show(ui, canvas.rect, settings, &scene);
-    }
+    cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
     if let Some(view) = marks.show(ui, canvas.rect, &settings.camera, (&scene, is_anatomical)) {
         commands.push(Command::LookFrom(view));

@@ -42,8 +42,18 @@ pub(super) struct CutHandles {
 
 impl CutHandles {
     /// Shows the handles of what is on, lets the user drag them, and changes the cuts.
-    pub(super) fn show(&mut self, ui: &Ui, picture: Rect, settings: &mut Settings, scene: &SceneSpace) {
+    pub(super) fn show(
+        &mut self,
+        ui: &Ui,
+        picture: Rect,
+        settings: &mut Settings,
+        scene: &SceneSpace,
+        hidden: bool,
+    ) {
         self.takes_wheel = false;
+        if hidden {
+            return;
+        }
         let sight = Sight { camera: settings.camera.clone(), picture };
         let visible = ui.rect_contains_pointer(picture) || self.drag.is_some();
         let opacity = ui.ctx().animate_bool_with_time(Id::unique("cut handles"), visible, theme::FADE_S);

@@ -20,7 +20,7 @@ impl App {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
             Command::Open(source) => self.open(&source, ctx),
-            Command::GoOn => match self.memory.before() {
+            Command::GoOn => match self.memory.before().map(Path::to_owned) {
                 Some(path) => self.open_record(&path, ctx),
                 None => self.messages.note("There is nothing to go on with"),
             },
@@ -135,7 +135,6 @@ impl App {
                 self.messages.note("Opening was cancelled");
             }
             Some(Outcome::NotDescribed { path, why, guess }) => {
-                self.pending = None;
                 self.raw_dialog.ask(&path, why, guess);
             }
             Some(Outcome::Failed { short, details }) => {

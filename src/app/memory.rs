@@ -50,6 +50,8 @@ pub(super) struct Memory {
     folder: Option<PathBuf>,
     writer: Option<Writer>,
     recent: Vec<String>,
+    /// The look of the run before.
+    before: Option<PathBuf>,
     /// There was no run before.
     is_first: bool,
     /// The look that was written last, and when.
@@ -64,6 +66,7 @@ impl Memory {
             memory.is_first = !["now.json", "before.json"].iter().any(|name| folder.join(name).exists());
             std::fs::create_dir_all(folder).ok();
             std::fs::rename(folder.join("now.json"), folder.join("before.json")).ok();
+            memory.before = Some(folder.join("before.json")).filter(|path| path.exists());
             let list = read_small(&folder.join("recent.json")).unwrap_or_default();
             memory.recent = serde_json::from_slice(&list).unwrap_or_default();
             memory.recent.truncate(MOST_RECENT);
@@ -99,8 +102,8 @@ impl Memory {
     }
 
     /// The look of the run before, if there is one.
-    pub(super) fn before(&self) -> Option<PathBuf> {
-        self.folder.as_ref().map(|folder| folder.join("before.json")).filter(|path| path.exists())
+    pub(super) fn before(&self) -> Option<&Path> {
+        self.before.as_deref()
     }
 
     /// Whether it is time to keep the look.

@@ -341,9 +341,6 @@ impl eframe::App for App {
         if self.memory.is_due() {
             self.keep_look();
         }
-        if self.is_idle() {
-            self.loader.prepare();
-        }
         for command in commands {
             self.execute(command, frame, &ctx);
         }
@@ -352,11 +349,15 @@ impl eframe::App for App {
             log::debug!("the window's thread was busy for {ui_ms:.0} ms");
         }
         self.longest_ui_ms = self.longest_ui_ms.max(ui_ms);
+        let idle = self.is_idle();
+        if idle {
+            self.loader.prepare();
+        }
         let state = status_file::State {
             longest_ui_ms: self.longest_ui_ms,
             response: self.viewport.response(),
             loading: self.loader.progress().is_some(),
-            idle: self.is_idle(),
+            idle,
             canvas: self.canvas.filter(|_| self.volume.is_some()),
             handles: self.handles.positions(),
             light_rebuilds: self.light_rebuilds(),

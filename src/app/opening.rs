@@ -48,19 +48,21 @@ impl App {
 
     /// Opens a file of bare voxels of which the user has said how it is stored.
     pub(super) fn open_described(&mut self, described: &Described, ctx: &egui::Context) {
+        // A look that waits for this volume goes on waiting.
         let Described { path, layout, header, is_gzip } = described;
         if let Some(header) = header {
             let data_file = path.file_name().unwrap_or_default().to_string_lossy();
             let text = layout.header(&data_file, *is_gzip);
             match crate::gpu::write_atomically(header, text.as_bytes()) {
-                Ok(()) => return self.open(&header.display().to_string(), ctx),
+                Ok(()) => {
+                    self.start_loading(&header.display().to_string(), None, ctx);
+                    return;
+                }
                 // It is shown all the same.
                 Err(err) => self.messages.error("the header was not written", err.to_string()),
             }
         }
-        if self.start_loading(&path.display().to_string(), Some(layout.format()), ctx) {
-            self.pending = None;
-        }
+        self.start_loading(&path.display().to_string(), Some(layout.format()), ctx);
     }
 
     fn start_loading(&mut self, source: &str, raw: Option<RawFormat>, ctx: &egui::Context) -> bool {
@@ -155,8 +157,9 @@ impl App {
         self.defaults = settings.clone();
         if self.keeps_look && self.volume.is_some() {
             // As it was, but for where the object is: that is another one.
-            let camera = settings.camera.clone();
-            self.settings = Settings { camera, ..std::mem::take(&mut self.settings) };
+            let mut kept = Settings { camera: settings.camera.clone(), ..std::mem::take(&mut self.settings) };
+            kept.ground.height = settings.ground.height;
+            self.settings = kept;
         } else {
             self.settings = settings;
         }

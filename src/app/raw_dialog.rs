@@ -29,6 +29,8 @@ struct Form {
     why: String,
     guess: RawGuess,
     layout: RawLayout,
+    /// Where a header may be written; none if there is one already.
+    header: Option<PathBuf>,
     keep: bool,
 }
 
@@ -41,8 +43,9 @@ pub(super) struct RawDialog {
 impl RawDialog {
     /// Asks about a file; `why` says what is not known.
     pub(super) fn ask(&mut self, path: &Path, why: String, guess: RawGuess) {
-        let keep = !header_of(path).exists();
-        self.form = Some(Form { path: path.to_owned(), why, layout: guess.layout, guess, keep });
+        let header = Some(header_of(path)).filter(|header| !header.exists());
+        let keep = header.is_some();
+        self.form = Some(Form { path: path.to_owned(), why, layout: guess.layout, guess, header, keep });
     }
 
     /// Shows the window, if it is open. Gives what the user said, once.
@@ -60,26 +63,22 @@ impl RawDialog {
             form.fields(ui);
             ui.add_space(4.0);
             let fits = form.length(ui);
-            let header = header_of(&form.path);
-            let header_name = header.file_name().unwrap_or_default().to_string_lossy();
-            ui.add_enabled_ui(!header.exists(), |ui| {
-                let text = format!("Remember this as {header_name}, beside the file");
+            if let Some(header) = &form.header {
+                let header = header.file_name().unwrap_or_default().to_string_lossy();
+                let text = format!("Remember this as {header}, beside the file");
                 let tip = "A header as NRRD has it: that file then opens here and in other programs";
                 ui.checkbox(&mut form.keep, text).on_hover_text(tip);
-            });
+            }
             ui.horizontal(|ui| {
                 accepted = ui.add_enabled(fits, egui::Button::new("Open")).clicked();
                 cancelled = ui.button("Cancel").clicked();
             });
         });
-        let described = accepted.then(|| {
-            let header = header_of(&form.path);
-            Described {
-                path: form.path.clone(),
-                layout: form.layout,
-                header: (form.keep && !header.exists()).then_some(header),
-                is_gzip: form.guess.is_gzip,
-            }
+        let described = accepted.then(|| Described {
+            path: form.path.clone(),
+            layout: form.layout,
+            header: form.header.clone().filter(|_| form.keep),
+            is_gzip: form.guess.is_gzip,
         });
         if described.is_some() || cancelled || !open {
             self.form = None;

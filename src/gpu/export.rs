@@ -62,8 +62,8 @@ const RECORD: &str = "chiaroscuro";
 /// Most bytes that are read of a picture's texts: a thousand times a real record.
 const MOST_TEXT: usize = 16 << 20;
 
-/// Writes a picture, as [`super::Renderer::read_shown`] gives it, as PNG: RGB, or RGBA with straight alpha when it is transparent. It carries a record
-/// ([`crate::model::Record`]) as text.
+/// Writes a picture, as [`super::Renderer::read_shown`] gives it, as PNG: RGB, or RGBA with straight alpha when
+/// it is transparent. It carries a record ([`crate::model::Record`]) as text.
 ///
 /// # Errors
 /// As [`write_atomically`].

@@ -64,9 +64,9 @@ impl EyePass {
         if collapsed.is_some() {
             constants.push(("COLLAPSED", 1.0));
         }
-        let (seen, shading_cut) = (settings.cuts.seen(), settings.cuts.shading());
+        let (remains, shading_cut) = (settings.cuts.seen(), settings.cuts.shading());
         // Rays to lights are the eye pass's own.
-        constants.push(cut_constant(if direct && seen.is_everything() { shading_cut } else { seen }));
+        constants.push(cut_constant(if direct && remains.is_everything() { shading_cut } else { remains }));
         let (eye, w) = match settings.camera.projection {
             Projection::Perspective => (settings.camera.eye(), 1.0),
             Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
@@ -87,7 +87,7 @@ impl EyePass {
             pad1: 0,
             collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
             pad2: 0.0,
-            seen: uniforms::Cut::new(&seen.region(scene)),
+            seen: uniforms::Cut::new(&remains.region(scene)),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
             lights: packed,
         };

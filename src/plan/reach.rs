@@ -60,8 +60,8 @@ pub fn bias_reach(bias_voxels: f64) -> u8 {
 
 /// Of the reverse kernel around the voxels of a light volume.
 ///
-/// It has radius two, and linear fetches between sheet pixels see a voxel more. A cell of a light volume holds `divisor`³ cells, of which one is
-/// what the cell is there for.
+/// It has radius two, and linear fetches between sheet pixels see a voxel more. A cell of a light volume holds
+/// `divisor`³ cells, of which one is what the cell is there for.
 pub fn reverse_reach(views: &[LightView], scene: &SceneSpace, divisor: usize) -> u8 {
     in_cells(reverse_reach_voxels(views, scene)).saturating_add(divisor as u8 - 1)
 }

@@ -24,11 +24,16 @@ const SCENE: &str = "builtin:chair:32";
 /// The window of the tests. It is taller than wide panels need, so that nothing is scrolled away.
 pub(crate) fn window() -> Harness<'static, App> {
     let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
+    window_with(options, Vec2::new(760.0, 1100.0))
+}
+
+/// A window of some size, in points.
+fn window_with(options: Options, size: Vec2) -> Harness<'static, App> {
     let mut setup = wgpu_setup();
     // As the tests of the renderer: the first adapter that there is, software included.
     setup.power_preference = wgpu::PowerPreference::None;
     let mut harness = Harness::builder()
-        .with_size(Vec2::new(760.0, 1100.0))
+        .with_size(size)
         .with_step_dt(0.1)
         .wgpu_setup(setup.into())
         .build_eframe(|cc| App::new(cc, options).expect("a window"));
@@ -480,10 +485,12 @@ fn the_next_file_can_have_the_look_of_this_one() {
     harness.key_press(egui::Key::CloseBracket);
     harness.run_steps(2);
     let lights = harness.state().settings().lights.clone();
+    let height = harness.state().settings().ground.height;
     let ctx = harness.ctx.clone();
     harness.state_mut().open("builtin:box:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box") && app.is_idle());
     assert_eq!(harness.state().settings().lights, lights);
+    assert_ne!(harness.state().settings().ground.height, height, "the floor lies under the other object");
 }
 
 #[test]
@@ -495,15 +502,7 @@ fn the_first_run_has_hints_and_the_next_remembers() {
             storage: Some(folder.path().to_owned()),
             ..Options::default()
         };
-        let mut setup = wgpu_setup();
-        setup.power_preference = wgpu::PowerPreference::None;
-        let mut harness = Harness::builder()
-            .with_size(Vec2::new(760.0, 900.0))
-            .with_step_dt(0.1)
-            .wgpu_setup(setup.into())
-            .build_eframe(|cc| App::new(cc, options).expect("a window"));
-        wait_until_idle(&mut harness);
-        harness
+        window_with(options, Vec2::new(760.0, 900.0))
     };
     let mut harness = start(Some(SCENE));
     assert!(harness.query_by_label("Close the hints").is_some());
