@@ -12,6 +12,7 @@
 //! | [`data`] | volumes: readers, built-ins, histograms, bricks |
 //! | [`model`] | `Settings`, the one value that is the whole look |
 //! | [`plan`] | what a change makes stale; the geometry of the passes |
+//! | [`export`] | files that go out: pictures, pictures that move |
 //! | [`mod@reference`] | the paper in f64, literal and slow |
 //! | [`gpu`] | the renderer |
 //! | [`app`] | the window |
@@ -23,6 +24,7 @@
 pub mod app;
 pub mod cli;
 pub mod data;
+pub mod export;
 pub mod gpu;
 pub mod math;
 pub mod model;

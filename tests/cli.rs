@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use chiaroscuro::gpu::{export_png, read_record};
+use chiaroscuro::export::{ExportError, export_png, read_picture, read_record, write_picture};
+use chiaroscuro::model::{Depth, Shot};
 use serde_json::Value;
 
 /// Longest that any command may take here; most take well under a second.
@@ -681,6 +682,16 @@ fn turntables_are_files_that_move_or_folders() {
     let names = ["0000.png", "0001.png", "0002.png"].map(|name| format!("pictures/{name}"));
     assert!(names.iter().all(|name| folder.path(name).exists()));
     assert!(folder.succeed("replay pictures/0001.png --check").contains("identical"));
+    folder.succeed("turntable builtin:chair:16 -o turn.gif --size 40x30 --frames 3 --transparent");
+    let gif =
+        image::codecs::gif::GifDecoder::new(std::io::Cursor::new(folder.read("turn.gif"))).expect("a GIF");
+    let frames = image::AnimationDecoder::into_frames(gif).collect_frames().expect("its pictures");
+    assert_eq!(frames.len(), 3);
+    let alphas = |frame: &image::Frame| frame.buffer().pixels().filter(|pixel| pixel.0[3] == 0).count();
+    assert!(frames.iter().all(|frame| (300..1150).contains(&alphas(frame))), "the background is left out");
+    let outcome = folder.run("turntable builtin:chair:16 -o x.mp4 --size 40x30 --frames 3 --transparent");
+    assert_eq!(outcome.code, Some(6), "{outcome:?}");
+    assert!(outcome.stderr.contains("no transparency"), "{outcome:?}");
     let outcome = folder.run("turntable builtin:chair:16 -o x.png --light 9");
     assert_eq!(outcome.code, Some(2), "{outcome:?}");
     assert!(outcome.stderr.contains("no light 9"), "{outcome:?}");
@@ -731,6 +742,56 @@ fn pictures_can_be_made_again_from_themselves() {
     assert_eq!(outcome.code, Some(3), "{outcome:?}");
     assert!(outcome.stderr.contains("carries no settings"), "{outcome:?}");
     assert_eq!(folder.run("replay nothing.png").code, Some(6));
+}
+
+#[test]
+fn fine_pictures_can_be_made_again_from_themselves() {
+    let folder = Folder::new();
+    for (name, options) in [
+        ("deep.png", "--bits 16 --samples 2"),
+        ("deep_alpha.png", "--bits 16 --transparent"),
+        ("light.exr", "--samples 3"),
+        ("light_alpha.exr", "--transparent"),
+    ] {
+        folder.succeed(&format!("render builtin:chair:16 -o {name} --size 48x36 {options}"));
+        assert!(folder.succeed(&format!("replay {name} --check")).contains("identical"), "{name}");
+        folder.succeed(&format!("replay {name} -o again_{name}"));
+        let [found, again] = [name.to_owned(), format!("again_{name}")].map(|name| folder.path(&name));
+        assert!(
+            read_picture(&found).expect("a picture") == read_picture(&again).expect("a picture"),
+            "{name}"
+        );
+        assert_eq!(read_record(&found).expect("a record"), read_record(&again).expect("a record"), "{name}");
+    }
+    let deep = image::open(folder.path("deep.png")).expect("a picture");
+    assert_eq!(deep.color(), image::ColorType::Rgb16);
+    let words = deep.to_rgb16().into_raw();
+    assert!(words.iter().filter(|&&word| word % 257 != 0).count() > words.len() / 4, "more than bytes");
+    // Another look is noticed in these, too.
+    let text = read_record(&folder.path("light.exr")).expect("a picture").expect("a record");
+    let (size, rows) = read_picture(&folder.path("light.exr")).expect("a picture");
+    let changed = text.replace("\"gain\": 1.0", "\"gain\": 0.4");
+    assert_ne!(changed, text);
+    let shot = Shot { depth: Depth::Linear, ..Shot::new(size) };
+    let mut rows = Some(rows);
+    let mut next = || Ok::<_, ExportError>(rows.take());
+    write_picture(&folder.path("changed.exr"), &shot, Some(&changed), &mut next).expect("written");
+    assert_eq!(folder.run("replay changed.exr --check").code, Some(1));
+    // A look can be taken from any of them.
+    folder.succeed("render builtin:chair:16 -o from.png --size 48x36 --session light.exr");
+    assert_ne!(folder.run("render builtin:chair:16 -o x.png --samples 5").code, Some(0));
+    assert_ne!(folder.run("render builtin:chair:16 -o x.png --bits 12").code, Some(0));
+}
+
+#[test]
+fn pictures_may_be_larger_than_textures() {
+    let folder = Folder::new();
+    // Wider than adapters draw at once (16384 here and on most).
+    let said = folder.succeed("render builtin:chair:16 -o wide.png --size 20000x3 --set sampling.slab=4");
+    assert!(said.contains("wide.png"));
+    let wide = image::open(folder.path("wide.png")).expect("a picture").to_rgb8();
+    assert_eq!((wide.width(), wide.height()), (20000, 3));
+    assert!(folder.succeed("replay wide.png --check").contains("identical"));
 }
 
 #[test]

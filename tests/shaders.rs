@@ -384,7 +384,10 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 lights
             }),
         ),
-        ("display.wgsl", layout!(Display { top, bottom, transparent, clip, exposure, pad0 })),
+        (
+            "display.wgsl",
+            layout!(Display { top, bottom, transparent, clip, exposure, first_row, rows, pad0, pad1, pad2 }),
+        ),
         ("prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
         ("downsample.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
         ("gradients.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
@@ -605,6 +608,7 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
 fn workgroups_have_the_size_that_the_dispatches_count_on() {
     let expected = [
         ("display.wgsl", [8, 8, 1]),
+        ("display_deep.wgsl", [8, 8, 1]),
         ("downsample.wgsl", [8, 8, 4]),
         ("eye.wgsl", [8, 8, 1]),
         ("gradients.wgsl", [8, 8, 4]),
@@ -710,8 +714,8 @@ fn no_branch_depends_on_uniforms_alone() {
     }
     // And such branches are found.
     let wrong = joined("display.wgsl").replacen(
-        "    let down =",
-        "    if (display.clip + 1u > 1u) {\n        return;\n    }\n    let down =",
+        "    if (any(",
+        "    if (display.clip + 1u > 1u) {\n        return;\n    }\n    if (any(",
         1,
     );
     assert_eq!(branches_on_uniforms_in(&check(&wrong).expect("a valid shader")), 1);

@@ -7,7 +7,7 @@ use super::commands::Command;
 use super::export::{Subject, Worker};
 use super::theme;
 use super::work::Work;
-use crate::model::{Camera, Kernel, Light, Resolution, Rig, Settings};
+use crate::model::{Camera, Kernel, Light, Resolution, Rig, Settings, Shot};
 
 /// Pixels of a picture.
 const SIZE: [u32; 2] = [176, 132];
@@ -98,7 +98,7 @@ impl ContactSheet {
             tried
                 .map(|(name, lights)| {
                     let settings = quick(&subject.settings, lights.clone());
-                    let shown = worker.render(&subject, &settings, SIZE, false)?;
+                    let shown = worker.render(&subject, &settings, &Shot::new(SIZE))?;
                     let picture = ColorImage::from_rgba_unmultiplied(SIZE.map(|n| n as usize), &shown);
                     Ok(Tried { name, lights, picture })
                 })

@@ -47,11 +47,13 @@ impl Purpose {
     fn hint(self) -> &'static str {
         match self {
             Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
-            Self::LoadSettings | Self::CompareSettings => "a .json file, or a .png picture that was exported",
+            Self::LoadSettings | Self::CompareSettings => {
+                "a .json file, or a .png or .exr picture that was exported"
+            }
             Self::ImportTransfer => "ParaView .json, Slicer .vp, MRIcroGL .clut, ImageJ .lut",
             Self::ExportTransfer => "a .json file, as ParaView's colour maps",
             Self::SaveSettings => "a .json file",
-            Self::ExportPicture => "a .png file",
+            Self::ExportPicture => ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turn",
             Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
         }
     }
@@ -96,7 +98,7 @@ impl Files {
                 Box::pin(dialog.add_filter("Volumes", &filters).add_filter("All files", &["*"]).pick_file())
             }
             Purpose::LoadSettings | Purpose::CompareSettings => {
-                Box::pin(dialog.add_filter("Settings and pictures", &["json", "png"]).pick_file())
+                Box::pin(dialog.add_filter("Settings and pictures", &["json", "png", "exr"]).pick_file())
             }
             Purpose::ImportTransfer => {
                 Box::pin(dialog.add_filter("Transfer functions", &IMPORTED).pick_file())
@@ -108,7 +110,8 @@ impl Files {
                 Box::pin(dialog.add_filter("Settings", &["json"]).set_file_name("settings.json").save_file())
             }
             Purpose::ExportPicture => {
-                Box::pin(dialog.add_filter("PNG picture", &["png"]).set_file_name("picture.png").save_file())
+                let endings = ["png", "exr", "gif", "mp4"];
+                Box::pin(dialog.add_filter("Pictures", &endings).set_file_name("picture.png").save_file())
             }
             Purpose::ExportLight => {
                 let dialog = dialog.add_filter("Light volume", &["nrrd"]).add_filter("Slice", &["png"]);
@@ -201,7 +204,7 @@ pub(super) fn save_settings(
 ) -> Result<(), String> {
     let volume = volume.map(|(source, content_id)| VolumeRecord::new(source, content_id, path.parent()));
     let text = Record::text(settings, volume.as_ref(), None);
-    crate::gpu::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
+    crate::export::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
 }
 
 /// A small file as text.
@@ -214,7 +217,7 @@ fn read_text(path: &Path) -> Result<String, String> {
 pub(super) fn load_record(path: &Path) -> Result<Record, String> {
     let shown = path.display();
     let text = if is_picture(path) {
-        crate::gpu::read_record(path).map_err(|err| err.to_string())?.ok_or_else(|| {
+        crate::export::read_record(path).map_err(|err| err.to_string())?.ok_or_else(|| {
             format!("the picture carries no settings ({shown}); export it from this program")
         })?
     } else {
@@ -234,12 +237,14 @@ pub(super) fn import_transfer(path: &Path, range: (f64, f64)) -> Result<Transfer
 /// Writes a transfer function for another program.
 pub(super) fn export_transfer(path: &Path, function: &TransferFunction) -> Result<(), String> {
     let name = path.file_stem().map_or_else(|| "Chiaroscuro".into(), |stem| stem.to_string_lossy());
-    crate::gpu::write_atomically(path, to_paraview(function, &name).as_bytes()).map_err(|err| err.to_string())
+    crate::export::write_atomically(path, to_paraview(function, &name).as_bytes())
+        .map_err(|err| err.to_string())
 }
 
 /// Whether a file is a picture by its name.
 pub(super) fn is_picture(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+    let is = |ending| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
+    is("png") || is("exr")
 }
 
 /// Whether a file holds a look and not a volume, by its name.
@@ -266,7 +271,9 @@ mod tests {
 
     #[test]
     fn looks_and_volumes_are_told_apart_by_name() {
-        for (name, record) in [("a.json", true), ("b.PNG", true), ("c.nrrd", false), ("png", false)] {
+        for (name, record) in
+            [("a.json", true), ("b.PNG", true), ("d.Exr", true), ("c.nrrd", false), ("png", false)]
+        {
             assert_eq!(is_record(Path::new(name)), record, "{name}");
         }
     }

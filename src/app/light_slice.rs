@@ -7,10 +7,8 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
 use super::work::Work;
 use crate::data::{Bricks, Volume};
-use crate::gpu::{
-    Attenuation, Context, GpuError, RenderOptions, Renderer, export_slice, light_volume_nrrd,
-    write_atomically,
-};
+use crate::export::write_atomically;
+use crate::gpu::{Attenuation, Context, GpuError, RenderOptions, Renderer, export_slice, light_volume_nrrd};
 use crate::math::false_color;
 use crate::model::{LightStorage, Settings};
 use crate::plan::{LightKey, Request};

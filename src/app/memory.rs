@@ -27,7 +27,7 @@ impl Writer {
         let (queue, due) = mpsc::channel::<(&str, String)>();
         let thread = std::thread::Builder::new().name("memory".to_owned()).spawn(move || {
             for (name, text) in due {
-                if let Err(err) = crate::gpu::write_atomically(&folder.join(name), text.as_bytes()) {
+                if let Err(err) = crate::export::write_atomically(&folder.join(name), text.as_bytes()) {
                     log::warn!("{name} was not kept: {err}");
                 }
             }

@@ -53,7 +53,7 @@ impl App {
         if let Some(header) = header {
             let data_file = path.file_name().unwrap_or_default().to_string_lossy();
             let text = layout.header(&data_file, *is_gzip);
-            match crate::gpu::write_atomically(header, text.as_bytes()) {
+            match crate::export::write_atomically(header, text.as_bytes()) {
                 Ok(()) => {
                     self.start_loading(&header.display().to_string(), None, ctx);
                     return;

@@ -93,7 +93,7 @@ impl StatusFile {
         let text = state.json().to_string();
         if text != self.written {
             // Readers must never see half of it.
-            if let Err(err) = crate::gpu::write_atomically(path, text.as_bytes()) {
+            if let Err(err) = crate::export::write_atomically(path, text.as_bytes()) {
                 log::warn!("{VARIABLE}: {err}");
                 self.path = None;
             }

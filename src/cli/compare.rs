@@ -7,7 +7,8 @@ use clap::builder::PossibleValuesParser;
 
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line};
-use crate::gpu::{Context, Distance, Picture, RenderOptions, Renderer, export_png};
+use crate::export::export_png;
+use crate::gpu::{Context, Distance, Picture, RenderOptions, Renderer};
 use crate::model::Variant;
 
 /// Pixels between two pictures.

@@ -1,7 +1,8 @@
 //! Errors of the command line and their exit codes.
 
 use crate::data::load::{LoadError, LoadErrorKind};
-use crate::gpu::{ExportError, GpuError, ReadPictureError};
+use crate::export::{ExportError, ReadPictureError};
+use crate::gpu::GpuError;
 use crate::model::PresetError;
 
 /// Why a command failed.

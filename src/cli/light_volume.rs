@@ -6,7 +6,8 @@ use clap::Args;
 
 use super::scene::SceneArgs;
 use super::{CliError, print_line};
-use crate::gpu::{Context, RenderOptions, Renderer, export_slice, light_volume_nrrd, write_atomically};
+use crate::export::write_atomically;
+use crate::gpu::{Context, RenderOptions, Renderer, export_slice, light_volume_nrrd};
 use crate::model::LightStorage;
 use crate::plan::Request;
 

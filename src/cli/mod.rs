@@ -10,6 +10,7 @@ mod light_volume;
 mod render;
 mod replay;
 mod scene;
+mod shot;
 mod turntable;
 
 use std::io::Write as _;

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::scene::{SceneArgs, parse_size};
+use super::scene::SceneArgs;
+use super::shot::ShotArgs;
 use super::{CliError, print_line, warn_line};
-use crate::gpu::{
-    Context, RenderOptions, Renderer, dark_share, export_png, mean_luminance, write_atomically,
-};
+use crate::export::{write_atomically, write_picture};
+use crate::gpu::{Context, RenderOptions, Renderer, dark_share, mean_luminance};
 use crate::model::{PictureRecord, Record, VolumeRecord};
 
 /// Arguments of `render`.
@@ -17,16 +17,12 @@ use crate::model::{PictureRecord, Record, VolumeRecord};
 pub(super) struct RenderArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// PNG file to write
-    #[arg(short, long, value_name = "OUT.png")]
+    /// PNG or EXR file to write
+    #[arg(short, long, value_name = "OUT.png|OUT.exr")]
     output: PathBuf,
-    /// Pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x960", value_parser = parse_size)]
-    size: [u32; 2],
-    /// Leave the background out (straight alpha)
-    #[arg(long)]
-    transparent: bool,
-    /// Also write what it took, and all settings, as JSON
+    #[command(flatten)]
+    shot: ShotArgs,
+    /// Also write what it took, and all settings, as JSON: of the picture drawn at once, with a sample per pixel
     #[arg(long, value_name = "REPORT.json")]
     report: Option<PathBuf>,
     /// Say what is being done
@@ -49,22 +45,17 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     say("finding the look");
     let settings = look.settings(&mut renderer, &loaded)?;
     say("rendering");
-    let options = RenderOptions {
-        transparent: args.transparent,
-        timed: args.report.is_some(),
-        ..RenderOptions::default()
-    };
-    // A report measures a whole picture, light volumes included, not what the balance left over.
-    if args.report.is_some() {
-        renderer = Renderer::new(&context)?;
-    }
-    let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
+    let shot = args.shot.shot(&args.output);
     if let Some(path) = &args.report {
+        // It measures a whole picture, light volumes included, not what the balance left over.
+        renderer = Renderer::new(&context)?;
+        let options = RenderOptions { timed: true, ..RenderOptions::default() };
+        let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, shot.size, &options)?;
         let took = renderer.report();
         let report = json!({
             "adapter": context.info.name,
             "driver": format!("{} {}", context.info.driver, context.info.driver_info),
-            "image_size": args.size,
+            "image_size": shot.size,
             "volume_dims": loaded.volume.dims(),
             "stages_ms": {
                 "upload": took.upload_ms,
@@ -88,14 +79,22 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     }
     let folder = args.output.parent();
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
-    let how = PictureRecord::new(args.size, args.transparent, context.description());
+    let how = PictureRecord::new(shot, context.description());
     let record = Record::text(&settings, Some(&volume), Some(&how));
-    if let Err(err) = export_png(args.size, &picture.shown, args.transparent, Some(&record), &args.output) {
+    let mut bands = renderer.bands(&loaded.volume, &loaded.bricks, &settings, &shot);
+    let mut rows = || -> Result<_, CliError> {
+        let (done, total) = bands.progress();
+        if total > 1 && done < total {
+            say(&format!("part {} of {total}", done + 1));
+        }
+        Ok(bands.next_rows()?)
+    };
+    if let Err(err) = write_picture(&args.output, &shot, Some(&record), &mut rows) {
         // A report without its picture would mislead.
         if let Some(path) = &args.report {
             std::fs::remove_file(path).ok();
         }
-        return Err(err.into());
+        return Err(err);
     }
     print_line(&format!("{}", args.output.display()));
     Ok(())

@@ -7,19 +7,20 @@ use clap::Args;
 use super::scene::{Loaded, RawArgs};
 use super::{CliError, print_line, warn_line};
 use crate::data::load::{LoadControl, open};
-use crate::gpu::{Context, Distance, RenderOptions, Renderer, export_png, read_record};
+use crate::export::{Rows, read_picture, read_record, write_picture};
+use crate::gpu::{Context, Distance, Renderer};
 use crate::model::{PresetError, Record, Settings};
 
 /// Arguments of `replay`.
 #[derive(Debug, Args)]
 pub(super) struct ReplayArgs {
-    /// A PNG picture that this program has exported
+    /// A PNG or EXR picture that this program has exported
     picture: PathBuf,
     /// The volume, if it is not where it was
     #[arg(long, value_name = "FILE")]
     volume: Option<String>,
     /// Write the new picture
-    #[arg(short, long, value_name = "OUT.png")]
+    #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// Fail (exit code 1) unless both pictures are the same byte for byte
     #[arg(long)]
@@ -56,32 +57,26 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if how.version != env!("CARGO_PKG_VERSION") {
         warn_line(&format!("made by version {}, again by {}", how.version, env!("CARGO_PKG_VERSION")));
     }
-    let options = RenderOptions { transparent: how.transparent, ..RenderOptions::default() };
+    let shot = how.shot.within_limits();
     let mut renderer = Renderer::new(&context)?;
-    let again = renderer.render_shown(&loaded.volume, &loaded.bricks, &settings, how.size, &options)?;
-    let before = image::open(&args.picture).map_err(|err| unusable(err.to_string()))?.to_rgba8();
-    if [before.width(), before.height()] != how.size {
-        return Err(unusable(format!(
-            "it is {} × {} pixels and not {:?}",
-            before.width(),
-            before.height(),
-            how.size
-        )));
+    let again = renderer.bands(&loaded.volume, &loaded.bricks, &settings, &shot).all()?;
+    let (size, before) = read_picture(&args.picture)?;
+    if size != shot.size {
+        return Err(unusable(format!("it is {size:?} pixels and not {:?}", shot.size)));
     }
+    let again = again.as_written(&shot);
     if let Some(output) = &args.output {
-        export_png(how.size, &again, how.transparent, Some(&text), output)?;
+        let mut rows = Some(again.clone());
+        write_picture::<CliError>(output, &shot, Some(&text), &mut || Ok(rows.take()))?;
     }
-    // Pictures without transparency have no alpha in the file.
-    let shown: Vec<u8> = if how.transparent {
-        again
-    } else {
-        again.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2], 255]).collect()
-    };
-    if shown == *before.as_raw() {
+    if again == before {
         print_line("identical");
         return Ok(());
     }
-    let Distance { rmse, largest } = Distance::between(before.as_raw(), &shown);
+    let Distance { rmse, largest } = match (&before, &again) {
+        (Rows::Bytes(before), Rows::Bytes(again)) => Distance::between(before, again),
+        _ => Distance::between_values(&before.values(), &again.values()),
+    };
     let words = format!("different: RMSE {rmse:.3} of 255, largest difference {largest}");
     if args.check {
         return Err(CliError::Differs(words));

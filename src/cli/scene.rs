@@ -9,8 +9,9 @@ use serde_json::Value;
 use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
 use crate::data::{Bricks, Histogram, Volume, VoxelType, read_small};
+use crate::export::read_record;
 use crate::gpu::{Renderer, balance};
-use crate::model::{Engine, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
+use crate::model::{Engine, MAX_EDGE, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
 
 /// How a RAW file is stored.
 #[derive(Debug, Clone, Args)]
@@ -83,9 +84,9 @@ fn triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
 
 /// `1920x1080`.
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let expected = || format!("expected WIDTHxHEIGHT between 1x1 and 32768x32768, found {text:?}");
+    let expected = || format!("expected WIDTHxHEIGHT between 1x1 and {MAX_EDGE}x{MAX_EDGE}, found {text:?}");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
-    let parse = |part: &str| part.trim().parse::<u32>().ok().filter(|n| (1..=32768).contains(n));
+    let parse = |part: &str| part.trim().parse::<u32>().ok().filter(|n| (1..=MAX_EDGE).contains(n));
     Ok([parse(width).ok_or_else(expected)?, parse(height).ok_or_else(expected)?])
 }
 
@@ -117,7 +118,7 @@ pub(super) struct LookArgs {
     /// Preset to lay over the automatic look: a name or a JSON file
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<String>,
-    /// Session to restore
+    /// Session to restore: a JSON file, or a picture that was exported
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
     /// One setting by its path, for instance shadows.strength=0.5; may be repeated
@@ -261,12 +262,16 @@ impl Look {
     }
 }
 
-/// Reads a preset or session: a built-in's name or a file.
+/// Reads a preset or session: a built-in's name, a file, or the record of an exported picture.
 fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliError> {
     let name = path.display().to_string();
     let builtin = Preset::find(&name).filter(|_| what == "preset");
+    let is_picture = path
+        .extension()
+        .is_some_and(|ending| ["png", "exr"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
     let text = match builtin {
         Some(preset) => preset.text().as_bytes().to_vec(),
+        None if is_picture => read_record(path)?.unwrap_or_default().into_bytes(),
         None => read_small(path).map_err(|source| CliError::Read { what, path: name.clone(), source })?,
     };
     let value = serde_json::from_slice(&text).map_err(|err| CliError::Preset {

@@ -6,16 +6,17 @@ use clap::Args;
 
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line, warn_line};
-use crate::gpu::{Animation, Context, ExportError, RenderOptions, Renderer, export_png};
-use crate::model::{PictureRecord, Record, VolumeRecord};
+use crate::export::{Animation, AnimationFormat, Reel};
+use crate::gpu::{Context, RenderOptions, Renderer};
+use crate::model::{PictureRecord, Record, Shot, VolumeRecord};
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]
 pub(super) struct TurntableArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// A PNG file, which will move; or a folder for one PNG file per picture
-    #[arg(short, long, value_name = "OUT.png|FOLDER")]
+    /// A file that moves (PNG; GIF; MP4, which needs ffmpeg); or a folder for one PNG file per picture
+    #[arg(short, long, value_name = "OUT.png|OUT.gif|OUT.mp4|FOLDER")]
     output: PathBuf,
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_size)]
@@ -52,35 +53,23 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
             "--light: there are lights 1 to {count}, and no light {number}"
         )));
     }
-    let moves = args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-    if !moves {
-        std::fs::create_dir_all(&args.output)
-            .map_err(|source| ExportError::Write { path: args.output.clone(), source })?;
-    }
-    let folder = if moves { args.output.parent() } else { Some(args.output.as_path()) };
+    let (size, frames, transparent) = (args.size, args.frames, args.transparent);
+    let mut file = Animation::create(&args.output, &Reel { size, frames, rate: args.rate, transparent })?;
+    let is_folder = AnimationFormat::of_path(&args.output) == AnimationFormat::Folder;
+    let folder = if is_folder { Some(args.output.as_path()) } else { args.output.parent() };
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
-    let how = PictureRecord::new(args.size, args.transparent, context.description());
-    let options = RenderOptions { transparent: args.transparent, ..RenderOptions::default() };
-    let mut file = moves
-        .then(|| Animation::create(&args.output, args.size, args.frames, args.transparent, args.rate))
-        .transpose()?;
+    let shot = Shot { transparent, ..Shot::new(size) };
+    let how = PictureRecord::new(shot, context.description());
+    let options = RenderOptions::of_shot(&shot);
     for frame in 0..args.frames {
         let settings = settings.turned(light, f64::from(frame) / f64::from(args.frames));
-        let shown = renderer.render_shown(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
-        if let Some(file) = &mut file {
-            file.add(&shown)?;
-        } else {
-            let record = Record::text(&settings, Some(&volume), Some(&how));
-            let path = args.output.join(format!("{frame:04}.png"));
-            export_png(args.size, &shown, args.transparent, Some(&record), &path)?;
-        }
+        let shown = renderer.render_shown(&loaded.volume, &loaded.bricks, &settings, size, &options)?;
+        file.add(&shown, &Record::text(&settings, Some(&volume), Some(&how)))?;
         if args.progress {
             warn_line(&format!("{} of {}", frame + 1, args.frames));
         }
     }
-    if let Some(file) = file {
-        file.finish()?;
-    }
+    file.finish()?;
     print_line(&format!("{}", args.output.display()));
     Ok(())
 }

@@ -1,18 +1,38 @@
-//! The display pass: tone map, background and sRGB.
+//! The display pass: the mean of a pixel's samples, tone map, background and sRGB.
 
 use super::pass;
 use super::recycled::Recycled;
 use super::tables::view_entry;
 use super::uniforms;
 use super::volume::entry;
-use super::{Context, GpuError, ShaderLibrary};
-use crate::model::{Output, ToneMap};
+use super::{Context, GpuError, RenderOptions, ShaderLibrary};
+use crate::model::{Depth, Output, ToneMap};
+
+/// What a [`Target`] has room for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Shape {
+    /// Pixels shown per row and column.
+    pub size: [u32; 2],
+    /// Samples of each along an edge.
+    pub samples: u32,
+    /// Whether there is a floor.
+    pub has_floor: bool,
+    /// Whether what is shown has more than 8 bits.
+    pub deep: bool,
+}
+
+impl Shape {
+    /// Samples per row and column.
+    pub(super) fn drawn(&self) -> [u32; 2] {
+        self.size.map(|n| n * self.samples)
+    }
+}
 
 /// A picture in the making: linear light, and what is shown of it.
 #[derive(Debug)]
 pub(super) struct Target {
-    /// Pixels per row and column.
-    pub size: [u32; 2],
+    /// What it is made for.
+    pub shape: Shape,
     /// Linear, premultiplied, before tone mapping.
     pub picture: wgpu::Texture,
     /// The same.
@@ -21,7 +41,7 @@ pub(super) struct Target {
     pub floor: wgpu::Texture,
     /// The same.
     pub floor_view: wgpu::TextureView,
-    /// sRGB bytes.
+    /// sRGB bytes; more than them if its shape says so.
     pub shown: wgpu::Texture,
     /// The same.
     pub shown_view: wgpu::TextureView,
@@ -32,7 +52,7 @@ impl Target {
     ///
     /// # Errors
     /// When the picture is too large for the adapter.
-    pub(super) fn new(context: &Context, size: [u32; 2], has_floor: bool) -> Result<Self, GpuError> {
+    pub(super) fn new(context: &Context, shape: Shape) -> Result<Self, GpuError> {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::STORAGE_BINDING
             | wgpu::TextureUsages::COPY_SRC;
@@ -48,13 +68,15 @@ impl Target {
                 view_formats: &[],
             })
         };
-        let picture = make("Target::picture", size, wgpu::TextureFormat::Rgba32Float)?;
+        let picture = make("Target::picture", shape.drawn(), wgpu::TextureFormat::Rgba32Float)?;
         // Never written to, textures are zeros.
-        let floor_size = if has_floor { size } else { [1; 2] };
+        let floor_size = if shape.has_floor { shape.drawn() } else { [1; 2] };
         let floor = make("Target::floor", floor_size, wgpu::TextureFormat::Rgba16Float)?;
-        let shown = make("Target::shown", size, wgpu::TextureFormat::Rgba8Unorm)?;
+        let format =
+            if shape.deep { wgpu::TextureFormat::Rgba32Float } else { wgpu::TextureFormat::Rgba8Unorm };
+        let shown = make("Target::shown", shape.size, format)?;
         Ok(Self {
-            size,
+            shape,
             picture_view: picture.create_view(&wgpu::TextureViewDescriptor::default()),
             picture,
             floor_view: floor.create_view(&wgpu::TextureViewDescriptor::default()),
@@ -64,16 +86,11 @@ impl Target {
         })
     }
 
-    /// Whether it has that size, and room for a floor if there is one.
-    pub(super) fn is_for(&self, size: [u32; 2], has_floor: bool) -> bool {
-        let floor_size = if has_floor { size } else { [1; 2] };
-        self.size == size && [self.floor.width(), self.floor.height()] == floor_size
-    }
-
     /// Bytes of its textures.
     pub(super) fn bytes(&self) -> u64 {
-        let floor = 8 * u64::from(self.floor.width()) * u64::from(self.floor.height());
-        20 * u64::from(self.size[0]) * u64::from(self.size[1]) + floor
+        let texels = |texture: &wgpu::Texture| u64::from(texture.width()) * u64::from(texture.height());
+        let shown = if self.shape.deep { 16 } else { 4 };
+        16 * texels(&self.picture) + 8 * texels(&self.floor) + shown * texels(&self.shown)
     }
 }
 
@@ -82,11 +99,20 @@ pub(super) fn display(
     (context, recycled): (&Context, &Recycled),
     shaders: &ShaderLibrary,
     output: &Output,
-    (transparent, exposure): (bool, f32),
+    (options, transparent, exposure): (&RenderOptions, bool, f32),
     target: &Target,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let pipeline = shaders.pipeline("display.wgsl", &[])?;
+    let Shape { size, samples, deep, .. } = target.shape;
+    let mut constants = Vec::new();
+    if samples > 1 {
+        constants.push(("SAMPLES", f64::from(samples)));
+    }
+    if options.depth == Depth::Linear {
+        constants.push(("LINEAR", 1.0));
+    }
+    let pipeline = shaders.pipeline(if deep { "display_deep.wgsl" } else { "display.wgsl" }, &constants)?;
+    let (first_row, rows) = options.part.map_or((0, size[1]), |part| (part.first[1], part.whole[1]));
     let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let uniform = uniforms::Display {
         top: opaque(output.background.top),
@@ -94,7 +120,11 @@ pub(super) fn display(
         transparent: u32::from(transparent),
         clip: u32::from(output.tone_map == ToneMap::Clip),
         exposure,
+        first_row: first_row as f32,
+        rows: rows as f32,
         pad0: 0,
+        pad1: 0,
+        pad2: 0,
     };
     let uniform = recycled.buffer(context, "Display::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let bind_group = recycled.bind(
@@ -114,7 +144,7 @@ pub(super) fn display(
         "Display::pass",
         &pipeline,
         &[&bind_group],
-        [target.size[0].div_ceil(8), target.size[1].div_ceil(8), 1],
+        [size[0].div_ceil(8), size[1].div_ceil(8), 1],
     );
     Ok(())
 }

@@ -6,22 +6,31 @@ pub struct Distance {
     /// Root of the mean square over pixels and colours.
     pub rmse: f64,
     /// The largest of any colour.
-    pub largest: u8,
+    pub largest: f64,
 }
 
 impl Distance {
     /// Between two pictures of one size: sRGB bytes, RGBA; alpha does not count.
     pub fn between(left: &[u8], right: &[u8]) -> Self {
-        let (mut squares, mut largest) = (0u64, 0u8);
+        Self::of(left, right, f64::from)
+    }
+
+    /// The same where 1 is white.
+    pub fn between_values(left: &[f32], right: &[f32]) -> Self {
+        Self::of(left, right, |value| 255.0 * f64::from(value))
+    }
+
+    fn of<T: Copy>(left: &[T], right: &[T], value: impl Fn(T) -> f64) -> Self {
+        let (mut squares, mut largest) = (0.0, 0.0f64);
         for (a, b) in left.chunks_exact(4).zip(right.chunks_exact(4)) {
-            for (a, b) in a[..3].iter().zip(&b[..3]) {
-                let step = a.abs_diff(*b);
-                squares += u64::from(step) * u64::from(step);
+            for (&a, &b) in a[..3].iter().zip(&b[..3]) {
+                let step = (value(a) - value(b)).abs();
+                squares += step * step;
                 largest = largest.max(step);
             }
         }
         let colors = (left.len() / 4 * 3).max(1);
-        Self { rmse: (squares as f64 / colors as f64).sqrt(), largest }
+        Self { rmse: (squares / colors as f64).sqrt(), largest }
     }
 }
 
@@ -34,7 +43,9 @@ mod tests {
         let (left, right) = ([10, 20, 30, 255, 0, 0, 0, 255], [10, 20, 33, 255, 0, 0, 0, 0]);
         let found = Distance::between(&left, &right);
         assert!((found.rmse - (9.0f64 / 6.0).sqrt()).abs() < 1e-12, "{}", found.rmse);
-        assert_eq!(found.largest, 3);
-        assert_eq!(Distance::between(&[], &[]), Distance { rmse: 0.0, largest: 0 });
+        assert_eq!(found.largest, 3.0);
+        assert_eq!(Distance::between(&[], &[]), Distance { rmse: 0.0, largest: 0.0 });
+        let fine = Distance::between_values(&[0.5, 0.25, 1.0, 1.0], &[0.5, 0.251, 1.0, 0.0]);
+        assert!((fine.largest - 0.255).abs() < 1e-4, "{fine:?}");
     }
 }

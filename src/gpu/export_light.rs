@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::export::{ExportError, encode, write_atomically};
 use super::readback::Attenuation;
 use crate::data::Volume;
+use crate::export::{ExportError, encode_png, write_atomically};
 use crate::math::false_color;
 
 /// Values in a plane of a light volume.
@@ -47,7 +47,7 @@ impl LightSlice {
 /// # Errors
 /// As [`write_atomically`].
 pub fn export_slice(slice: &LightSlice, path: &Path) -> Result<(), ExportError> {
-    let png = encode(slice.size.map(|n| n as u32), png::ColorType::Rgb, &slice.colors(), None)?;
+    let png = encode_png(slice.size.map(|n| n as u32), png::ColorType::Rgb, &slice.colors(), None)?;
     write_atomically(path, &png)
 }
 

@@ -14,7 +14,7 @@ use crate::model::{
     Deposit, Gradients, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm,
     Shadows,
 };
-use crate::plan::{SheetFrame, eye_frame, ray_reach, sample_reach};
+use crate::plan::{PixelWindow, SheetFrame, eye_frame, ray_reach, sample_reach};
 
 /// Everything that the eye pass of one picture needs besides the volume.
 #[derive(Debug)]
@@ -34,12 +34,12 @@ impl EyePass {
     pub(super) fn new(
         scene: &SceneSpace,
         settings: &Settings,
-        size: [u32; 2],
+        window: PixelWindow,
         lights: &[Option<&LightVolume>],
         collapsed: Option<&CollapsedLight>,
         options: &RenderOptions,
     ) -> Self {
-        let frame = eye_frame(&settings.camera, scene, size, settings.sampling.slab);
+        let frame = eye_frame(&settings.camera, scene, window, settings.sampling.slab);
         let direct = settings.shadows.algorithm == ShadowAlgorithm::Direct;
         let mut on: Vec<(Light, Option<&LightVolume>)> = settings
             .lights
@@ -78,7 +78,7 @@ impl EyePass {
             space: uniforms::Space::new(scene),
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
-            end_row: size[1],
+            end_row: window.size[1],
             dilation: if options.leaping { scatter_dilation(&frame) } else { EVERYWHERE },
             dark: options.dark,
             gradient_pixels: gradient_pixels as i32,

@@ -40,7 +40,7 @@ impl Renderer {
     /// As [`Self::read_shown`]; when there is no floor.
     pub fn read_floor(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         let none = || GpuError::Refused("no floor was drawn".to_owned());
-        let target = self.front.as_ref().filter(|target| target.is_for(target.size, true));
+        let target = self.front.as_ref().filter(|target| target.shape.has_floor);
         let bytes = read_texture(&self.context, &target.ok_or_else(none)?.floor)?;
         let float = |word: &[u8]| half::f16::from_le_bytes([word[0], word[1]]).to_f32();
         let texels = bytes.chunks_exact(8);

@@ -38,10 +38,11 @@ const WIDEST: f64 = MAX_STRETCH_LEVEL;
 /// How many cells from what the transfer functions show a picture looks up light: as far as its samples
 /// see, and a light bias further. The same for every direction to look from, so that orbiting refills
 /// nothing.
-fn picture_reach(volume: &GpuVolume, request: &Request) -> u8 {
+fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let Request { settings, size, .. } = request;
+    let size = size.map(|n| n * samples);
     let scene = &volume.scene;
-    let frame = eye_frame(&settings.camera, scene, *size, settings.sampling.slab);
+    let frame = eye_frame(&settings.camera, scene, size, settings.sampling.slab);
     let stretch = frame.stretch_level(scene.support_radius() + frame.slab);
     let [width, height] = size.map(f64::from);
     let obliquity = frame.obliquity(0.0, 0.0).max(frame.obliquity(width, height));
@@ -86,7 +87,7 @@ impl Renderer {
             (0..request.settings.lights.len()).filter_map(|light| LightKey::of(request, light)).collect();
         let key = CollapsedKey::new(all, &request.settings, &volume.scene, &self.options);
         let Some(tables) = &self.tables else { return Err(GpuError::Refused("no volume".to_owned())) };
-        let reach = picture_reach(volume, request);
+        let reach = picture_reach(volume, request, self.options.samples);
         let divisor = request.settings.shadows.resolution.divisor();
         let (needed, _) = needed_cells(volume, tables, &self.options, divisor, reach);
         let usable = |known: &CollapsedLight| known.key == key && is_within(&needed, &known.filled);
@@ -120,7 +121,7 @@ impl Renderer {
         };
         let count = request.settings.lights.len();
         self.rebuilds.resize(self.rebuilds.len().max(count), 0);
-        let reach = picture_reach(volume, request);
+        let reach = picture_reach(volume, request, self.options.samples);
         let wanted: Vec<_> = (0..count).map(|light| LightKey::of(request, light)).collect();
         let shadowed = wanted.iter().flatten().count();
         let most_kept = shadowed + SPARE_LIGHT_VOLUMES.max(shadowed);

@@ -3,14 +3,13 @@
 //! One file per pass, with the same stem as its shader. [`Renderer`] reads top to bottom and owns
 //! every cache. Knows nothing of the window.
 
-mod animation;
+mod bands;
 mod clock;
 mod context;
 mod counts;
 mod display;
 mod distance;
 mod error;
-mod export;
 mod export_light;
 mod eye;
 mod first_look;
@@ -47,12 +46,11 @@ pub mod uniforms;
 mod volume;
 mod warm_up;
 
-pub use animation::Animation;
+pub use bands::Bands;
 pub use context::{Context, device_descriptor};
 pub use counts::LightFigures;
 pub use distance::Distance;
 pub use error::GpuError;
-pub use export::{ExportError, ReadPictureError, export_png, read_record, write_atomically};
 pub use export_light::{LightSlice, export_slice, light_volume_nrrd};
 pub use first_look::{balance, dark_share, first_look, mean_luminance};
 pub use job::{Job, Stage};

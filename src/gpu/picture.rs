@@ -1,5 +1,8 @@
 //! What is asked of the renderer besides the look, and what it answers.
 
+use crate::model::{Depth, Shot};
+use crate::plan::{PixelWindow, Request};
+
 /// Ways of rendering that are no part of the look.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderOptions {
@@ -21,6 +24,12 @@ pub struct RenderOptions {
     pub preview: bool,
     /// Wait after every step, so that a report's stages are true.
     pub timed: bool,
+    /// The part of the picture that is drawn, if not all of it.
+    pub part: Option<PixelWindow>,
+    /// Samples of a pixel along an edge.
+    pub samples: u32,
+    /// What is shown.
+    pub depth: Depth,
 }
 
 impl Default for RenderOptions {
@@ -35,12 +44,31 @@ impl Default for RenderOptions {
             light_parts: 1,
             preview: false,
             timed: false,
+            part: None,
+            samples: 1,
+            depth: Depth::Eight,
         }
     }
 }
 
 impl RenderOptions {
-    /// The same as an optical depth.
+    /// What a picture is drawn with that is taken like this.
+    pub fn of_shot(shot: &Shot) -> Self {
+        let Shot { size: _, transparent, samples, depth } = *shot;
+        Self { transparent, samples, depth, ..Self::default() }
+    }
+
+    /// The part of a picture that is shown.
+    pub(super) fn shown(&self, request: &Request) -> PixelWindow {
+        self.part.unwrap_or_else(|| request.size.into())
+    }
+
+    /// The samples that are drawn for it.
+    pub(super) fn window(&self, request: &Request) -> PixelWindow {
+        self.shown(request).finer(self.samples)
+    }
+
+    /// `dark` as an optical depth.
     pub(super) fn dark_depth(&self) -> f32 {
         // No 32-bit optical depth is beyond that of nothing at all.
         if self.dark > 0.0 { -self.dark.ln() } else { f32::MAX }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::Context;
-use super::export::{ExportError, write_atomically};
+use crate::export::{ExportError, write_atomically};
 
 /// Most bytes that are read: what drivers keep for our three dozen shaders is far less.
 const MOST_BYTES: u64 = 64 << 20;

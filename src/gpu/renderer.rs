@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::clock::Clock;
-use super::display::{Target, display};
+use super::display::{Shape, Target, display};
 use super::job::{Job, Stage, Step};
 use super::light_cache::PlacedLights;
 use super::light_collapse::{self, CollapsedLight};
@@ -17,7 +17,7 @@ use super::tables::Tables;
 use super::volume::{GpuVolume, texture_3d};
 use super::{Context, GpuError, ShaderLibrary, prefilter};
 use crate::data::{Bricks, Volume};
-use crate::model::{Classification, Settings, SheetOrder};
+use crate::model::{Classification, Depth, Settings, SheetOrder};
 use crate::plan::{Request, SliceOrder, eye_frame};
 
 /// Renders volumes on one device.
@@ -114,7 +114,14 @@ impl Renderer {
             self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.recycled.next_submission();
         let with = (&self.context, &self.recycled);
-        display(with, &self.shaders, output, (job.transparent, exposure), target, &mut encoder)?;
+        display(
+            with,
+            &self.shaders,
+            output,
+            (&self.options, job.transparent, exposure),
+            target,
+            &mut encoder,
+        )?;
         self.context.queue.submit([encoder.finish()]);
         self.context.wait()
     }
@@ -173,7 +180,7 @@ impl Renderer {
         let request = Request { volume: volume.content_id(), settings: settings.clone(), size, coarse: None };
         let mut job = self.begin(volume, bricks, request, options)?;
         // A quarter of a megapixel per submission stays below driver watchdogs on slow GPUs.
-        job.set_band((1 << 18) / size[0].max(1));
+        job.set_band((1 << 18) / options.window(job.request()).size[0].max(1));
         let mut unfinished = 0;
         while self.step(&mut job)? {
             unfinished += 1;
@@ -231,15 +238,20 @@ impl Renderer {
             let end = |first: usize| bricks.min(first + light_collapse::BRICKS_PER_STEP);
             steps.extend(firsts.map(|first| Step::Collapse(first..end(first))));
         }
-        let has_floor = request.settings.ground.on;
-        if self.back.as_ref().is_none_or(|target| !target.is_for(request.size, has_floor)) {
+        let shape = Shape {
+            size: options.shown(&request).size,
+            samples: options.samples,
+            has_floor: request.settings.ground.on,
+            deep: options.depth != Depth::Eight,
+        };
+        if self.back.as_ref().is_none_or(|target| target.shape != shape) {
             self.back = None;
             self.recycled.forget_groups();
-            self.back = Some(Target::new(&self.context, request.size, has_floor)?);
+            self.back = Some(Target::new(&self.context, shape)?);
         }
         steps.extend(self.eye_steps(&request)?);
         if request.settings.ground.on {
-            steps.push(Step::Ground(0..request.size[1]));
+            steps.push(Step::Ground(0..shape.drawn()[1]));
         }
         steps.push(Step::Display);
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(self.gpu_bytes());
@@ -261,9 +273,9 @@ impl Renderer {
     /// The steps that draw the picture.
     fn eye_steps(&mut self, request: &Request) -> Result<Vec<Step>, GpuError> {
         self.splats = None;
-        let Request { settings, size, .. } = request;
+        let (settings, window) = (&request.settings, self.options.window(request));
         let Some(gpu_volume) = &self.volume else { return Err(GpuError::Refused("no volume".to_owned())) };
-        let frame = eye_frame(&settings.camera, &gpu_volume.scene, *size, settings.sampling.slab);
+        let frame = eye_frame(&settings.camera, &gpu_volume.scene, window, settings.sampling.slab);
         if settings.scatters() {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
             self.splats = Some(self.context.buffer("Renderer::splats", &[0u32], usage));
@@ -287,7 +299,7 @@ impl Renderer {
             let end = |k: u32| count.min(k + SLABS_PER_STEP);
             Ok(firsts.map(|k| Step::ScatterEye(k..end(k))).collect())
         } else {
-            Ok(vec![Step::Eye(0..size[1])])
+            Ok(vec![Step::Eye(0..window.size[1])])
         }
     }
 

@@ -4,12 +4,12 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::export::ExportError;
 use super::pipeline_cache::PipelineCache;
 use super::{Context, GpuError};
+use crate::export::ExportError;
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 38] = [
+pub const SHADERS: [(&str, &str); 40] = [
     ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/cut.wgsl", include_str!("../../shaders/common/cut.wgsl")),
@@ -25,12 +25,14 @@ pub const SHADERS: [(&str, &str); 38] = [
     ("common/shade.wgsl", include_str!("../../shaders/common/shade.wgsl")),
     ("common/shadow_ray.wgsl", include_str!("../../shaders/common/shadow_ray.wgsl")),
     ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
+    ("common/shown.wgsl", include_str!("../../shaders/common/shown.wgsl")),
     ("common/space.wgsl", include_str!("../../shaders/common/space.wgsl")),
     ("common/table.wgsl", include_str!("../../shaders/common/table.wgsl")),
     ("common/tiles.wgsl", include_str!("../../shaders/common/tiles.wgsl")),
     ("common/volume.wgsl", include_str!("../../shaders/common/volume.wgsl")),
     ("common/voxels.wgsl", include_str!("../../shaders/common/voxels.wgsl")),
     ("display.wgsl", include_str!("../../shaders/display.wgsl")),
+    ("display_deep.wgsl", include_str!("../../shaders/display_deep.wgsl")),
     ("downsample.wgsl", include_str!("../../shaders/downsample.wgsl")),
     ("eye.wgsl", include_str!("../../shaders/eye.wgsl")),
     ("gradients.wgsl", include_str!("../../shaders/gradients.wgsl")),

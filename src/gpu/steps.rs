@@ -63,7 +63,7 @@ impl Renderer {
             Step::Display => {
                 let target = self.back.as_ref().ok_or_else(out_of_date)?;
                 let output = &job.request.settings.output;
-                let how = (job.transparent, job.exposure);
+                let how = (&self.options, job.transparent, job.exposure);
                 display((&self.context, &self.recycled), &self.shaders, output, how, target, encoder)
             }
         }
@@ -231,8 +231,9 @@ impl Renderer {
         let attenuation: Vec<_> = found.iter().flatten().map(|light| &light.view).collect();
         let (gpu, _) = self.gpu()?;
         let target = self.collapsed.as_ref().ok_or_else(out_of_date)?;
-        let (settings, size) = (&job.request.settings, job.request.size);
-        let pass = EyePass::new(&gpu.volume.scene, settings, size, &found, None, &self.options);
+        let settings = &job.request.settings;
+        let window = self.options.window(&job.request);
+        let pass = EyePass::new(&gpu.volume.scene, settings, window, &found, None, &self.options);
         let list: Vec<_> = target.filled.bricks().map(listed).collect();
         target.fill(gpu, &pass, &attenuation, &list[bricks.clone()], encoder)?;
         let is_last = bricks.end == list.len();
@@ -258,11 +259,12 @@ impl Renderer {
         attenuation.extend(collapsed.map(|light| &light.view));
         let target = self.back.as_ref().ok_or_else(out_of_date)?;
         let (gpu, tables) = self.gpu()?;
+        let window = self.options.window(&job.request);
         let eye = job.eye.get_or_insert_with(|| {
-            EyePass::new(&gpu.volume.scene, settings, target.size, &found, collapsed, &self.options)
+            EyePass::new(&gpu.volume.scene, settings, window, &found, collapsed, &self.options)
         });
         let slabs = eye.slab_count();
-        let size = target.size;
+        let size = window.size;
         let divisor = found.iter().flatten().map(|light| light.divisor).max().unwrap_or(0);
         let mut peak = 0;
         match step {

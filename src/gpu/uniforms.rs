@@ -359,5 +359,9 @@ pub struct Display {
     pub transparent: u32,
     pub clip: u32,
     pub exposure: f32,
+    pub first_row: f32,
+    pub rows: f32,
     pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
 }

@@ -20,6 +20,7 @@ mod sampling;
 mod sanitise;
 mod settings;
 mod shadows;
+mod shot;
 mod transfer;
 mod turn;
 mod variant;
@@ -40,6 +41,7 @@ pub use rig::Rig;
 pub use sampling::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
 pub use shadows::{Deposit, LightStorage, MAX_BIAS_VOXELS, Precision, Resolution, ShadowAlgorithm, Shadows};
+pub use shot::{Depth, MAX_EDGE, MAX_SAMPLES, Shot};
 pub use transfer::{
     BakedTransfer, ControlPoint, Interpolation, LUT_SIZE, MAX_OPACITY, TransferFunction, linear_from_srgb,
 };

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{PresetError, Settings, apply_relative};
+use super::{PresetError, Settings, Shot, apply_relative};
 
 /// The volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,10 +22,9 @@ pub struct VolumeRecord {
 /// How a picture was made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PictureRecord {
-    /// Columns and rows.
-    pub size: [u32; 2],
-    /// Whether the background was left out.
-    pub transparent: bool,
+    /// Size and fineness.
+    #[serde(flatten)]
+    pub shot: Shot,
     /// Version of this program.
     pub version: String,
     /// The graphics adapter and its driver.
@@ -67,8 +66,8 @@ impl VolumeRecord {
 
 impl PictureRecord {
     /// A picture that this version makes on an adapter.
-    pub fn new(size: [u32; 2], transparent: bool, adapter: String) -> Self {
-        Self { size, transparent, version: env!("CARGO_PKG_VERSION").to_owned(), adapter }
+    pub fn new(shot: Shot, adapter: String) -> Self {
+        Self { shot, version: env!("CARGO_PKG_VERSION").to_owned(), adapter }
     }
 }
 
@@ -129,6 +128,7 @@ fn remark<T: serde::de::DeserializeOwned>(overlay: &Value, name: &str) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Depth;
 
     #[test]
     fn records_are_read_as_they_were_written() {
@@ -137,8 +137,7 @@ mod tests {
         settings.views.insert(3, settings.camera.clone());
         let volume = VolumeRecord::new("builtin:chair", 0x1234, None);
         let picture = PictureRecord {
-            size: [640, 480],
-            transparent: true,
+            shot: Shot { transparent: true, samples: 2, depth: Depth::Sixteen, ..Shot::new([640, 480]) },
             version: "0.1.0".to_owned(),
             adapter: "an adapter".to_owned(),
         };
@@ -148,6 +147,14 @@ mod tests {
         let (read, warnings) = record.apply(&Settings::default(), (0.0, 1.0)).unwrap();
         assert_eq!((read, warnings), (settings, vec![]));
         assert!(volume.is_of(0x1234) && !volume.is_of(0x1235));
+    }
+
+    #[test]
+    fn pictures_of_earlier_versions_have_eight_bits_and_a_sample_per_pixel() {
+        let text =
+            r#"{"_picture": {"size": [4, 3], "transparent": true, "version": "0.1.0", "adapter": "a"}}"#;
+        let picture = Record::read(text).unwrap().picture.unwrap();
+        assert_eq!(picture.shot, Shot { transparent: true, ..Shot::new([4, 3]) });
     }
 
     #[test]

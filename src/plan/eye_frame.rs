@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec2};
 
+use super::PixelWindow;
 use super::sheet_frame::{Placement, SheetFrame};
 use crate::math::SceneSpace;
 use crate::model::{Camera, Projection};
@@ -16,8 +17,15 @@ const NEAR_SHARE: f64 = 1e-3;
 /// The sheets that a camera sees, `slab` smallest voxel edges thick.
 ///
 /// The anchor plane goes through the middle of the volume when that lies well in front of the eye,
-/// else through the target (both are arbitrary; the first keeps slabs in phase while panning).
-pub fn eye_frame(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64) -> SheetFrame {
+/// else through the target (both are arbitrary; the first keeps slabs in phase while panning). Of a part of a
+/// picture, the sheets are that part of those of the whole.
+pub fn eye_frame(
+    camera: &Camera,
+    scene: &SceneSpace,
+    window: impl Into<PixelWindow>,
+    slab: f64,
+) -> SheetFrame {
+    let PixelWindow { whole, first, size } = window.into();
     let view = camera.scene_from_view();
     let axes = DMat3::from_cols(view.x_axis, -view.y_axis, -view.z_axis);
     let eye = camera.eye();
@@ -27,7 +35,7 @@ pub fn eye_frame(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64)
         Projection::Perspective if to_middle > 0.05 * camera.distance => to_middle,
         Projection::Perspective => camera.distance,
     };
-    let pitch_at_target = 2.0 * camera.half_height_at_target() / f64::from(size[1].max(1));
+    let pitch_at_target = 2.0 * camera.half_height_at_target() / f64::from(whole[1].max(1));
     let (pitch, inverse_distance, near) = match camera.projection {
         Projection::Orthographic => (pitch_at_target, 0.0, f64::NEG_INFINITY),
         Projection::Perspective => (
@@ -36,7 +44,7 @@ pub fn eye_frame(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64)
             NEAR_SHARE * camera.distance - distance,
         ),
     };
-    let middle = DVec2::new(f64::from(size[0]), f64::from(size[1])) / 2.0;
+    let pixels = |[i, j]: [u32; 2]| DVec2::new(f64::from(i), f64::from(j));
     SheetFrame::new(
         scene,
         &Placement {
@@ -45,7 +53,7 @@ pub fn eye_frame(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64)
             inverse_distance,
             pitch,
             // Pixel centres lie half a pixel from the picture's edge.
-            first_pixel: DVec2::splat(0.5) - middle,
+            first_pixel: DVec2::splat(0.5) + pixels(first) - pixels(whole) / 2.0,
             size,
             slab: slab * scene.smallest_edge().max(2.0 * scene.support_radius() / MAX_SLABS),
             near,
@@ -77,6 +85,22 @@ mod tests {
                 let a = scene().scene_from_index.transform_point3(frame.point(10.0, 7.0, 0.0));
                 let b = scene().scene_from_index.transform_point3(frame.point(10.0, 7.0, 0.1));
                 assert!(((b - a).length() - 0.1 * frame.obliquity(10.0, 7.0)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_of_a_picture_see_what_the_whole_sees() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let camera = Camera { projection, ..Camera::default() };
+            let whole = eye_frame(&camera, &scene(), [64, 48], 1.0);
+            let part = PixelWindow { whole: [64, 48], first: [20, 30], size: [8, 9] };
+            let part = eye_frame(&camera, &scene(), part, 1.0);
+            assert_eq!((part.first_depth, part.slab_count), (whole.first_depth, whole.slab_count));
+            for depth in [-0.3, 0.2] {
+                let miss = part.point(3.0, 5.0, depth) - whole.point(23.0, 35.0, depth);
+                assert!(miss.length() < 1e-9, "{projection:?}: {miss}");
+                assert!((part.obliquity(3.0, 5.0) - whole.obliquity(23.0, 35.0)).abs() < 1e-12);
             }
         }
     }

@@ -9,6 +9,7 @@ mod cell_set;
 mod eye_frame;
 mod light_frame;
 mod occupancy;
+mod pixel_window;
 mod probe;
 mod reach;
 mod sheet_frame;
@@ -21,6 +22,7 @@ pub use cell_set::CellSet;
 pub use eye_frame::eye_frame;
 pub use light_frame::{LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views};
 pub use occupancy::BrickSet;
+pub use pixel_window::PixelWindow;
 pub use probe::{Arrival, Probe, probe};
 pub use reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach, slab_reach,

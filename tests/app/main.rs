@@ -8,10 +8,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, Options, wgpu_setup};
-use chiaroscuro::data::Bricks;
 use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
-use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer, export_png};
-use chiaroscuro::model::{LightKind, Projection, TransferFunction};
+use chiaroscuro::data::{Bricks, Volume};
+use chiaroscuro::export::{export_png, read_picture};
+use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
+use chiaroscuro::model::{Depth, LightKind, Projection, Shot, TransferFunction};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -110,13 +111,17 @@ fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> Picture {
 }
 
 fn render_with(harness: &Harness<'_, App>, size: [u32; 2], options: &RenderOptions) -> Picture {
-    let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
-    let volume = Arc::new(volume);
-    let bricks = Arc::new(Bricks::of(&volume));
-    let context = Context::headless().expect("an adapter");
-    let mut renderer = Renderer::new(&context).expect("a renderer");
+    let (volume, bricks, mut renderer) = beside();
     let settings = harness.state().settings();
     renderer.render(&volume, &bricks, settings, size, options).expect("a picture")
+}
+
+/// The window's volume, and a renderer on a device of its own.
+fn beside() -> (Arc<Volume>, Arc<Bricks>, Renderer) {
+    let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
+    let bricks = Arc::new(Bricks::of(&volume));
+    let context = Context::headless().expect("an adapter");
+    (Arc::new(volume), bricks, Renderer::new(&context).expect("a renderer"))
 }
 
 pub(crate) fn click(harness: &mut Harness<'_, App>, label: &str) {
@@ -245,6 +250,29 @@ fn exports_are_what_the_renderer_makes() {
     export_png([200, 150], &render_with(&harness, [200, 150], &options).shown, true, None, &expected)
         .unwrap();
     assert!(pixels(&exported) == pixels(&expected));
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn fine_pictures_come_from_the_window() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fine.png");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&path, [60, 45], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    for (depth, ending, label) in [(Depth::Sixteen, "png", "PNG, 16 bit"), (Depth::Linear, "exr", "EXR")] {
+        click(&mut harness, label);
+        click(&mut harness, "4 samples per pixel");
+        click(&mut harness, "Export");
+        wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+        let app = harness.state();
+        let (volume, bricks, mut renderer) = beside();
+        let shot = Shot { samples: 2, depth, ..Shot::new([60, 45]) };
+        let expected = renderer.bands(&volume, &bricks, app.settings(), &shot).all().unwrap();
+        let found = read_picture(&path.with_extension(ending)).unwrap();
+        assert!(found == ([60, 45], expected.as_written(&shot)), "{label}");
+    }
     assert!(harness.state().errors().is_empty());
 }
 
@@ -429,6 +457,21 @@ fn turntables_and_copies_come_from_the_window() {
     let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap()));
     let frames = image::AnimationDecoder::into_frames(decoder.unwrap().apng().unwrap());
     assert_eq!(frames.count(), 72);
+    // The kind of file and its name follow each other.
+    click(&mut harness, "GIF");
+    click(&mut harness, "Export");
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let gif = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(
+        std::fs::read(path.with_extension("gif")).unwrap(),
+    ));
+    assert_eq!(image::AnimationDecoder::into_frames(gif.unwrap()).count(), 72);
+    click(&mut harness, "One file per picture");
+    click(&mut harness, "Export");
+    harness.run_steps(3);
+    click(&mut harness, "Cancel");
+    wait_until(&mut harness, "never cancelled", |app| !app.is_exporting());
+    let made = std::fs::read_dir(path.with_extension("")).unwrap().count();
+    assert!(made < 72, "{made} were made after all");
 
     harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), egui::Key::C);
     harness.run_steps(2);

@@ -4,6 +4,7 @@
 
 #![expect(clippy::print_stdout, reason = "what was measured, for whoever reads the log of a failure")]
 
+mod bands;
 mod caching;
 mod closed_form;
 mod collapse;

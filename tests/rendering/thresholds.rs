@@ -114,3 +114,7 @@ pub(crate) const CUT_COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 
 
 /// Light on the floor, absolute: a 16-bit float near 1, and the error of the midpoint rule along a ray.
 pub(crate) const FLOOR_SHADOW: f64 = 2e-3;
+
+/// A picture drawn in parts, or the mean of its samples, against the whole: an eighth of an 8-bit step. Origins
+/// of rays are rounded to 32 bits, the floor's light to 16, and sRGB is 13 times as steep near black.
+pub(crate) const PARTS: f64 = 1.0 / 255.0 / 8.0;

@@ -44,10 +44,10 @@ mod tests {
     fn differences_are_measured_and_amplified() {
         let even = |grey: u8| ColorImage::new([2, 1], vec![Color32::from_gray(grey); 2]);
         let same = Difference::of(&even(90), &even(90));
-        assert_eq!(same.distance, Distance { rmse: 0.0, largest: 0 });
+        assert_eq!(same.distance, Distance { rmse: 0.0, largest: 0.0 });
         let mut other = even(90);
         other.pixels[1] = Color32::from_rgb(90, 90, 93);
         let found = Difference::of(&even(90), &other);
-        assert_eq!((found.distance.largest, found.image.pixels[1]), (3, Color32::from_rgb(0, 0, 24)));
+        assert_eq!((found.distance.largest, found.image.pixels[1]), (3.0, Color32::from_rgb(0, 0, 24)));
     }
 }

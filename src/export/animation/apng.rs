@@ -1,0 +1,71 @@
+//! PNG that moves (APNG): every colour, and transparency as it is. Programs that do not know of such files
+//! show the first picture.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use super::{Moving, Reel};
+use crate::export::ExportError;
+use crate::export::png_file::rgb;
+use crate::export::whole_file::{place, temporary_beside};
+
+/// An APNG file.
+pub(super) struct Apng {
+    writer: png::Writer<BufWriter<File>>,
+    file: tempfile::NamedTempFile,
+    path: PathBuf,
+    transparent: bool,
+}
+
+impl Apng {
+    pub(super) fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+        let Reel { size: [width, height], frames, rate, transparent } = *reel;
+        let file = temporary_beside(path)?;
+        let out = BufWriter::new(file.reopen().map_err(ExportError::writing(path))?);
+        let mut encoder = png::Encoder::new(out, width, height);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_color(if transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+        encoder.set_animated(frames, 0)?;
+        encoder.set_frame_delay(1, rate)?;
+        encoder.validate_sequence(true);
+        Ok(Self { writer: encoder.write_header()?, file, path: path.to_owned(), transparent })
+    }
+}
+
+impl Moving for Apng {
+    fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
+        if self.transparent {
+            self.writer.write_image_data(shown)?;
+        } else {
+            self.writer.write_image_data(&rgb(shown))?;
+        }
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ExportError> {
+        let Self { writer, file, path, .. } = *self;
+        writer.finish()?;
+        place(file, &path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_says_how_many_pictures_it_has() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let reel = Reel { size: [3, 2], frames: 3, rate: 10, transparent: true };
+        let mut file = Box::new(Apng::create(&path, &reel).unwrap());
+        for at in 1..=3 {
+            file.add(&[at; 4 * 6], "").unwrap();
+        }
+        file.finish().unwrap();
+        let decoder = png::Decoder::new(std::io::BufReader::new(File::open(&path).unwrap()));
+        let info = decoder.read_info().unwrap();
+        assert_eq!(info.info().animation_control().unwrap().num_frames, 3);
+    }
+}

@@ -1,0 +1,33 @@
+//! A PNG file for each picture, which carries how it was made.
+
+use std::path::{Path, PathBuf};
+
+use super::{Moving, Reel};
+use crate::export::{ExportError, export_png};
+
+/// A folder of pictures.
+pub(super) struct Folder {
+    path: PathBuf,
+    reel: Reel,
+    written: u32,
+}
+
+impl Folder {
+    pub(super) fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+        std::fs::create_dir_all(path).map_err(ExportError::writing(path))?;
+        Ok(Self { path: path.to_owned(), reel: *reel, written: 0 })
+    }
+}
+
+impl Moving for Folder {
+    fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
+        let path = self.path.join(format!("{:04}.png", self.written));
+        export_png(self.reel.size, shown, self.reel.transparent, Some(record), &path)?;
+        self.written += 1;
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ExportError> {
+        Ok(())
+    }
+}

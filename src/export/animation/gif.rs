@@ -1,0 +1,99 @@
+//! GIF: 256 colours per picture, found for each anew, and no half transparency.
+
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::{Moving, Reel};
+use crate::export::ExportError;
+use crate::export::whole_file::{place, temporary_beside};
+
+/// How many pixels the search for colours looks at: every third, which nobody can tell from all of them.
+const SPEED: i32 = 3;
+
+/// Shortest time a picture is shown, in hundredths of a second: viewers slow down what is faster.
+const SHORTEST: u64 = 2;
+
+/// A GIF file.
+pub(super) struct Gif {
+    encoder: gif::Encoder<BufWriter<File>>,
+    file: tempfile::NamedTempFile,
+    path: PathBuf,
+    reel: Reel,
+    size: [u16; 2],
+    written: u32,
+}
+
+impl Gif {
+    pub(super) fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+        let unfit = ExportError::Unfit {
+            what: "GIF pictures have at most 65535 pixels along an edge",
+            path: path.to_owned(),
+        };
+        let [Ok(width), Ok(height)] = reel.size.map(u16::try_from) else { return Err(unfit) };
+        let file = temporary_beside(path)?;
+        let out = BufWriter::new(file.reopen().map_err(ExportError::writing(path))?);
+        let mut encoder = gif::Encoder::new(out, width, height, &[])?;
+        encoder.set_repeat(gif::Repeat::Infinite)?;
+        Ok(Self { encoder, file, path: path.to_owned(), reel: *reel, size: [width, height], written: 0 })
+    }
+
+    /// Hundredths of a second until the next picture: whole ones, which add up to the rate.
+    fn delay(&self) -> u16 {
+        let begins = |frame: u32| (200 * u64::from(frame) / u64::from(self.reel.rate.max(1))).div_ceil(2);
+        (begins(self.written + 1) - begins(self.written)).max(SHORTEST) as u16
+    }
+}
+
+impl Moving for Gif {
+    fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
+        let mut pixels = shown.to_vec();
+        for pixel in pixels.chunks_exact_mut(4) {
+            pixel[3] = if self.reel.transparent && pixel[3] < 128 { 0 } else { 255 };
+        }
+        let mut frame = gif::Frame::from_rgba_speed(self.size[0], self.size[1], &mut pixels, SPEED);
+        frame.delay = self.delay();
+        frame.dispose = gif::DisposalMethod::Background;
+        self.encoder.write_frame(&frame)?;
+        self.written += 1;
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ExportError> {
+        let Self { encoder, file, path, reel, written, .. } = *self;
+        if written != reel.frames {
+            return Err(ExportError::Unfit { what: "pictures are missing", path });
+        }
+        encoder.into_inner()?.flush().map_err(ExportError::writing(&path))?;
+        place(file, &path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_come_back_and_take_their_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gif");
+        let reel = Reel { size: [2, 1], frames: 24, rate: 24, transparent: true };
+        let mut file = Box::new(Gif::create(&path, &reel).unwrap());
+        for _ in 0..24 {
+            file.add(&[200, 100, 50, 255, 9, 9, 9, 0], "").unwrap();
+        }
+        file.finish().unwrap();
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let mut decoder = options.read_info(File::open(&path).unwrap()).unwrap();
+        let (mut frames, mut hundredths) = (0, 0);
+        while let Some(frame) = decoder.read_next_frame().unwrap() {
+            assert_eq!(frame.buffer[..4], [200, 100, 50, 255]);
+            assert_eq!(frame.buffer[7], 0, "transparent");
+            frames += 1;
+            hundredths += u32::from(frame.delay);
+        }
+        assert_eq!((frames, hundredths), (24, 100), "a second");
+        assert!(Gif::create(&path, &Reel { size: [70000, 1], ..reel }).is_err());
+    }
+}

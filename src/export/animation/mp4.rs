@@ -1,0 +1,194 @@
+//! MP4, by ffmpeg where it is installed: video encoders are large, and some are patented.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{BufWriter, Read as _, Seek as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+
+use super::{Moving, Reel};
+use crate::export::ExportError;
+use crate::export::png_file::rgb;
+use crate::export::whole_file::{place, temporary_beside};
+
+/// With x264: little is lost, which smooth shading needs.
+const BEST: [&str; 4] = ["-c:v", "libx264", "-crf", "16"];
+
+/// With whatever else encodes MP4.
+const NEXT_BEST: [&str; 2] = ["-q:v", "2"];
+
+/// Edges are even, as players want them, and colours those of high-definition television.
+const FILTER: &str = "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+
+/// Most bytes of its words that are read.
+const MOST_WORDS: u64 = 1 << 16;
+
+/// A running ffmpeg, which ends with whatever wanted its video.
+struct Ffmpeg {
+    child: Child,
+    frames: Option<BufWriter<ChildStdin>>,
+    /// What it says: in a file, since a full pipe would stop it.
+    words: File,
+}
+
+impl Drop for Ffmpeg {
+    fn drop(&mut self) {
+        self.frames = None;
+        // It has ended already, unless the video is not wanted any more.
+        if let Err(err) = self.child.kill().and_then(|()| self.child.wait()) {
+            log::warn!("ffmpeg could not be ended: {err}");
+        }
+    }
+}
+
+impl Ffmpeg {
+    /// Why it stopped, in its own last words if it had any.
+    fn failure(&mut self, path: &Path, otherwise: &str) -> ExportError {
+        self.frames = None;
+        // Before it has ended, it may not have said why.
+        let status = self.child.wait().map_or_else(|err| err.to_string(), |status| status.to_string());
+        let mut said = Vec::new();
+        let read =
+            self.words.rewind().and_then(|()| (&mut self.words).take(MOST_WORDS).read_to_end(&mut said));
+        let said = String::from_utf8_lossy(if read.is_ok() { &said } else { &[] }).into_owned();
+        let last = said.lines().map(str::trim).rfind(|line| !line.is_empty());
+        let said = last.map_or_else(|| format!("{otherwise} ({status})"), str::to_owned);
+        ExportError::Ffmpeg { path: path.to_owned(), said }
+    }
+}
+
+/// A video that ffmpeg is making.
+pub(super) struct Mp4 {
+    ffmpeg: Ffmpeg,
+    file: tempfile::NamedTempFile,
+    path: PathBuf,
+    missing: u32,
+}
+
+impl Mp4 {
+    /// Starts ffmpeg, which is called `program`.
+    pub(super) fn create(path: &Path, reel: &Reel, program: &OsStr) -> Result<Self, ExportError> {
+        if reel.transparent {
+            let what = "MP4 has no transparency; PNG and GIF have, or leave the background in";
+            return Err(ExportError::Unfit { what, path: path.to_owned() });
+        }
+        let not_there =
+            |source| ExportError::NoFfmpeg { program: program.to_string_lossy().into_owned(), source };
+        let known = Command::new(program).args(["-v", "error", "-encoders"]).output().map_err(not_there)?;
+        let has_x264 = String::from_utf8_lossy(&known.stdout).contains(" libx264 ");
+        let file = temporary_beside(path)?;
+        let words = tempfile::tempfile().map_err(ExportError::writing(path))?;
+        let [width, height] = reel.size;
+        let mut child = Command::new(program)
+            .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"])
+            .args(["-s", &format!("{width}x{height}"), "-r", &reel.rate.to_string(), "-i", "-", "-an"])
+            .args(["-vf", FILTER, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"])
+            .args(if has_x264 { &BEST[..] } else { &NEXT_BEST[..] })
+            // The head comes first, so that players begin before they have it all.
+            .args(["-movflags", "+faststart", "-f", "mp4", "-y"])
+            .arg(file.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(words.try_clone().map_err(ExportError::writing(path))?)
+            .spawn()
+            .map_err(not_there)?;
+        let frames = child.stdin.take().map(BufWriter::new);
+        let ffmpeg = Ffmpeg { child, frames, words };
+        Ok(Self { ffmpeg, file, path: path.to_owned(), missing: reel.frames })
+    }
+}
+
+impl Moving for Mp4 {
+    fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
+        self.missing = self.missing.saturating_sub(1);
+        match self.ffmpeg.frames.as_mut().map(|frames| frames.write_all(&rgb(shown))) {
+            Some(Ok(())) => Ok(()),
+            Some(Err(err)) => Err(self.ffmpeg.failure(&self.path, &err.to_string())),
+            None => Err(self.ffmpeg.failure(&self.path, "it takes no more pictures")),
+        }
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ExportError> {
+        let Self { mut ffmpeg, file, path, missing } = *self;
+        if missing > 0 {
+            return Err(ExportError::Unfit { what: "pictures are missing", path });
+        }
+        if let Some(Err(err)) = ffmpeg.frames.take().map(|mut frames| frames.flush()) {
+            return Err(ffmpeg.failure(&path, &err.to_string()));
+        }
+        // Without more pictures it comes to its end.
+        let ended = ffmpeg.child.wait().map_err(ExportError::writing(&path))?;
+        let length = file.as_file().metadata().map_err(ExportError::writing(&path))?.len();
+        if !ended.success() || length == 0 {
+            return Err(ffmpeg.failure(&path, "it wrote nothing"));
+        }
+        place(file, &path)
+    }
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt as _;
+
+    const REEL: Reel = Reel { size: [3, 2], frames: 2, rate: 24, transparent: false };
+
+    /// A stand-in for ffmpeg: knows its encoders, then does what `script` says with the video's name in $last.
+    fn stand_in(folder: &Path, script: &str) -> PathBuf {
+        let path = folder.join("stand-in");
+        let head =
+            "#!/bin/sh\nfor last; do :; done\n[ \"$last\" = -encoders ] && { echo ' V libx264 x'; exit; }\n";
+        std::fs::write(&path, format!("{head}{script}\n")).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+        path
+    }
+
+    fn make(folder: &Path, program: &Path) -> Result<(), ExportError> {
+        let mut file = Box::new(Mp4::create(&folder.join("a.mp4"), &REEL, program.as_os_str())?);
+        for at in 0..2 {
+            file.add(&[at; 24], "")?;
+        }
+        file.finish()
+    }
+
+    #[test]
+    fn ffmpeg_gets_every_picture_and_its_video_takes_the_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = stand_in(folder.path(), "echo \"$@\" | tr ' ' '\\n' > \"$0.said\"; cat > \"$last\"");
+        make(folder.path(), &program).unwrap();
+        let video = std::fs::read(folder.path().join("a.mp4")).unwrap();
+        assert_eq!(video, [[0; 18], [1; 18]].concat(), "without alpha");
+        let said = std::fs::read_to_string(folder.path().join("stand-in.said")).unwrap();
+        let said: Vec<_> = said.lines().collect();
+        for expected in [["-s", "3x2"], ["-r", "24"], ["-c:v", "libx264"]] {
+            assert!(said.windows(2).any(|pair| pair == expected), "{expected:?} in {said:?}");
+        }
+    }
+
+    #[test]
+    fn failures_are_told_in_its_words_and_leave_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        for (script, word) in [
+            ("echo 'no such codec' >&2; exit 1", "no such codec"),
+            ("cat > /dev/null; echo 'disk full' >&2; exit 1", "disk full"),
+            ("cat > /dev/null", "it wrote nothing"),
+        ] {
+            let program = stand_in(folder.path(), script);
+            let err = make(folder.path(), &program).unwrap_err().to_string();
+            assert!(err.contains(word) || err.contains("ipe"), "{script}: {err}");
+        }
+        let err = make(folder.path(), Path::new("/no/such/ffmpeg")).unwrap_err();
+        assert!(matches!(err, ExportError::NoFfmpeg { .. }), "{err}");
+        let transparent = Reel { transparent: true, ..REEL };
+        assert!(Mp4::create(&folder.path().join("a.mp4"), &transparent, "ffmpeg".as_ref()).is_err());
+        // And one that is not wanted any more ends.
+        let program = stand_in(folder.path(), "cat > \"$last\"");
+        let mut short = Mp4::create(&folder.path().join("a.mp4"), &REEL, program.as_os_str()).unwrap();
+        short.add(&[0; 24], "").unwrap();
+        drop(short);
+        let left: Vec<_> =
+            std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        assert_eq!(left, ["stand-in"]);
+    }
+}

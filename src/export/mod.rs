@@ -1,0 +1,17 @@
+//! Files that go out: pictures, pictures that move, and anything that must be whole or not there at all.
+//!
+//! Pictures come in bands of rows from the top, so that none need be in memory as a whole. Knows neither the
+//! renderer nor the window.
+
+mod animation;
+mod error;
+mod exr_file;
+mod picture_file;
+mod png_file;
+mod whole_file;
+
+pub use animation::{Animation, AnimationFormat, Reel};
+pub use error::{ExportError, ReadPictureError};
+pub use picture_file::{PictureFormat, Rows, read_picture, read_record, write_picture};
+pub use png_file::{encode_png, export_png};
+pub use whole_file::write_atomically;

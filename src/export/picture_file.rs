@@ -1,0 +1,184 @@
+//! Pictures of any size as files, from bands of rows.
+
+use std::path::Path;
+
+use super::{ExportError, ReadPictureError, exr_file, png_file};
+use crate::model::{Depth, Shot};
+
+/// Under which name a picture carries its record.
+pub(super) const RECORD: &str = "chiaroscuro";
+
+/// Kinds of picture files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Display colours, 8 or 16 bits, straight alpha.
+    Png,
+    /// Linear light, 16-bit floats, premultiplied.
+    Exr,
+}
+
+impl PictureFormat {
+    /// What a name stands for: EXR where it ends so, else PNG.
+    pub fn of_path(path: &Path) -> Self {
+        let is_exr = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+        if is_exr { Self::Exr } else { Self::Png }
+    }
+
+    /// The depth in which a file of this kind is written when its display colours would have `wanted`.
+    pub fn depth(self, wanted: Depth) -> Depth {
+        match (self, wanted) {
+            (Self::Exr, _) => Depth::Linear,
+            (Self::Png, Depth::Sixteen) => Depth::Sixteen,
+            (Self::Png, _) => Depth::Eight,
+        }
+    }
+}
+
+/// Rows of a picture, RGBA: display colours with straight alpha, or linear and premultiplied light.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Rows {
+    /// sRGB bytes.
+    Bytes(Vec<u8>),
+    /// 0 … 1, or light.
+    Floats(Vec<f32>),
+}
+
+impl Rows {
+    /// What a file of them gives back.
+    #[must_use]
+    pub fn as_written(self, shot: &Shot) -> Self {
+        match self {
+            Self::Bytes(mut shown) => {
+                if !shot.transparent {
+                    shown.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
+                }
+                Self::Bytes(shown)
+            }
+            Self::Floats(mut shown) => {
+                if shot.depth == Depth::Linear {
+                    for value in &mut shown {
+                        *value = half::f16::from_f32(*value).to_f32();
+                    }
+                } else {
+                    for value in &mut shown {
+                        *value = f32::from(png_file::word(*value)) / 65535.0;
+                    }
+                    if !shot.transparent {
+                        shown.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
+                    }
+                }
+                Self::Floats(shown)
+            }
+        }
+    }
+
+    /// All of them where 1 is white.
+    pub fn values(&self) -> Vec<f32> {
+        match self {
+            Self::Bytes(shown) => shown.iter().map(|&byte| f32::from(byte) / 255.0).collect(),
+            Self::Floats(shown) => shown.clone(),
+        }
+    }
+}
+
+/// Writes a picture whose rows come band by band from the top, whole or not at all.
+///
+/// It carries a record ([`crate::model::Record`]) as text. How its numbers are written follows from the name
+/// and from [`Shot::depth`], which must fit ([`PictureFormat::depth`]).
+///
+/// # Errors
+/// What `rows` says; when the kind of file does not fit the depth, or the disk refuses.
+pub fn write_picture<E: From<ExportError>>(
+    path: &Path,
+    shot: &Shot,
+    record: Option<&str>,
+    rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
+) -> Result<(), E> {
+    let format = PictureFormat::of_path(path);
+    if format.depth(shot.depth) != shot.depth {
+        let what = match format {
+            PictureFormat::Png => "PNG files hold 8 or 16 bits; EXR files hold linear light",
+            PictureFormat::Exr => "EXR files hold linear light; PNG files hold 8 or 16 bits",
+        };
+        return Err(ExportError::Unfit { what, path: path.to_owned() }.into());
+    }
+    match format {
+        PictureFormat::Png => png_file::write(path, shot, record, rows),
+        PictureFormat::Exr => exr_file::write(path, shot, record, rows),
+    }
+}
+
+/// A picture's columns and rows, and all its rows: bytes of 8-bit PNG, else floats.
+///
+/// # Errors
+/// When the file cannot be read or is no picture.
+pub fn read_picture(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
+    match PictureFormat::of_path(path) {
+        PictureFormat::Png => png_file::read(path),
+        PictureFormat::Exr => exr_file::read(path),
+    }
+}
+
+/// The record that a picture file carries, if it does.
+///
+/// # Errors
+/// When the file cannot be read or is no picture.
+pub fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
+    match PictureFormat::of_path(path) {
+        PictureFormat::Png => png_file::read_record(path),
+        PictureFormat::Exr => exr_file::read_record(path),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_say_what_files_hold() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut shot = Shot::new([1, 1]);
+        for (name, depth, fits) in [
+            ("a.png", Depth::Eight, true),
+            ("a.PNG", Depth::Sixteen, true),
+            ("a.png", Depth::Linear, false),
+            ("a.exr", Depth::Eight, false),
+            ("a.EXR", Depth::Linear, true),
+        ] {
+            shot.depth = depth;
+            let mut rows = match depth {
+                Depth::Eight => Some(Rows::Bytes(vec![0; 4])),
+                _ => Some(Rows::Floats(vec![0.0; 4])),
+            };
+            let mut next = || Ok::<_, ExportError>(rows.take());
+            let written = write_picture(&folder.path().join(name), &shot, None, &mut next);
+            assert_eq!(written.is_ok(), fits, "{name} {depth:?}: {written:?}");
+        }
+        assert_eq!(PictureFormat::of_path(Path::new("a.exr")).depth(Depth::Sixteen), Depth::Linear);
+    }
+
+    #[test]
+    fn nothing_is_left_of_a_picture_that_fails() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.png", "a.exr"] {
+            let path = folder.path().join(name);
+            let depth = PictureFormat::of_path(&path).depth(Depth::Eight);
+            let shot = Shot { depth, ..Shot::new([2, 40]) };
+            let mut bands = 0;
+            let mut next = || {
+                bands += 1;
+                match (bands, depth) {
+                    (1, Depth::Eight) => Ok(Some(Rows::Bytes(vec![0; 8 * 20]))),
+                    (1, _) => Ok(Some(Rows::Floats(vec![0.0; 8 * 20]))),
+                    _ => Err(ExportError::Unfit { what: "stop", path: "x".into() }),
+                }
+            };
+            let err = write_picture(&path, &shot, None, &mut next).unwrap_err();
+            assert!(err.to_string().starts_with("stop"), "{name}: {err}");
+            // Rows that end too early are no picture, either.
+            let mut next = || Ok::<_, ExportError>(None);
+            assert!(write_picture(&path, &shot, None, &mut next).is_err(), "{name}");
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,168 @@
+//! PNG: display colours in 8 or 16 bits, with a record as text.
+
+use std::io::{BufWriter, Write as _};
+use std::path::Path;
+
+use super::picture_file::RECORD;
+use super::whole_file::{place, temporary_beside, write_atomically};
+use super::{ExportError, ReadPictureError, Rows};
+use crate::model::{Depth, Shot};
+
+/// Most bytes that are read of a picture's texts: a thousand times a real record.
+const MOST_TEXT: usize = 16 << 20;
+
+/// Writes a picture of sRGB bytes, RGBA row by row, as PNG: RGB, or RGBA with straight alpha when
+/// it is transparent. It carries a record ([`crate::model::Record`]) as text.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn export_png(
+    size: [u32; 2],
+    shown: &[u8],
+    transparent: bool,
+    record: Option<&str>,
+    path: &Path,
+) -> Result<(), ExportError> {
+    let bytes = if transparent {
+        encode_png(size, png::ColorType::Rgba, shown, record)?
+    } else {
+        encode_png(size, png::ColorType::Rgb, &rgb(shown), record)?
+    };
+    write_atomically(path, &bytes)
+}
+
+/// Bytes of colours as PNG, with a record if there is one.
+///
+/// # Errors
+/// When there are more or fewer bytes than pixels.
+pub fn encode_png(
+    [width, height]: [u32; 2],
+    color: png::ColorType,
+    bytes: &[u8],
+    record: Option<&str>,
+) -> Result<Vec<u8>, png::EncodingError> {
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, width, height);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_color(color);
+    if let Some(record) = record {
+        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()?;
+    Ok(png)
+}
+
+/// Writes a picture as its rows come.
+pub(super) fn write<E: From<ExportError>>(
+    path: &Path,
+    shot: &Shot,
+    record: Option<&str>,
+    rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
+) -> Result<(), E> {
+    let failed = ExportError::writing(path);
+    let file = temporary_beside(path)?;
+    let out = BufWriter::new(file.reopen().map_err(&failed)?);
+    let mut encoder = png::Encoder::new(out, shot.size[0], shot.size[1]);
+    encoder.set_depth(if shot.depth == Depth::Eight { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
+    encoder.set_color(if shot.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    if let Some(record) = record {
+        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned()).map_err(ExportError::Encode)?;
+    }
+    let writer = encoder.write_header().and_then(|writer| writer.into_stream_writer_with_size(1 << 20));
+    let mut writer = writer.map_err(ExportError::Encode)?;
+    while let Some(rows) = rows()? {
+        let bytes = match rows {
+            Rows::Bytes(shown) if shot.transparent => shown,
+            Rows::Bytes(shown) => rgb(&shown),
+            Rows::Floats(shown) => words(&shown, shot.transparent),
+        };
+        writer.write_all(&bytes).map_err(&failed)?;
+    }
+    writer.finish().map_err(ExportError::Encode)?;
+    Ok(place(file, path)?)
+}
+
+/// The colours of a picture without its alpha.
+pub(super) fn rgb(shown: &[u8]) -> Vec<u8> {
+    shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
+}
+
+/// The same of 0 … 1 in 16 bits, high byte first, with its alpha or without.
+fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
+    let kept = if alpha { 4 } else { 3 };
+    let texels = shown.chunks_exact(4);
+    texels.flat_map(|texel| texel[..kept].iter().flat_map(|&value| word(value).to_be_bytes())).collect()
+}
+
+/// 0 … 1 in 16 bits.
+pub(super) fn word(value: f32) -> u16 {
+    (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+}
+
+/// All of a PNG file.
+pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
+    let image = image::open(path).map_err(|err| ReadPictureError::new(path, &err))?;
+    let size = [image.width(), image.height()];
+    let is_deep = matches!(image.color(), image::ColorType::Rgb16 | image::ColorType::Rgba16);
+    let rows = if is_deep {
+        let words = image.to_rgba16().into_raw();
+        Rows::Floats(words.into_iter().map(|word| f32::from(word) / 65535.0).collect())
+    } else {
+        Rows::Bytes(image.to_rgba8().into_raw())
+    };
+    Ok((size, rows))
+}
+
+/// The record in a PNG file, if there is one.
+pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
+    let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
+    let file = std::fs::File::open(path).map_err(|err| failed(&err))?;
+    let limits = png::Limits { bytes: MOST_TEXT };
+    let decoder = png::Decoder::new_with_limits(std::io::BufReader::new(file), limits);
+    let reader = decoder.read_info().map_err(|err| failed(&err))?;
+    let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD);
+    found.map(|text| text.get_text().map_err(|err| failed(&err))).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::read_picture;
+
+    #[test]
+    fn a_png_keeps_every_byte() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let shown = (0..4 * 6).map(|i| (i * 10) as u8).collect::<Vec<_>>();
+        export_png([3, 2], &shown, true, None, &path).unwrap();
+        assert_eq!(read_record(&path).unwrap(), None);
+        assert_eq!(image::open(&path).unwrap().to_rgba8().into_raw(), shown);
+        let record = "{\"name\": \"Größe, 体積\"}";
+        export_png([3, 2], &shown, true, Some(record), &path).unwrap();
+        assert_eq!(image::open(&path).unwrap().to_rgba8().into_raw(), shown);
+        assert_eq!(read_record(&path).unwrap().as_deref(), Some(record));
+        std::fs::write(&path, b"no picture").unwrap();
+        assert!(read_record(&path).is_err() && read_record(Path::new("/no/such.png")).is_err());
+    }
+
+    #[test]
+    fn sixteen_bits_keep_what_eight_lose() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let value = |i: usize| i as f32 / 65535.0;
+        for transparent in [false, true] {
+            let shot = Shot { depth: Depth::Sixteen, transparent, ..Shot::new([5, 4]) };
+            let shown: Vec<f32> = (0..80).map(|i| value(i * 3)).collect();
+            // A band of three rows and one of one.
+            let mut bands = vec![shown[60..].to_vec(), shown[..60].to_vec()];
+            let mut next = || Ok::<_, ExportError>(bands.pop().map(Rows::Floats));
+            super::super::write_picture(&path, &shot, None, &mut next).unwrap();
+            let expected = |i: usize| if i % 4 == 3 && !transparent { 65535 } else { i as u16 * 3 };
+            let read = image::open(&path).unwrap().to_rgba16().into_raw();
+            assert_eq!(read, (0..80).map(expected).collect::<Vec<_>>());
+            assert_eq!(read_picture(&path).unwrap(), ([5, 4], Rows::Floats(shown).as_written(&shot)));
+        }
+    }
+}
