@@ -232,10 +232,12 @@ impl App {
                 Ok(function) => self.settings.transfer = function,
                 Err(err) => self.messages.error("the transfer function was not imported", err),
             },
-            Purpose::ExportTransfer => match files::export_transfer(path, &self.settings.transfer) {
-                Ok(()) => self.messages.note(format!("Wrote {}", path.display())),
-                Err(err) => self.messages.error("the transfer function was not written", err),
-            },
+            Purpose::ExportTransfer => {
+                match files::export_transfer(path, &self.settings.transfer, self.value_range()) {
+                    Ok(()) => self.messages.note(format!("Wrote {}", path.display())),
+                    Err(err) => self.messages.error("the transfer function was not written", err),
+                }
+            }
             Purpose::CompareSettings => {
                 let read = files::load_record(path);
                 match read.and_then(|read| self.with_record(&read, self.value_range())) {

@@ -7,7 +7,7 @@ use eframe::egui;
 
 use super::work::Work;
 use crate::data::read_small;
-use crate::model::{IMPORTED, Record, Settings, TransferFunction, VolumeRecord, import, to_paraview};
+use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, VolumeRecord, export, import};
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,8 +50,12 @@ impl Purpose {
             Self::LoadSettings | Self::CompareSettings => {
                 "a .json file, or a .png or .exr picture that was exported"
             }
-            Self::ImportTransfer => "ParaView .json, Slicer .vp, MRIcroGL .clut, ImageJ .lut",
-            Self::ExportTransfer => "a .json file, as ParaView's colour maps",
+            Self::ImportTransfer => {
+                "ParaView, AGAVE .json, Slicer .vp, Inviwo .itf, Voreen .tfi, MRIcroGL .clut, ImageJ .lut"
+            }
+            Self::ExportTransfer => {
+                "ParaView .json, Slicer .vp or .vp.json, Inviwo .itf, MRIcroGL .clut, ImageJ .lut, our own .preset.json"
+            }
             Self::SaveSettings => "a .json file",
             Self::ExportPicture => ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turn",
             Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
@@ -103,9 +107,9 @@ impl Files {
             Purpose::ImportTransfer => {
                 Box::pin(dialog.add_filter("Transfer functions", &IMPORTED).pick_file())
             }
-            Purpose::ExportTransfer => {
-                Box::pin(dialog.add_filter("ParaView", &["json"]).set_file_name("colors.json").save_file())
-            }
+            Purpose::ExportTransfer => Box::pin(
+                dialog.add_filter("Transfer functions", &EXPORTED).set_file_name("colors.json").save_file(),
+            ),
             Purpose::SaveSettings => {
                 Box::pin(dialog.add_filter("Settings", &["json"]).set_file_name("settings.json").save_file())
             }
@@ -235,10 +239,13 @@ pub(super) fn import_transfer(path: &Path, range: (f64, f64)) -> Result<Transfer
 }
 
 /// Writes a transfer function for another program.
-pub(super) fn export_transfer(path: &Path, function: &TransferFunction) -> Result<(), String> {
-    let name = path.file_stem().map_or_else(|| "Chiaroscuro".into(), |stem| stem.to_string_lossy());
-    crate::export::write_atomically(path, to_paraview(function, &name).as_bytes())
-        .map_err(|err| err.to_string())
+pub(super) fn export_transfer(
+    path: &Path,
+    function: &TransferFunction,
+    range: (f64, f64),
+) -> Result<(), String> {
+    let bytes = export(path, function, range).map_err(|err| err.to_string())?;
+    crate::export::write_atomically(path, &bytes).map_err(|err| err.to_string())
 }
 
 /// Whether a file is a picture by its name.

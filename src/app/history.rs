@@ -79,11 +79,11 @@ mod tests {
             2 => settings.shadows.strength = share,
             3 => settings.shading.ambient = share,
             4 => settings.lights[0].on ^= true,
-            5 => settings.transfer.points.push(crate::model::ControlPoint {
-                value: amount as f64,
-                color: [share as f32; 3],
-                opacity: share,
-            }),
+            5 => settings.transfer.points.push(crate::model::ControlPoint::new(
+                amount as f64,
+                [share as f32; 3],
+                share,
+            )),
             6 => drop(settings.views.insert((amount % 9) as u8 + 1, settings.camera.clone())),
             _ => settings.lighting.scale = share + 0.5,
         }

@@ -171,7 +171,7 @@ impl TransferEditor {
             let (value, opacity) = axes.values(at);
             let index = function.points.partition_point(|point| point.value <= value);
             let color = plot::srgb(function.at(value).0);
-            function.points.insert(index, ControlPoint { value, color, opacity });
+            function.points.insert(index, ControlPoint::new(value, color, opacity));
             self.selected = Some(index);
         }
     }

@@ -51,9 +51,9 @@ pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
         (1.0f64.max(bright + 0.01), [1.0, 0.97, 0.92], 0.96),
     ];
     let points = stops
-        .map(|(density, color, opacity)| ControlPoint { value: volume.value_of(density), color, opacity })
+        .map(|(density, color, opacity)| ControlPoint::new(volume.value_of(density), color, opacity))
         .to_vec();
-    TransferFunction { points, interpolation: Interpolation::Opacity }
+    TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() }
 }
 
 /// The density at which the object begins.

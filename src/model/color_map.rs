@@ -105,9 +105,7 @@ impl TransferFunction {
             let value = low + span * f64::from(stop) / 8.0;
             let near = |point: &ControlPoint| (point.value - value).abs() <= NEAREST * span;
             if !self.points.iter().any(near) {
-                let index = self.points.partition_point(|point| point.value <= value);
-                let opacity = self.opacity_at(value);
-                self.points.insert(index, ControlPoint { value, color: [0.0; 3], opacity });
+                self.insert_on_curve(value);
             }
         }
         for point in &mut self.points {
@@ -129,7 +127,14 @@ impl TransferFunction {
         for point in &mut self.points {
             point.value = sum - point.value;
         }
+        // The way from a point to the next is now the way from the next to it.
+        let ways = self.points.len() - 1;
+        let mut easings: Vec<_> = self.points[..ways].iter().map(|point| point.easing).collect();
+        easings.reverse();
         self.points.reverse();
+        for (point, easing) in self.points.iter_mut().zip(easings) {
+            point.easing = easing;
+        }
     }
 
     /// Moves all points along the values, and spreads them around their middle.
@@ -147,7 +152,7 @@ mod tests {
     use super::*;
 
     fn ramp() -> TransferFunction {
-        let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         TransferFunction {
             points: vec![point(0.0, 0.0), point(100.0, 0.0), point(200.0, 0.5), point(300.0, 0.9)],
             ..TransferFunction::default()

@@ -2,9 +2,9 @@
 //! negative extinction or as an endless loop.
 
 use super::{
-    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Ground, Hood, Interpolation, Kernel, Light,
-    MAX_BIAS_VOXELS, MAX_GROUND_HEIGHT, MAX_GROUND_RADIUS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling,
-    Settings, Shading, Shadows,
+    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Ground, Hood, Kernel, Light, MAX_BIAS_VOXELS,
+    MAX_GROUND_HEIGHT, MAX_GROUND_RADIUS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling, Settings, Shading,
+    Shadows,
 };
 
 impl Settings {
@@ -64,12 +64,11 @@ impl Settings {
         }
         for function in [&mut self.transfer, &mut self.lighting.curve] {
             function.points.retain(|point| point.value.is_finite());
-            for ControlPoint { value: _, color, opacity } in &mut function.points {
+            for ControlPoint { value: _, color, opacity, easing: _ } in &mut function.points {
                 rgb(color);
                 number(opacity, 0.0, 1.0, 0.0);
             }
             function.sort();
-            let (Interpolation::Opacity | Interpolation::Extinction) = function.interpolation;
         }
         number(&mut self.lighting.scale, 0.0, 1e3, 1.0);
         let Cuts { crop, plane } = &mut self.cuts;
@@ -151,7 +150,7 @@ mod tests {
         settings.camera.distance = f64::NAN;
         settings.shadows.slab = 0.0;
         settings.lights = vec![Light { intensity: -3.0, ..Light::default() }; 20];
-        settings.transfer.points.push(ControlPoint { value: f64::NAN, color: [2.0; 3], opacity: 0.1 });
+        settings.transfer.points.push(ControlPoint::new(f64::NAN, [2.0; 3], 0.1));
         settings.opacity_unit = Length::Mm(0.0);
         settings.sanitise();
         assert_eq!(settings.camera.distance, 5.2);

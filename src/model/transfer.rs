@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{linear_from_oklab, oklab_from_linear};
 use crate::math::SceneSpace;
 
 /// Entries of a baked table; values between are interpolated.
@@ -25,6 +26,41 @@ pub enum Interpolation {
     Extinction,
 }
 
+/// How colours between two control points are mixed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mixing {
+    /// As light: linear RGB.
+    #[default]
+    Light,
+    /// As they are seen: Oklab, where lightness is even and mixtures stay clean.
+    Seen,
+}
+
+/// How a transfer function goes from one control point to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Easing {
+    /// Straight.
+    #[default]
+    Linear,
+    /// With level ends: 3t² − 2t³.
+    Smooth,
+    /// It stays as it is until the next point.
+    Step,
+}
+
+impl Easing {
+    /// How much of the next point there is at a share of the way to it.
+    fn share(self, t: f64) -> f64 {
+        match self {
+            Self::Linear => t,
+            Self::Smooth => t * t * (3.0 - 2.0 * t),
+            Self::Step => 0.0,
+        }
+    }
+}
+
 /// A point of a transfer function.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ControlPoint {
@@ -35,6 +71,16 @@ pub struct ControlPoint {
     pub color: [f32; 3],
     /// Per opacity unit, 0 … 1.
     pub opacity: f64,
+    /// The way to the next point.
+    #[serde(default)]
+    pub easing: Easing,
+}
+
+impl ControlPoint {
+    /// A point from which it goes straight to the next.
+    pub fn new(value: f64, color: [f32; 3], opacity: f64) -> Self {
+        Self { value, color, opacity, easing: Easing::Linear }
+    }
 }
 
 fn white() -> [f32; 3] {
@@ -49,6 +95,9 @@ pub struct TransferFunction {
     /// How opacity runs between the points.
     #[serde(default)]
     pub interpolation: Interpolation,
+    /// How colours between the points are mixed.
+    #[serde(default)]
+    pub mixing: Mixing,
 }
 
 /// A transfer function as a table over a value range: linear RGB and extinction per scene unit.
@@ -61,6 +110,11 @@ pub struct BakedTransfer {
 /// One sRGB component to linear light (IEC 61966-2-1).
 pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The way back.
+pub fn srgb_from_linear(linear: f64) -> f64 {
+    if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// −ln(1 − α) with α cut at [`MAX_OPACITY`]: optical depth of one opacity unit.
@@ -85,14 +139,34 @@ impl TransferFunction {
         }
         let a = &self.points[upper - 1];
         let Some(b) = self.points.get(upper) else { return (color(a), optical_depth(a.opacity)) };
-        let t = (value - a.value) / (b.value - a.value);
+        let t = a.easing.share((value - a.value) / (b.value - a.value));
         let mix = |x: f64, y: f64| x + (y - x) * t;
-        let (ca, cb) = (color(a), color(b));
         let depth = match self.interpolation {
             Interpolation::Opacity => optical_depth(mix(a.opacity, b.opacity)),
             Interpolation::Extinction => mix(optical_depth(a.opacity), optical_depth(b.opacity)),
         };
-        (std::array::from_fn(|i| mix(ca[i], cb[i])), depth)
+        let (ca, cb) = (color(a), color(b));
+        let mixed = |ca: [f64; 3], cb: [f64; 3]| std::array::from_fn(|i| mix(ca[i], cb[i]));
+        let rgb = match self.mixing {
+            Mixing::Light => mixed(ca, cb),
+            Mixing::Seen => linear_from_oklab(mixed(oklab_from_linear(ca), oklab_from_linear(cb))),
+        };
+        (rgb, depth)
+    }
+
+    /// A point on the curve.
+    pub fn point_at(&self, value: f64) -> ControlPoint {
+        let color = self.at(value).0.map(|c| srgb_from_linear(c) as f32);
+        ControlPoint::new(value, color, self.opacity_at(value))
+    }
+
+    /// Adds a point on the curve. Returns its index.
+    pub fn insert_on_curve(&mut self, value: f64) -> usize {
+        let point = self.point_at(value);
+        let index = self.points.partition_point(|point| point.value <= value);
+        let easing = index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing);
+        self.points.insert(index, ControlPoint { easing, ..point });
+        index
     }
 
     /// The opacity per opacity unit at a value, as an editor shows it.
@@ -163,8 +237,12 @@ mod tests {
     use super::*;
 
     fn ramp(interpolation: Interpolation) -> TransferFunction {
-        let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
-        TransferFunction { points: vec![point(10.0, 0.0), point(20.0, 0.8)], interpolation }
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        TransferFunction {
+            points: vec![point(10.0, 0.0), point(20.0, 0.8)],
+            interpolation,
+            ..TransferFunction::default()
+        }
     }
 
     #[test]
@@ -174,6 +252,57 @@ mod tests {
         assert!((depth - -0.5 * 0.2f64.ln()).abs() < 1e-12);
         assert_eq!(ramp(Interpolation::Opacity).opacity_at(5.0), 0.0);
         assert!((ramp(Interpolation::Opacity).opacity_at(99.0) - 0.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ways_between_points_have_their_shapes() {
+        let mut function = ramp(Interpolation::Opacity);
+        for (easing, quarter, half) in
+            [(Easing::Linear, 0.2, 0.4), (Easing::Smooth, 0.8 * 0.15625, 0.4), (Easing::Step, 0.0, 0.0)]
+        {
+            function.points[0].easing = easing;
+            for (value, opacity) in [(10.0, 0.0), (12.5, quarter), (15.0, half), (20.0, 0.8)] {
+                let found = function.opacity_at(value);
+                assert!((found - opacity).abs() < 1e-12, "{easing:?} at {value}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn seen_mixtures_have_even_lightness() {
+        let mut function = ramp(Interpolation::Opacity);
+        (function.points[0].color, function.points[1].color) = ([0.0, 0.0, 1.0], [1.0, 1.0, 0.0]);
+        let lightness = |function: &TransferFunction, value| oklab_from_linear(function.at(value).0)[0];
+        let even = |function: &TransferFunction| {
+            let middle = f64::midpoint(lightness(function, 10.0), lightness(function, 20.0));
+            (lightness(function, 15.0) - middle).abs() < 1e-3
+        };
+        assert!(!even(&function), "light mixes brighter than it looks");
+        function.mixing = Mixing::Seen;
+        assert!(even(&function));
+        let ends = [function.at(10.0).0, function.at(20.0).0];
+        assert!(ends.iter().flatten().zip([0.0, 0.0, 1.0, 1.0, 1.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+
+    #[test]
+    fn points_on_the_curve_leave_it_as_it_is() {
+        for mixing in [Mixing::Light, Mixing::Seen] {
+            for easing in [Easing::Linear, Easing::Step] {
+                let mut function = TransferFunction { mixing, ..ramp(Interpolation::Opacity) };
+                function.points[0].easing = easing;
+                let before = function.clone();
+                assert_eq!(function.insert_on_curve(13.0), 1);
+                for i in 0..40 {
+                    let value = 9.0 + f64::from(i) * 0.3;
+                    let ((a, x), (b, y)) = (before.at(value), function.at(value));
+                    assert!((x - y).abs() < 1e-9, "{mixing:?} {easing:?} {value}");
+                    assert!(
+                        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6),
+                        "{mixing:?} {easing:?} {value}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]
@@ -198,8 +327,9 @@ mod tests {
     #[test]
     fn full_opacity_stays_finite() {
         let solid = TransferFunction {
-            points: vec![ControlPoint { value: 0.0, color: [1.0; 3], opacity: 1.0 }],
+            points: vec![ControlPoint::new(0.0, [1.0; 3], 1.0)],
             interpolation: Interpolation::Opacity,
+            ..TransferFunction::default()
         };
         assert!(solid.bake((0.0, 1.0), 0.01, 1.0).entries.iter().all(|entry| entry[3].is_finite()));
     }

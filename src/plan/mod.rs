@@ -32,7 +32,7 @@ pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use slice_order::SliceOrder;
 
 use crate::model::{
-    Background, Camera, Classification, Deposit, Engine, Hood, Interpolation, Kernel, Length, Light,
+    Background, Camera, Classification, Deposit, Easing, Engine, Hood, Interpolation, Kernel, Length, Light,
     LightKind, Output, Precision, Quadrature, Remains, Resolution, Sampling, Settings, Shading,
     ShadowAlgorithm, Shadows, ToneMap, TransferFunction,
 };
@@ -77,7 +77,7 @@ pub struct LightKey {
 /// Everything that the opacities met by light are made from: no colours.
 #[derive(Debug, Clone, PartialEq)]
 struct OpacityKey {
-    points: Vec<[f64; 2]>,
+    points: Vec<([f64; 2], Easing)>,
     interpolation: Interpolation,
     scale: f64,
     unit: Length,
@@ -149,7 +149,7 @@ impl LightKey {
             storage: _,
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
-        let TransferFunction { points, interpolation } =
+        let TransferFunction { points, interpolation, mixing: _ } =
             if lighting.linked { transfer } else { &lighting.curve };
         wanted.then(|| Self {
             volume: request.volume,
@@ -169,7 +169,7 @@ impl LightKey {
             },
             engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
             opacity: OpacityKey {
-                points: points.iter().map(|point| [point.value, point.opacity]).collect(),
+                points: points.iter().map(|point| ([point.value, point.opacity], point.easing)).collect(),
                 interpolation: *interpolation,
                 scale: lighting.scale,
                 unit: *opacity_unit,

@@ -210,7 +210,7 @@ mod tests {
             })
             .collect();
         let volume = Volume::with_spacing("layers", [n; 3], DVec3::ONE, Samples::F32(values)).unwrap();
-        let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         let transfer = TransferFunction {
             points: vec![point(0.4, 0.0), point(0.5, 0.3), point(1.0, 0.9)],
             ..TransferFunction::default()

@@ -5,7 +5,7 @@ use crate::model::{ControlPoint, LightLock, apply_path, to_json};
 use serde_json::Value;
 
 fn request() -> Request {
-    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let settings = Settings {
         lights: vec![
             Light::default(),
@@ -97,6 +97,8 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.resolution", "half", Effect::AllLights),
         ("shadows.precision", "byte", Effect::AllLights),
         ("shadows.storage", "collapsed", Effect::Eye),
+        ("transfer.mixing", "seen", Effect::Eye),
+        ("lighting.curve.mixing", "seen", Effect::Eye),
         ("cuts.crop", r#"{"on": true}"#, Effect::Nothing),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, Effect::AllLights),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0], "effect": "hidden"}"#, Effect::Eye),

@@ -183,12 +183,13 @@ fn scattering_samples_no_density() {
 fn turned(order: SheetOrder) -> Vec<f64> {
     let loaded = Loaded::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
-    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
         // A hard surface: sums of sheets that differ a little show different parts of it.
         transfer: TransferFunction {
             points: vec![point(0.0, 0.0), point(110.0, 0.0), point(150.0, 0.8), point(255.0, 0.8)],
             interpolation: Interpolation::Opacity,
+            ..TransferFunction::default()
         },
         opacity_unit: Length::Voxels(1.0),
         lights: vec![Light {

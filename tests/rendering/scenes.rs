@@ -38,7 +38,7 @@ pub(crate) fn creature(n: usize, spacing_mm: DVec3) -> Volume {
 
 /// Opacities from thin haze to nearly solid.
 pub(crate) fn transfer() -> TransferFunction {
-    let point = |value, color, opacity| ControlPoint { value, color, opacity };
+    let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
     TransferFunction {
         points: vec![
             point(8.0, [0.3, 0.3, 0.5], 0.0),
@@ -48,6 +48,7 @@ pub(crate) fn transfer() -> TransferFunction {
             point(250.0, [1.0, 0.9, 0.6], 0.8),
         ],
         interpolation: Interpolation::Opacity,
+        ..TransferFunction::default()
     }
 }
 
@@ -93,10 +94,11 @@ pub(crate) fn ball(n: usize, centre: DVec3, radius: f64) -> Volume {
 
 /// Extinction proportional to density: `per_voxel` where it is full.
 pub(crate) fn linear_extinction(per_voxel: f64) -> TransferFunction {
-    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     TransferFunction {
         points: vec![point(0.0, 0.0), point(255.0, 1.0 - (-per_voxel).exp())],
         interpolation: Interpolation::Extinction,
+        ..TransferFunction::default()
     }
 }
 

@@ -76,11 +76,12 @@ fn shadow_profile(algorithm: ShadowAlgorithm, engine: Engine) -> Vec<f64> {
         .collect();
     let volume = Volume::with_spacing("edge", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
     let loaded = Loaded::new(volume);
-    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
         transfer: TransferFunction {
             points: vec![point(0.0, 0.0), point(120.0, 0.0), point(255.0, 0.9)],
             interpolation: Interpolation::Opacity,
+            ..TransferFunction::default()
         },
         // Thin: exp is straight enough that interpolating light or optical depth is the same.
         lighting: LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(0.1) },

@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn colors_come_where_the_transfer_function_is_opaque() {
         let volume = volume();
-        let point = ControlPoint { value: 5.0, color: [1.0, 0.0, 0.0], opacity: 0.0 };
+        let point = ControlPoint::new(5.0, [1.0, 0.0, 0.0], 0.0);
         let mut transfer = TransferFunction { points: vec![point], ..TransferFunction::default() };
         let grey = Grey { black: 0.0, white: 321.0 };
         assert_eq!(lookup(&volume, grey, Some(&transfer)), lookup(&volume, grey, None));

@@ -55,7 +55,9 @@ pub(super) fn colors(ui: &mut Ui, commands: &mut Vec<Command>) {
         }
         ui.separator();
         for command in [Command::ImportTransfer, Command::ExportTransfer] {
-            let button = ui.button(&*command.label()).on_hover_text("As ParaView's colour maps (JSON)");
+            let button = ui
+                .button(&*command.label())
+                .on_hover_text("ParaView, Slicer, Inviwo, MRIcroGL and ImageJ; Voreen and AGAVE can be read");
             if button.clicked() {
                 commands.push(command);
             }
@@ -133,7 +135,7 @@ pub(super) fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64,
         let color = super::plot::srgb(function.at(value).0);
         let opacity = if step.abs() == 5 { function.opacity_at(value) } else { opacity };
         let index = function.points.partition_point(|point| point.value <= value);
-        function.points.insert(index, ControlPoint { value, color, opacity });
+        function.points.insert(index, ControlPoint::new(value, color, opacity));
     }
 }
 
@@ -143,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_bump_is_a_bump() {
-        let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         let mut function = TransferFunction {
             points: vec![point(0.0, 0.0), point(100.0, 0.2)],
             ..TransferFunction::default()

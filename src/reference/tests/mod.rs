@@ -46,10 +46,14 @@ fn ball(dims: [usize; 3], spacing: DVec3) -> Volume {
 
 /// Extinction linear in density; `depth` is the optical depth of a full voxel.
 fn settings(depth: f64) -> Settings {
-    let point = |value, opacity| ControlPoint { value, color: [1.0; 3], opacity };
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let points = vec![point(0.0, 0.0), point(1.0, -(-depth).exp_m1())];
     let mut settings = Settings {
-        transfer: TransferFunction { points, interpolation: Interpolation::Extinction },
+        transfer: TransferFunction {
+            points,
+            interpolation: Interpolation::Extinction,
+            ..TransferFunction::default()
+        },
         camera: Camera { distance: 4.0, ..Camera::default() },
         lights: vec![Light { position: [0.0, 0.0, 4.0], ..Light::default() }],
         ..Settings::default()

@@ -1,0 +1,263 @@
+//! Files of other programs: read, refused, and written so that they can be read back.
+
+use std::path::Path;
+
+use super::*;
+use crate::model::{Interpolation, Preset, Settings};
+
+const RANGE: (f64, f64) = (-1000.0, 1000.0);
+
+fn read(name: &str, bytes: &[u8]) -> Result<TransferFunction, String> {
+    import(Path::new(name), bytes, RANGE).map_err(|err| err.to_string())
+}
+
+/// Everything that a function can have: jumps, smooth ways, colours mixed as they are seen.
+fn rich() -> TransferFunction {
+    let point =
+        |value, color, opacity, easing| ControlPoint { easing, ..ControlPoint::new(value, color, opacity) };
+    TransferFunction {
+        points: vec![
+            point(-800.0, [0.1, 0.2, 0.9], 0.0, Easing::Smooth),
+            point(-200.0, [0.9, 0.8, 0.1], 0.4, Easing::Step),
+            point(100.0, [0.2, 0.9, 0.3], 0.1, Easing::Linear),
+            point(700.0, [1.0, 1.0, 1.0], 0.9, Easing::Linear),
+        ],
+        interpolation: Interpolation::Opacity,
+        mixing: Mixing::Seen,
+    }
+}
+
+#[test]
+fn what_is_written_is_read_back() {
+    for (name, opacity_apart, color_apart) in [
+        // A smooth way by eight straight ones is off by less than 1/64 of its height; colours that are mixed as
+        // they are seen, by a little more.
+        ("a.json", 0.012, 0.03),
+        ("a.vp", 0.012, 0.03),
+        ("a.vp.json", 0.012, 0.03),
+        ("a.itf", 0.012, 0.03),
+        ("a.preset.json", 1e-9, 1e-6),
+        // Bytes, also as places.
+        ("a.clut", 0.03, 0.06),
+    ] {
+        let before = rich();
+        let after = read(name, &export(Path::new(name), &before, RANGE).unwrap()).unwrap();
+        for step in 0..=100 {
+            // Beside the jumps.
+            let value = -995.0 + f64::from(step) * 19.9;
+            if [-200.0, 100.0].iter().any(|jump: &f64| (value - jump).abs() < 12.0) {
+                continue;
+            }
+            let apart = (before.opacity_at(value) - after.opacity_at(value)).abs();
+            assert!(apart < opacity_apart, "{name} at {value}: {apart}");
+            for (a, b) in before.at(value).0.iter().zip(after.at(value).0) {
+                assert!((a - b).abs() < color_apart, "{name} at {value}: {a} and {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn imagej_gets_the_colors() {
+    let before = rich();
+    let table = export(Path::new("a.lut"), &before, RANGE).unwrap();
+    assert_eq!(table.len(), 768);
+    let after = read("a.lut", &table).unwrap();
+    for point in &after.points {
+        let wanted = before.at(point.value).0;
+        assert!(after.at(point.value).0.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.01), "{point:?}");
+    }
+    let err = export(Path::new("a.txt"), &before, RANGE).unwrap_err().to_string();
+    assert!(err.contains(".txt is no ending"), "{err}");
+}
+
+#[test]
+fn inviwos_points_of_either_kind() {
+    let old = r#"<?xml version="1.0" ?><InviwoTreeData version="1.0"><maskMin content="0" /><dataPoints>
+        <point><pos x="0.25" y="0.5" /><rgba x="1" y="0.5" z="0" w="0.5" /></point>
+        <point><pos x="1" y="1" /><rgba x="0" y="0" z="1" w="1" /></point>
+        </dataPoints></InviwoTreeData>"#;
+    let new = r#"<?xml version="1.0" ?><InviwoWorkspace version="3"><Points>
+        <Point><pos content="0.25" /><rgba x="1" y="0.5" z="0" w="0.5" /></Point>
+        <Point><pos content="1" /><rgba x="0" y="0" z="1" w="1" /></Point></Points></InviwoWorkspace>"#;
+    let function = read("a.itf", old.as_bytes()).unwrap();
+    assert_eq!(function, read("a.itf", new.as_bytes()).unwrap());
+    let first = function.points[0];
+    assert_eq!((first.value, first.color, first.opacity), (-500.0, [1.0, 0.5, 0.0], 0.5));
+}
+
+#[test]
+fn voreens_keys_with_splits_and_thresholds() {
+    let file = |domain: &str, threshold: &str| {
+        format!(
+            r#"<?xml version="1.0" ?><VoreenData version="1"><TransFuncIntensity type="TransFuncIntensity">
+            {domain}{threshold}<Keys>
+            <key type="TransFuncMappingKey"><intensity value="0.5" /><split value="true" />
+                <colorL r="0" g="0" b="0" a="0" /><colorR r="255" g="0" b="51" a="102" /></key>
+            <key type="TransFuncMappingKey"><intensity value="0" /><split value="false" />
+                <colorL r="0" g="0" b="0" a="51" /></key>
+            </Keys></TransFuncIntensity></VoreenData>"#
+        )
+    };
+    let function = read("a.tfi", file("", "").as_bytes()).unwrap();
+    let places: Vec<_> = function.points.iter().map(|point| (point.value, point.opacity)).collect();
+    assert_eq!(places, [(-1000.0, 0.2), (0.0, 0.0), (0.0, 0.4)]);
+    assert_eq!(function.points[2].color, [1.0, 0.0, 0.2]);
+    let own = file(r#"<domain x="0" y="4000" />"#, r#"<threshold x="0.1" y="1" />"#);
+    let function = read("a.tfi", own.as_bytes()).unwrap();
+    assert_eq!((function.points[0].opacity, function.points[2].value), (0.0, 2000.0));
+}
+
+#[test]
+fn agaves_channels() {
+    let file = |curve: &str| {
+        format!(
+            r#"{{"channels": [{{"enabled": false, "lutParams": {{}}}},
+            {{"enabled": true, "opacity": 0.5, "diffuseColor": [1, 0.5, 0], "lutParams": {{{curve}}}}}]}}"#
+        )
+    };
+    let read = |curve: &str| read("a.json", file(curve).as_bytes());
+    let window = read(r#""mode": 0, "level": 0.5, "window": 0.25"#).unwrap();
+    let ends: Vec<_> = window.points.iter().map(|point| (point.value, point.opacity)).collect();
+    assert_eq!(ends, [(-250.0, 0.0), (250.0, 0.5)]);
+    assert_eq!(window.points[0].color, [1.0, 0.5, 0.0]);
+    let iso = read(r#""mode": 1, "isovalue": 0.5, "isorange": 0.1"#).unwrap();
+    assert_eq!((iso.opacity_at(-101.0), iso.opacity_at(101.0)), (0.5, 0.0));
+    assert!((iso.opacity_at(0.0) - 0.5).abs() < 1e-12);
+    let points =
+        r#""mode": 3, "controlPoints": [{"x": 0, "value": [0,0,0,0]}, {"x": 1, "value": [1,1,1,1]}]"#;
+    assert_eq!(read(points).unwrap().points[1].opacity, 0.5);
+    for (curve, what) in [
+        (r#""mode": 0, "level": 0.5"#, "window"),
+        (r#""mode": 3"#, "controlPoints"),
+        (r#""mode": 3, "controlPoints": [{"x": 0, "value": [1]}]"#, "four numbers"),
+    ] {
+        let err = read(curve).unwrap_err();
+        assert!(err.contains(what), "{err}");
+    }
+}
+
+#[test]
+fn a_comma_too_many_is_forgiven() {
+    let text = b"[{\"RGBPoints\": [2, 0, 0, 0, 4, 1, 1, 1]},\n]\n";
+    assert_eq!(read("a.json", text).unwrap().points.len(), 2);
+}
+
+#[test]
+fn other_xml_and_json_are_refused_in_words() {
+    for (name, text, what) in [
+        ("a.itf", "no XML", "XML"),
+        ("a.itf", "<a/>", "no points"),
+        ("a.itf", "<a><point/></a>", "no pos"),
+        ("a.itf", r#"<a><point><pos x="q"/><rgba/></point></a>"#, "no number"),
+        ("a.tfi", "<a/>", "TransFuncIntensity"),
+        ("a.tfi", "<TransFuncIntensity/>", "no keys"),
+        ("a.tfi", "<TransFuncIntensity><key/></TransFuncIntensity>", "no intensity"),
+        ("a.vp.json", r#"{"volumeProperties": []}"#, "no component"),
+        ("a.vp.json", r#"{"volumeProperties": [{"components": [{}]}]}"#, "scalarOpacity"),
+        ("a.json", r#"{"channels": []}"#, "no channels"),
+        ("a.json", r#"{"transfer": {"points": 3}}"#, "wrong form"),
+    ] {
+        let err = read(name, text.as_bytes()).unwrap_err();
+        assert!(err.contains(what), "{name} {text}: {err}");
+    }
+}
+
+#[test]
+fn maps_of_paraview_are_read_back() {
+    for name in ["ct/bone", "mr/head", "simulation/signed"] {
+        let preset = Preset::find(name).unwrap();
+        let before = preset.apply(&Settings::default(), (0.0, 1.0)).unwrap().transfer;
+        let after = read("a.json", &export(Path::new("a.json"), &before, RANGE).unwrap()).unwrap();
+        assert_eq!(after.points.len(), before.points.len());
+        for (a, b) in after.points.iter().zip(&before.points) {
+            assert!((a.value - b.value).abs() < 1e-12 && (a.opacity - b.opacity).abs() < 1e-12);
+            assert!(a.color.iter().zip(&b.color).all(|(a, b)| (a - b).abs() < 1e-6), "{name}");
+        }
+    }
+}
+
+#[test]
+fn colors_and_opacities_may_stand_at_different_values() {
+    let text = r#"[{"Name": "x", "ColorSpace": "Diverging",
+        "RGBPoints": [0, 0.0, 0.0, 1.0, 10, 1.0, 0.0, 0.0],
+        "Points": [0, 0.0, 0.5, 0.0, 5, 0.8, 0.5, 0.0, 10, 0.2, 0.5, 0.0]}]"#;
+    let function = read("a.json", text.as_bytes()).unwrap();
+    let middle = function.points[1];
+    assert_eq!((middle.value, middle.opacity, middle.color), (5.0, 0.8, [0.5, 0.0, 0.5]));
+    let colors = read("a.json", br#"{"RGBPoints": [2, 0, 0, 0, 4, 1, 1, 1]}"#).unwrap();
+    assert_eq!((colors.points[0].opacity, colors.points[1].opacity), (0.0, 1.0));
+}
+
+#[test]
+fn other_maps_of_paraview_are_refused_in_words() {
+    for (text, what) in [
+        ("{", "JSON"),
+        ("[]", "no colour map"),
+        (r#"{"points": 3}"#, "RGBPoints"),
+        (r#"{"RGBPoints": [1, 2, 3]}"#, "three colours"),
+        (r#"{"RGBPoints": [1, "a", 3, 4]}"#, "no number"),
+        (r#"{"RGBPoints": [1, 0, 0, 0], "Points": [1]}"#, "four numbers"),
+    ] {
+        let err = read("a.json", text.as_bytes()).unwrap_err();
+        assert!(err.contains(what), "{text}: {err}");
+    }
+}
+
+#[test]
+fn slicers_volume_properties() {
+    let text = "1\n1\n0.9\n0.1\n0.2\n10\n6 -100 0 50 0.5 300 2\n4 0 1 255 1\n8 -100 0 0 0 300 1 0.5 0\n";
+    let function = read("bone.VP", text.as_bytes()).unwrap();
+    let [low, middle, high] = function.points[..] else { panic!("{function:?}") };
+    assert_eq!((low.value, low.opacity, high.value, high.opacity), (-100.0, 0.0, 300.0, 1.0));
+    assert_eq!((middle.value, middle.opacity), (50.0, 0.5));
+    assert!((middle.color[0] - 0.375).abs() < 1e-6, "between the colours: {middle:?}");
+}
+
+#[test]
+fn mricrogls_tables() {
+    let text = "[FLT]\nmin=0\nmax=0\n[INT]\nnumnodes=2\n[BYT]\nnodeintensity0=0\nnodeintensity1=255\n\
+                [RGBA255]\nnodergba0=0|0|0|0\nnodergba1=255|51|0|102\n";
+    let function = read("hot.clut", text.as_bytes()).unwrap();
+    let [low, high] = function.points[..] else { panic!("{function:?}") };
+    assert_eq!((low.value, low.opacity), (-1000.0, 0.0), "over the volume's range");
+    assert_eq!((high.value, high.opacity, high.color), (1000.0, 0.4, [1.0, 0.2, 0.0]));
+    let own = text.replace("min=0", "min=20").replace("max=0", "max=70");
+    assert_eq!(read("hot.clut", own.as_bytes()).unwrap().points[1].value, 70.0);
+}
+
+#[test]
+fn imagejs_tables() {
+    let table: Vec<u8> = (0..768).map(|at| if at < 256 { at as u8 } else { 0 }).collect();
+    let header = [b"ICOL".as_slice(), &[0; 28]].concat();
+    let rows: Vec<String> = (0..256).map(|at| format!("{at}\t{at}\t0\t0")).collect();
+    let plain = read("red.lut", &table).unwrap();
+    assert_eq!(plain, read("red.lut", &[header.as_slice(), &table].concat()).unwrap());
+    assert_eq!(
+        plain,
+        read("red.lut", format!("Index\tRed\tGreen\tBlue\n{}", rows.join("\n")).as_bytes()).unwrap()
+    );
+    assert_eq!(plain.points.len(), 17);
+    assert_eq!((plain.points[16].value, plain.points[16].color), (1000.0, [1.0, 0.0, 0.0]));
+    assert_eq!((plain.points[0].value, plain.points[0].opacity), (-1000.0, 0.0));
+}
+
+#[test]
+fn other_files_are_refused_in_words() {
+    for (name, bytes, what) in [
+        ("a.vp", b"1\n1\n".as_slice(), "three lists"),
+        ("a.vp", b"3 1 2\n", "as many numbers"),
+        ("a.vp", b"3 0 1 2\n2 0 1\n4 0 0 0 0\n", "cut off"),
+        ("a.vp", b"hello", "no number"),
+        ("a.clut", b"numnodes=1", "2 to 256"),
+        ("a.clut", b"numnodes=2", "nodeintensity0"),
+        ("a.clut", b"numnodes=2\nnodeintensity0=1\nnodergba0=1|2|3", "four numbers"),
+        ("a.lut", &[200; 700], "768 bytes"),
+        ("a.lut", b"1 2 3\n", "256"),
+        ("a.json", b"{", "JSON"),
+        ("a.json", &[0xff, 0xfe], "no text"),
+    ] {
+        let err = read(name, bytes).unwrap_err();
+        assert!(err.contains(what), "{name}: {err}");
+    }
+}
