@@ -102,6 +102,7 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
         settings,
         *selected_light,
         !(handles.takes_wheel || cut_handles.takes_wheel),
+        viewport.volume().map(|(volume, _)| volume.value_range()),
     );
     if response.double_clicked()
         && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())

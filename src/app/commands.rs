@@ -61,8 +61,10 @@ pub(super) enum Command {
     UseRig(Rig),
     /// These lights.
     UseLights(Vec<Light>),
-    /// Show the contact sheet.
+    /// Show the contact sheet of lights.
     TryLights,
+    /// Show the contact sheet of presets.
+    TryPresets,
     /// The light after the selected one …
     NextLight,
     /// … or before it.
@@ -198,6 +200,7 @@ pub(super) fn listed() -> Vec<Command> {
         Command::ToggleGround,
         Command::AddLight,
         Command::TryLights,
+        Command::TryPresets,
         Command::NextLight,
         Command::PreviousLight,
         Command::Solo,
@@ -258,6 +261,7 @@ impl Command {
             Self::ShowPalette => "Find a command…",
             Self::UseLights(_) => "Use lights",
             Self::TryLights => "Try lights…",
+            Self::TryPresets => "Try presets…",
             Self::NextLight => "Next light",
             Self::PreviousLight => "Previous light",
             Self::Solo => "Solo the selected light",

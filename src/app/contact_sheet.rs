@@ -1,4 +1,5 @@
-//! A contact sheet of lights: rigs, and places for the selected light, each tried on the open volume.
+//! A contact sheet: looks that are tried on the open volume. Lights (rigs, and places for the selected light),
+//! or the library's presets.
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
 use glam::DVec3;
@@ -7,7 +8,7 @@ use super::commands::Command;
 use super::export::{Subject, Worker};
 use super::theme;
 use super::work::Work;
-use crate::model::{Camera, Kernel, Light, Resolution, Rig, Settings, Shot};
+use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Shot};
 
 /// Pixels of a picture.
 const SIZE: [u32; 2] = [176, 132];
@@ -18,19 +19,72 @@ const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
 /// … so far from the line of sight.
 const ASIDE_DEG: f64 = 55.0;
 
-/// Lights that were tried.
-#[derive(Debug)]
-struct Tried {
-    name: String,
-    lights: Vec<Light>,
-    picture: ColorImage,
+/// What is tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Sheet {
+    /// Rigs, and places for the selected light.
+    #[default]
+    Lights,
+    /// Presets of the library.
+    Presets,
 }
 
-/// One of them, for the window.
+/// A look to try.
+#[derive(Debug, Clone)]
+struct Candidate {
+    name: String,
+    settings: Settings,
+    /// What takes it over.
+    command: Command,
+}
+
+/// A look, and what it looks like.
+type Tried = (Candidate, ColorImage);
+
+/// The same for the window.
 struct Print {
     name: String,
-    lights: Vec<Light>,
+    command: Command,
     texture: TextureHandle,
+}
+
+impl Sheet {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Lights => "Try lights",
+            Self::Presets => "Try presets",
+        }
+    }
+
+    fn candidates(self, subject: &Subject) -> Vec<Candidate> {
+        match self {
+            Self::Lights => with_lights(&subject.settings, subject.selected_light),
+            Self::Presets => with_presets(&subject.settings, subject.volume.value_range()),
+        }
+    }
+}
+
+/// The look with each preset laid over it, but for that of the benchmarks.
+fn with_presets(settings: &Settings, range: (f64, f64)) -> Vec<Candidate> {
+    let presets = PRESETS.into_iter().filter(|preset| preset.domain() != "bench");
+    presets
+        .filter_map(|preset| {
+            let settings = preset.apply(settings, range).ok()?;
+            let name = format!("{}: {}", preset.domain_title(), preset.title());
+            Some(Candidate { name, settings, command: Command::UsePreset(preset) })
+        })
+        .collect()
+}
+
+/// The look with each choice of lights.
+fn with_lights(settings: &Settings, selected: usize) -> Vec<Candidate> {
+    lights_to_try(settings, selected)
+        .into_iter()
+        .map(|(name, lights)| {
+            let settings = Settings { lights: lights.clone(), ..settings.clone() };
+            Candidate { name, settings, command: Command::UseLights(lights) }
+        })
+        .collect()
 }
 
 /// The window.
@@ -38,6 +92,8 @@ struct Print {
 pub(super) struct ContactSheet {
     /// Whether it is shown.
     open: bool,
+    /// What it shows.
+    sheet: Sheet,
     /// Whether pictures are to be made as soon as that is possible.
     pub wanted: bool,
     work: Option<Work<Result<Vec<Tried>, String>>>,
@@ -51,7 +107,7 @@ impl std::fmt::Debug for ContactSheet {
 }
 
 /// The lights that are tried, and what they are called.
-fn candidates(settings: &Settings, selected: usize) -> Vec<(String, Vec<Light>)> {
+fn lights_to_try(settings: &Settings, selected: usize) -> Vec<(String, Vec<Light>)> {
     let mut all: Vec<_> =
         Rig::ALL.iter().map(|rig| (rig.name().to_owned(), rig.lights(&settings.camera))).collect();
     if let Some(light) = settings.lights.get(selected) {
@@ -75,8 +131,8 @@ fn at_hour(light: &Light, camera: &Camera, hour: u32) -> DVec3 {
 }
 
 /// Quick settings for a small picture.
-fn quick(settings: &Settings, lights: Vec<Light>) -> Settings {
-    let mut quick = Settings { lights, ..settings.clone() };
+fn quick(settings: &Settings) -> Settings {
+    let mut quick = settings.clone();
     quick.shadows.resolution = Resolution::Half;
     (quick.shadows.kernel, quick.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
     quick.sampling.slab = quick.sampling.slab.max(1.0);
@@ -85,22 +141,25 @@ fn quick(settings: &Settings, lights: Vec<Light>) -> Settings {
 
 impl ContactSheet {
     /// Opens the window and asks for pictures.
-    pub(super) fn open(&mut self) {
-        (self.open, self.wanted) = (true, true);
+    pub(super) fn open(&mut self, sheet: Sheet) {
+        if self.sheet != sheet {
+            self.prints.clear();
+        }
+        (self.open, self.wanted, self.sheet) = (true, true, sheet);
     }
 
     /// Starts to make the pictures.
     pub(super) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
         self.wanted = false;
+        let sheet = self.sheet;
         let task = move || {
             let mut worker = Worker::new(&subject)?;
-            let tried = candidates(&subject.settings, subject.selected_light).into_iter();
+            let tried = sheet.candidates(&subject).into_iter();
             tried
-                .map(|(name, lights)| {
-                    let settings = quick(&subject.settings, lights.clone());
-                    let shown = worker.render(&subject, &settings, &Shot::new(SIZE))?;
+                .map(|candidate| {
+                    let shown = worker.render(&subject, &quick(&candidate.settings), &Shot::new(SIZE))?;
                     let picture = ColorImage::from_rgba_unmultiplied(SIZE.map(|n| n as usize), &shown);
-                    Ok(Tried { name, lights, picture })
+                    Ok((candidate, picture))
                 })
                 .collect()
         };
@@ -116,35 +175,44 @@ impl ContactSheet {
         if let Some(result) = finished {
             self.work = None;
             match result.and_then(|result| result) {
-                Ok(tried) => self.prints = tried.into_iter().map(|tried| print(ctx, tried)).collect(),
+                Ok(tried) => {
+                    self.prints =
+                        tried.into_iter().map(|(look, picture)| print(ctx, look, picture)).collect();
+                }
                 Err(err) => outcome = Err(err),
             }
         }
         let mut open = self.open;
-        let window = egui::Window::new("Try lights").open(&mut open).resizable(false).collapsible(false);
+        let window =
+            egui::Window::new(self.sheet.title()).open(&mut open).resizable(false).collapsible(false);
         window.default_pos([60.0, 60.0]).show(ctx, |ui| {
-            egui::Grid::new("contact sheet").spacing([8.0, 8.0]).show(ui, |ui| {
-                for (at, tried) in self.prints.iter().enumerate() {
-                    if at > 0 && at % COLUMNS == 0 {
-                        ui.end_row();
-                    }
-                    ui.vertical(|ui| {
-                        let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
-                        let image = egui::Image::new((tried.texture.id(), size));
-                        let button = ui.add(egui::Button::image(image).frame(false));
-                        let name = format!("Use {}", tried.name);
-                        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-                        if button.on_hover_text("Use these lights").clicked() {
-                            commands.push(Command::UseLights(tried.lights.clone()));
+            // Low windows have bars instead of a sheet that hangs over.
+            let most = ctx.content_rect().height() - 170.0;
+            let area = egui::ScrollArea::vertical().max_height(most.max(150.0));
+            area.show(ui, |ui| {
+                egui::Grid::new("contact sheet").spacing([8.0, 8.0]).show(ui, |ui| {
+                    for (at, tried) in self.prints.iter().enumerate() {
+                        if at > 0 && at % COLUMNS == 0 {
+                            ui.end_row();
                         }
-                        ui.small(&tried.name);
-                    });
-                }
+                        ui.vertical(|ui| {
+                            let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
+                            let image = egui::Image::new((tried.texture.id(), size));
+                            let button = ui.add(egui::Button::image(image).frame(false));
+                            let name = format!("Use {}", tried.name);
+                            button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+                            if button.on_hover_text("Use it").clicked() {
+                                commands.push(tried.command.clone());
+                            }
+                            ui.small(&tried.name);
+                        });
+                    }
+                })
             });
             ui.horizontal(|ui| {
                 if self.work.is_some() || self.wanted {
                     ui.spinner();
-                    ui.label("trying lights on your volume");
+                    ui.label("trying them on your volume");
                 } else if ui.button("Again, as it looks now").clicked() {
                     self.wanted = true;
                 }
@@ -157,10 +225,10 @@ impl ContactSheet {
     }
 }
 
-fn print(ctx: &egui::Context, tried: Tried) -> Print {
-    let Tried { name, lights, picture } = tried;
+fn print(ctx: &egui::Context, look: Candidate, picture: ColorImage) -> Print {
+    let Candidate { name, command, settings: _ } = look;
     let texture = ctx.load_texture(format!("contact sheet {name}"), picture, TextureOptions::LINEAR);
-    Print { name, lights, texture }
+    Print { name, command, texture }
 }
 
 #[cfg(test)]
@@ -181,11 +249,14 @@ mod tests {
     #[test]
     fn all_candidates_have_names_of_their_own() {
         let mut names: Vec<_> =
-            candidates(&Settings::default(), 0).into_iter().map(|(name, _)| name).collect();
+            lights_to_try(&Settings::default(), 0).into_iter().map(|(name, _)| name).collect();
         assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
         names.sort();
         names.dedup();
         assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
-        assert_eq!(candidates(&Settings::default(), 9).len(), Rig::ALL.len(), "no light is selected");
+        assert_eq!(lights_to_try(&Settings::default(), 9).len(), Rig::ALL.len(), "no light is selected");
+        let presets = with_presets(&Settings::default(), (0.0, 255.0));
+        assert_eq!(presets.len(), PRESETS.len() - 1);
+        assert!(presets.iter().all(|look| look.settings.transfer != Settings::default().transfer));
     }
 }

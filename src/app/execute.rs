@@ -5,6 +5,7 @@ use std::path::Path;
 use eframe::egui;
 
 use super::commands::Command;
+use super::contact_sheet::Sheet;
 use super::export::Exported;
 use super::files::{self, Purpose};
 use super::loader::Outcome;
@@ -97,7 +98,8 @@ impl App {
                 self.selected_light = self.selected_light.min(lights.len().saturating_sub(1));
                 self.settings.lights = lights;
             }
-            Command::TryLights => self.contact_sheet.open(),
+            Command::TryLights => self.contact_sheet.open(Sheet::Lights),
+            Command::TryPresets => self.contact_sheet.open(Sheet::Presets),
             Command::NextLight | Command::PreviousLight => {
                 let by = if command == Command::NextLight { 1 } else { -1 };
                 let count = self.settings.lights.len();
@@ -179,10 +181,10 @@ impl App {
             && let Some(subject) = self.subject()
             && let Err(err) = self.contact_sheet.start(subject, ctx)
         {
-            self.messages.error("lights could not be tried", err);
+            self.messages.error("looks could not be tried", err);
         }
         if let Err(err) = self.contact_sheet.ui(ctx, commands) {
-            self.messages.error("lights could not be tried", err);
+            self.messages.error("looks could not be tried", err);
         }
         if let Some(described) = self.raw_dialog.ui(ctx) {
             self.open_described(&described, ctx);

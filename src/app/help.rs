@@ -6,21 +6,24 @@ use super::commands::{SHORTCUTS, key_text};
 use super::viewport::Facts;
 
 /// What the mouse does, in the picture and in the editor.
-const MOUSE: [(&str, &str); 15] = [
+const MOUSE: [(&str, &str); 18] = [
     ("Drag the picture", "orbit"),
     ("Double click on the volume", "turn about what is there"),
     ("Hold L and drag", "turn the selected light"),
     ("Arrow keys, with Shift ten times", "turn it by a degree"),
     ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "keep a view, look that way again"),
     ("Shift-drag or middle drag", "pan"),
+    ("Right-drag the picture", "level and window of the curve"),
     ("Wheel", "nearer to the pointer, or further"),
     ("Drag a light's handle", "move the light"),
     ("Wheel on a perspective light's handle", "its distance"),
+    ("Drag the square on a hood's cone", "open or close the hood"),
     ("Drag the sides of the crop box", "see less, or more again"),
     ("Drag or wheel on the clip plane's square", "move it; turn it by the arrow"),
     ("Drag the line between two looks", "see more of one of them"),
     ("Click in the transfer function", "add a point"),
-    ("Drag a point, or arrow keys", "move it"),
+    ("Drag around points, or click with Shift", "select several"),
+    ("Drag a point, or arrow keys", "move what is selected"),
     ("Double click, or Delete", "remove it"),
 ];
 

@@ -6,10 +6,12 @@
 
 mod geometry;
 mod guides;
+mod hood_handle;
 
 use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke, Vec2, WidgetInfo};
 
 use self::geometry::View;
+use self::hood_handle::HoodHandle;
 use super::orbit::wheel_notches;
 use super::theme;
 use crate::model::{LightKind, Settings};
@@ -30,6 +32,8 @@ pub(super) struct LightHandles {
     /// The user does not want them.
     pub hidden: bool,
     drag: Option<Drag>,
+    /// That of the selected light.
+    hood: HoodHandle,
     /// The pointer is on a handle for which the wheel means distance.
     pub takes_wheel: bool,
     /// Where they were painted last, in points.
@@ -76,9 +80,14 @@ impl LightHandles {
             let active = response.hovered() || self.drag.is_some_and(|drag| drag.light == light);
             let handle = seen(settings).unwrap_or(handle);
             self.positions.push(handle.position);
-            if active {
-                let lamp = settings.lights[light].in_world(&settings.camera);
+            let lamp = settings.lights[light].in_world(&settings.camera);
+            if active || (*selected == light && self.hood.is_active()) {
                 guides::paint(&painter, &view, &lamp, settings.ground.height);
+            }
+            if *selected == light
+                && let Some(half_angle_deg) = self.hood.show(ui, &painter, &view, &lamp, light)
+            {
+                settings.lights[light].hood.half_angle_deg = half_angle_deg;
             }
             let color = theme::color(settings.lights[light].color);
             let radius = theme::HANDLE_RADIUS + if active { 1.5 } else { 0.0 };

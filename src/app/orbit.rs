@@ -12,26 +12,35 @@ const ZOOM_PER_NOTCH: f64 = 1.1;
 /// Points of scrolling per notch.
 const POINTS_PER_NOTCH: f64 = 40.0;
 
-/// Applies what the user does on the picture to the camera, or, while L is held, to a light. `zooms`: the wheel
-/// is not needed elsewhere.
+/// Natural logarithm of how much wider the window becomes by a drag across the whole picture.
+const WINDOW_PER_WIDTH: f64 = 2.0;
+
+/// Applies what the user does on the picture to the camera, or, while L is held, to a light; with the right
+/// button, to level and window of the transfer function.
+///
+/// `zooms`: the wheel is not needed elsewhere. `range`: the values of the volume, if there is one.
 pub(super) fn navigate(
     ui: &egui::Ui,
     response: &Response,
     settings: &mut Settings,
     selected: usize,
     zooms: bool,
+    range: Option<(f64, f64)>,
 ) {
-    let Settings { camera, lights, .. } = settings;
+    let Settings { camera, lights, transfer, .. } = settings;
     let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));
     let delta = response.drag_delta();
     let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
     let shift = ui.input(|input| input.modifiers.shift);
-    let pans = response.dragged_by(PointerButton::Middle)
-        || response.dragged_by(PointerButton::Secondary)
-        || (shift && response.dragged_by(PointerButton::Primary));
+    let pans =
+        response.dragged_by(PointerButton::Middle) || (shift && response.dragged_by(PointerButton::Primary));
     let lit = lights.get_mut(selected).filter(|_| ui.input(|input| input.key_down(Key::L)));
     if let Some(light) = lit.filter(|_| response.dragged_by(PointerButton::Primary)) {
         light_keys::turn(light, camera, dx * DEGREES_PER_POINT, -dy * DEGREES_PER_POINT);
+    } else if let Some(range) = range.filter(|_| response.dragged_by(PointerButton::Secondary)) {
+        // As in the slices: down means higher values.
+        let shift = dy / height.max(1.0) * (range.1 - range.0);
+        transfer.shift_and_stretch(shift, (WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
     } else if pans {
         camera.pan(dx, dy, height);
     } else if response.dragged_by(PointerButton::Primary) {

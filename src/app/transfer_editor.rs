@@ -3,19 +3,21 @@
 //! Both curves share one plot: the eye's, filled with its colours, and the lighting one as a single
 //! amber line, dashed while it follows the eye's.
 
+mod fields;
 mod menus;
 mod plot;
+mod selection;
 mod zoom;
 
-use eframe::egui::{self, DragValue, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
+use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 
 use self::plot::Axes;
+use self::selection::Selection;
 use self::zoom::Zoom;
 use super::commands::Command;
-use super::panels::controls::color;
 use super::theme;
 use super::volume_facts::VolumeFacts;
-use crate::model::{ControlPoint, Settings, TransferFunction};
+use crate::model::{Settings, TransferFunction};
 
 /// Which curve is edited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,7 +33,7 @@ enum Curve {
 #[derive(Debug)]
 pub(super) struct TransferEditor {
     curve: Curve,
-    selected: Option<usize>,
+    selection: Selection,
     /// Rare values are raised so that they can be seen.
     log_histogram: bool,
     /// Values that are shown, if not all.
@@ -40,12 +42,21 @@ pub(super) struct TransferEditor {
 
 impl Default for TransferEditor {
     fn default() -> Self {
-        Self { curve: Curve::Eye, selected: None, log_histogram: true, zoom: Zoom::default() }
+        Self {
+            curve: Curve::Eye,
+            selection: Selection::default(),
+            log_histogram: true,
+            zoom: Zoom::default(),
+        }
     }
 }
 
 /// The steps of the arrow keys: shares of the axes.
 const NUDGE: [f64; 2] = [1.0 / 256.0, 0.01];
+
+/// Points of width in which all tools have room side by side: those of the curve take 590 at most, the others
+/// 410.
+const WIDE: f32 = 1000.0;
 
 impl TransferEditor {
     /// Shows the editor in the whole of `ui`.
@@ -60,9 +71,19 @@ impl TransferEditor {
         if settings.lighting.linked {
             self.curve = Curve::Eye;
         }
-        ui.horizontal(|ui| self.tools(ui, settings, volume, commands));
+        let is_wide = ui.available_width() >= WIDE;
+        ui.horizontal(|ui| {
+            self.curve_tools(ui, settings, volume, is_wide);
+            if is_wide {
+                let layout = egui::Layout::right_to_left(egui::Align::Center);
+                ui.with_layout(layout, |ui| self.plot_tools(ui, settings, commands));
+            }
+        });
+        if !is_wide {
+            ui.horizontal(|ui| self.plot_tools(ui, settings, commands));
+        }
         let size = ui.available_size();
-        let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click());
+        let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Transfer function"));
         self.zoom.ui(ui, &response, area, volume.range);
         let axes = Axes::new(area, self.zoom.shown(volume.range));
@@ -71,18 +92,15 @@ impl TransferEditor {
         let name = if light { "Light point" } else { "Eye point" };
         let function = if light { &mut settings.lighting.curve } else { &mut settings.transfer };
         self.add_point(&response, &axes, function);
+        self.selection.frame(ui, &response, &axes, function);
+        self.select_by_keys(ui, &response, function.points.len());
         self.edit_points(ui, &axes, function, name);
         plot::readout(ui, &axes, &response, settings);
         plot::mark(ui, &axes, marked);
     }
 
-    fn tools(
-        &mut self,
-        ui: &mut Ui,
-        settings: &mut Settings,
-        volume: &VolumeFacts,
-        commands: &mut Vec<Command>,
-    ) {
+    /// What edits the curve.
+    fn curve_tools(&mut self, ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts, is_wide: bool) {
         let before = self.curve;
         ui.selectable_value(&mut self.curve, Curve::Eye, "Eye").on_hover_text("Edit what the eye sees");
         ui.add_enabled_ui(!settings.lighting.linked, |ui| {
@@ -92,63 +110,49 @@ impl TransferEditor {
                 .on_disabled_hover_text("Light follows the eye's opacity; unlink it in the section Shadows");
         });
         if self.curve != before {
-            self.selected = None;
+            self.selection.clear();
         }
         ui.separator();
         let light = self.curve == Curve::Light;
         let function = if light { &mut settings.lighting.curve } else { &mut settings.transfer };
-        self.selected = self.selected.filter(|&index| index < function.points.len());
-        if let Some(index) = self.selected {
-            self.point_fields(ui, function, index, volume.range, light);
-        } else {
+        let selected = self.selection.within(function.points.len());
+        if selected.is_empty() {
             menus::whole_curve(ui, function, volume.range);
-            let fit = ui.button("Fit").on_hover_text("Spreads the points over the values that occur");
-            if fit.clicked() {
-                menus::fit(function, volume);
+            menus::shapes(ui, function, volume, self.zoom.shown(volume.range));
+            if is_wide {
+                let hint = "Click adds a point, a drag selects, the wheel zooms";
+                ui.add(egui::Label::new(egui::RichText::new(hint).weak()).truncate());
             }
-            let bump = ui.button("Bump").on_hover_text("Adds a smooth bump of opacity: a band of values");
-            if bump.clicked() {
-                menus::add_bump(function, self.zoom.shown(volume.range));
-            }
-            ui.add(
-                egui::Label::new(egui::RichText::new("Click adds a point, wheel zooms").weak()).truncate(),
-            );
+        } else if fields::points(ui, function, &selected, volume.range, light) {
+            self.selection.remove(function);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let button = ui.button("Automatic").on_hover_text("Puts the automatic transfer function back");
-            if button.clicked() {
-                self.selected = None;
-                commands.push(Command::AutomaticTransfer);
-            }
-            ui.checkbox(&mut self.log_histogram, "Log histogram")
-                .on_hover_text("Raises rare values in the histogram");
-            menus::colors(ui, commands);
-            menus::presets(ui, commands);
-            self.zoom.button(ui);
-        });
     }
 
-    fn point_fields(
-        &mut self,
-        ui: &mut Ui,
-        function: &mut TransferFunction,
-        index: usize,
-        range: (f64, f64),
-        light: bool,
-    ) {
-        let (low, high) = neighbours(function, index, range);
-        let point = &mut function.points[index];
-        let label = ui.label("Value");
-        let speed = (range.1 - range.0).max(1e-12) / 500.0;
-        ui.add(DragValue::new(&mut point.value).range(low..=high).speed(speed)).labelled_by(label.id);
-        let label = ui.label("Opacity");
-        ui.add(DragValue::new(&mut point.opacity).range(0.0..=1.0).speed(0.005).max_decimals(3))
-            .labelled_by(label.id);
-        if !light {
-            color(ui, "Colour of the point", &mut point.color);
+    /// What replaces the whole curve, and how the plot shows it.
+    fn plot_tools(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+        let light = self.curve == Curve::Light;
+        let function = if light { &mut settings.lighting.curve } else { &mut settings.transfer };
+        let automatic = ui.button("Automatic").on_hover_text("Puts the automatic transfer function back");
+        if automatic.clicked() {
+            self.selection.clear();
+            commands.push(Command::AutomaticTransfer);
         }
-        if ui.add_enabled(function.points.len() > 1, egui::Button::new("Remove")).clicked() {
-            self.remove(function, index);
+        ui.checkbox(&mut self.log_histogram, "Log histogram")
+            .on_hover_text("Raises rare values in the histogram");
+        menus::colors(ui, function, commands);
+        menus::presets(ui, commands);
+        self.zoom.button(ui);
+    }
+
+    /// With the pointer over the plot, Ctrl+A selects all points, and Escape none.
+    fn select_by_keys(&mut self, ui: &Ui, response: &Response, count: usize) {
+        if !response.contains_pointer() || ui.ctx().text_edit_focused() {
+            return;
+        }
+        if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::A)) {
+            self.selection.all(count);
+        } else if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.selection.clear();
         }
     }
 
@@ -169,16 +173,15 @@ impl TransferEditor {
         }
         if let Some(at) = response.interact_pointer_pos() {
             let (value, opacity) = axes.values(at);
-            let index = function.points.partition_point(|point| point.value <= value);
-            let color = plot::srgb(function.at(value).0);
-            function.points.insert(index, ControlPoint::new(value, color, opacity));
-            self.selected = Some(index);
+            let index = function.insert_on_curve(value);
+            function.points[index].opacity = opacity;
+            self.selection.only(index);
         }
     }
 
     fn edit_points(&mut self, ui: &Ui, axes: &Axes, function: &mut TransferFunction, name: &str) {
         let painter = ui.painter_at(axes.area.expand(theme::POINT_RADIUS + 2.0));
-        let mut removed = None;
+        let mut removes = false;
         for index in 0..function.points.len() {
             if !axes.shows(function.points[index].value) {
                 continue;
@@ -188,26 +191,32 @@ impl TransferEditor {
             let id = ui.scope_id().with((name, index));
             let response = ui.interact(area, id, Sense::click_and_drag());
             response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("{name} {}", index + 1)));
+            let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+            if response.clicked() && adds {
+                self.selection.toggle(index);
+            } else if response.clicked() || (response.drag_started() && !self.selection.has(index)) {
+                self.selection.only(index);
+            }
             if response.clicked() || response.drag_started() {
-                self.selected = Some(index);
                 response.request_focus();
             }
             if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-                let (low, high) = neighbours(function, index, axes.range);
                 let (value, opacity) = axes.values(pointer);
-                let point = &mut function.points[index];
-                (point.value, point.opacity) = (value.clamp(low, high), opacity);
+                let point = function.points[index];
+                let by = (value - point.value, opacity - point.opacity);
+                self.selection.shift(function, axes.range, by);
             }
             if response.has_focus() {
-                nudge(ui, id, axes, function, index);
+                self.nudge(ui, id, axes, function);
             }
-            let focused = response.has_focus() || self.selected == Some(index);
+            let selected = self.selection.has(index);
             let deletes = |input: &egui::InputState| {
                 input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace)
             };
-            let delete = focused && !typing_elsewhere(ui, id) && ui.input(deletes);
-            if response.double_clicked() || delete {
-                removed = Some(index);
+            removes |= selected && !typing_elsewhere(ui, id) && ui.input(deletes);
+            if response.double_clicked() {
+                self.selection.only(index);
+                removes = true;
             }
             if response.hovered() || response.dragged() {
                 ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
@@ -218,19 +227,26 @@ impl TransferEditor {
                 axes.position(point.value, point.opacity),
                 theme::POINT_RADIUS + if response.hovered() { 1.0 } else { 0.0 },
                 theme::color(point.color),
-                focused,
+                selected || response.has_focus(),
             );
         }
-        if let Some(index) = removed {
-            self.remove(function, index);
+        if removes {
+            self.selection.remove(function);
         }
     }
 
-    fn remove(&mut self, function: &mut TransferFunction, index: usize) {
-        // A function without points would be invisible for good.
-        if function.points.len() > 1 {
-            function.points.remove(index);
-            self.selected = None;
+    /// Arrow keys move what is selected.
+    fn nudge(&mut self, ui: &Ui, id: egui::Id, axes: &Axes, function: &mut TransferFunction) {
+        let arrows =
+            egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(id, arrows));
+        let presses = |less: Key, more: Key| {
+            ui.input(|input| input.num_presses(more) as f64 - input.num_presses(less) as f64)
+        };
+        let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
+        if right != 0.0 || up != 0.0 {
+            let span = axes.range.1 - axes.range.0;
+            self.selection.shift(function, axes.range, (right * NUDGE[0] * span, up * NUDGE[1]));
         }
     }
 }
@@ -238,31 +254,4 @@ impl TransferEditor {
 /// Whether another widget has the keyboard.
 fn typing_elsewhere(ui: &Ui, id: egui::Id) -> bool {
     ui.memory(egui::Memory::focused).is_some_and(|focused| focused != id)
-}
-
-/// The values between which a point can be moved.
-fn neighbours(function: &TransferFunction, index: usize, range: (f64, f64)) -> (f64, f64) {
-    let points = &function.points;
-    let low = index.checked_sub(1).map_or(range.0, |before| points[before].value);
-    let high = points.get(index + 1).map_or(range.1, |after| after.value);
-    // Points from a preset may lie beyond this volume's values.
-    let value = points[index].value;
-    (low.min(value), high.max(value))
-}
-
-/// Arrow keys move the focused point.
-fn nudge(ui: &Ui, id: egui::Id, axes: &Axes, function: &mut TransferFunction, index: usize) {
-    let arrows = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, arrows));
-    let presses = |less: Key, more: Key| {
-        ui.input(|input| input.num_presses(more) as f64 - input.num_presses(less) as f64)
-    };
-    let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
-    if right != 0.0 || up != 0.0 {
-        let (low, high) = neighbours(function, index, axes.range);
-        let point = &mut function.points[index];
-        let span = axes.range.1 - axes.range.0;
-        point.value = (point.value + right * NUDGE[0] * span).clamp(low, high);
-        point.opacity = (point.opacity + up * NUDGE[1]).clamp(0.0, 1.0);
-    }
 }

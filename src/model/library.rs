@@ -56,6 +56,18 @@ impl Preset {
         self.name.split_once('/').map_or("", |(domain, _)| domain)
     }
 
+    /// What menus call the domain.
+    pub fn domain_title(&self) -> &'static str {
+        match self.domain() {
+            "ct" => "CT",
+            "mr" => "MR",
+            "microscopy" => "Microscopy",
+            "simulation" => "Simulation",
+            "paper" => "Paper",
+            other => other,
+        }
+    }
+
     /// The name in its domain, for menus.
     pub fn title(&self) -> String {
         let title = self.name.split_once('/').map_or(self.name, |(_, title)| title).replace('_', " ");

@@ -160,11 +160,17 @@ impl TransferFunction {
         ControlPoint::new(value, color, self.opacity_at(value))
     }
 
+    /// How the function goes on at a value.
+    pub fn easing_at(&self, value: f64) -> Easing {
+        let index = self.points.partition_point(|point| point.value <= value);
+        index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing)
+    }
+
     /// Adds a point on the curve. Returns its index.
     pub fn insert_on_curve(&mut self, value: f64) -> usize {
         let point = self.point_at(value);
         let index = self.points.partition_point(|point| point.value <= value);
-        let easing = index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing);
+        let easing = self.easing_at(value);
         self.points.insert(index, ControlPoint { easing, ..point });
         index
     }

@@ -12,7 +12,7 @@ use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
 use chiaroscuro::data::{Bricks, Volume};
 use chiaroscuro::export::{export_png, read_picture};
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
-use chiaroscuro::model::{Depth, LightKind, Projection, Shot, TransferFunction};
+use chiaroscuro::model::{Depth, Easing, LightKind, Projection, Shot, TransferFunction};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -69,12 +69,11 @@ pub(crate) fn wait_until_idle(harness: &mut Harness<'_, App>) {
 
 /// Presses, moves in steps and releases, with the window running.
 fn drag(harness: &mut Harness<'_, App>, from: Pos2, by: Vec2) {
-    let button = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
+    drag_with(harness, PointerButton::Primary, from, by);
+}
+
+fn drag_with(harness: &mut Harness<'_, App>, button: PointerButton, from: Pos2, by: Vec2) {
+    let button = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
     harness.hover_at(from);
     harness.step();
     harness.event(button(from, true));
@@ -506,6 +505,28 @@ fn lights_are_tried_on_the_volume() {
 }
 
 #[test]
+fn presets_are_tried_on_the_volume() {
+    let mut harness = window();
+    let before = harness.state().settings().clone();
+    click(&mut harness, "Presets");
+    click(&mut harness, "Try presets…");
+    let begin = Instant::now();
+    while harness.query_by_label("Simulation: Cloud").is_none() {
+        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(harness.query_all_by_label_contains("CT: ").count() >= 4);
+    assert_eq!(harness.state().settings(), &before, "trying changes nothing");
+    click(&mut harness, "Use Paper: Lobster");
+    assert_ne!(harness.state().settings().transfer, before.transfer);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings(), &before);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
 fn the_next_file_can_have_the_look_of_this_one() {
     let mut harness = window();
     harness.key_press(egui::Key::CloseBracket);
@@ -635,6 +656,7 @@ fn the_whole_curve_is_colored_moved_and_replaced() {
     click(&mut harness, "Lobster");
     let preset = transfer(&harness);
     assert!(preset != first && preset != colored);
+    click(&mut harness, "Shape");
     click(&mut harness, "Bump");
     assert_eq!(transfer(&harness).points.len(), preset.points.len() + 11);
 
@@ -652,6 +674,137 @@ fn the_whole_curve_is_colored_moved_and_replaced() {
     harness.run_steps(8);
     click(&mut harness, "Show all");
     assert!(harness.query_by_label("Show all").is_none());
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn level_and_window_are_dragged_in_the_picture() {
+    let mut harness = window();
+    let ends = |harness: &Harness<'_, App>| {
+        let points = &harness.state().settings().transfer.points;
+        (points.first().expect("a point").value, points.last().expect("a point").value)
+    };
+    let (before, camera) = (ends(&harness), harness.state().settings().camera.clone());
+    let center = harness.get_by_label("Picture").rect().center() + vec2(0.0, 60.0);
+    drag_with(&mut harness, PointerButton::Secondary, center, vec2(0.0, 40.0));
+    harness.run_steps(2);
+    let shifted = ends(&harness);
+    assert!(shifted.0 > before.0, "down means higher values");
+    assert!((shifted.1 - shifted.0 - before.1 + before.0).abs() < 1e-9);
+    drag_with(&mut harness, PointerButton::Secondary, center, vec2(40.0, 0.0));
+    harness.run_steps(2);
+    let spread = ends(&harness);
+    assert!(spread.1 - spread.0 > shifted.1 - shifted.0);
+    assert!((spread.0 + spread.1 - shifted.0 - shifted.1).abs() < 1e-6, "about the middle");
+    assert_eq!(harness.state().settings().camera, camera);
+    for _ in 0..2 {
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+        harness.run_steps(3);
+    }
+    assert_eq!(ends(&harness), before, "each drag is a step");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn hoods_are_opened_by_their_rim() {
+    let mut harness = window();
+    click(&mut harness, "Perspective");
+    click(&mut harness, "Hood");
+    harness.run_steps(3);
+    let angle = |harness: &Harness<'_, App>| harness.state().settings().lights[0].hood.half_angle_deg;
+    let before = angle(&harness);
+    // Where the handle is depends on what the picture shows of the cone.
+    let mut changes = Vec::new();
+    for by in [vec2(24.0, 0.0), vec2(-24.0, 0.0), vec2(0.0, 24.0), vec2(0.0, -24.0)] {
+        let handle = harness.get_by_label("Hood handle Key").rect().center();
+        drag(&mut harness, handle, by);
+        harness.run_steps(2);
+        changes.push(angle(&harness) - before);
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+        harness.run_steps(3);
+        assert_eq!(angle(&harness), before, "a drag is a step");
+    }
+    assert!(changes.iter().any(|&change| change > 0.5), "{changes:?}");
+    assert!(changes.iter().any(|&change| change < -0.5), "{changes:?}");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn points_are_selected_and_changed_together() {
+    let mut harness = window();
+    let points = |harness: &Harness<'_, App>| harness.state().settings().transfer.points.clone();
+    let before = points(&harness);
+    assert!(before.len() >= 4);
+    let place = |harness: &Harness<'_, App>, number: usize| {
+        harness.get_by_label(&format!("Eye point {number}")).rect().center()
+    };
+    // A frame around the second and the third, from above to below.
+    let plot = harness.get_by_label("Transfer function").rect();
+    let (second, third) = (place(&harness, 2), place(&harness, 3));
+    let from = Pos2::new(second.x - 6.0, plot.min.y + 3.0);
+    drag(&mut harness, from, Pos2::new(third.x + 6.0, plot.max.y - 2.0) - from);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("2 points").is_some());
+    assert_eq!(points(&harness), before, "a frame changes nothing");
+
+    drag(&mut harness, second, vec2(5.0, 4.0));
+    harness.run_steps(2);
+    let moved = points(&harness);
+    let by = |index: usize| moved[index].value - before[index].value;
+    assert!(by(1) > 0.0 && (by(1) - by(2)).abs() < 1e-9, "{} and {}", by(1), by(2));
+    assert_eq!((moved[0], moved[3]), (before[0], before[3]));
+
+    // Looking at the colour changes nothing; a step to the right changes that of both.
+    let colors = |harness: &Harness<'_, App>| points(harness).iter().map(|p| p.color).collect::<Vec<_>>();
+    let plain = colors(&harness);
+    click(&mut harness, "As seen");
+    harness.run_steps(3);
+    assert_eq!(colors(&harness), plain);
+    harness.get_by_role_and_label(Role::Slider, "Hue").focus();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run_steps(3);
+    let turned = colors(&harness);
+    assert!(turned[1] == turned[2] && turned[1] != plain[1], "{turned:?}");
+    assert_eq!((turned[0], turned[3]), (plain[0], plain[3]));
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+
+    // The way to the next point, for both; and one more with Shift.
+    click(&mut harness, "Straight");
+    click(&mut harness, "Smooth");
+    let eased = points(&harness).iter().map(|point| point.easing).collect::<Vec<_>>();
+    assert_eq!(eased[..4], [Easing::Linear, Easing::Smooth, Easing::Smooth, Easing::Linear]);
+    let first = place(&harness, 1);
+    harness.hover_at(first);
+    for pressed in [true, false] {
+        harness.event_modifiers(
+            Event::PointerButton {
+                pos: first,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::SHIFT,
+            },
+            Modifiers::SHIFT,
+        );
+    }
+    harness.run_steps(2);
+    assert!(harness.query_by_label("3 points").is_some());
+    harness.key_press(egui::Key::Delete);
+    harness.run_steps(2);
+    assert_eq!(points(&harness).len(), before.len() - 3);
+    // All of them with Ctrl+A over the plot; Escape leaves them.
+    harness.hover_at(plot.center());
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
+    harness.run_steps(2);
+    assert!(harness.query_by_label(&format!("{} points", before.len() - 3)).is_some());
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Level").is_some());
+    click(&mut harness, "Shape");
+    click(&mut harness, "Box");
+    assert_eq!(points(&harness).len(), before.len());
     wait_until_idle(&mut harness);
 }
 

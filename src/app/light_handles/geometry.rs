@@ -59,6 +59,11 @@ impl View {
         self.sight.point(scene)
     }
 
+    /// Whether a place of the window is well within the picture.
+    pub(super) fn shows(&self, at: Pos2) -> bool {
+        self.sight.picture.shrink(theme::HANDLE_RADIUS).contains(at)
+    }
+
     /// From the eye to a point along the axis of view.
     fn depth(&self, scene: DVec3) -> f64 {
         (self.sight.camera.eye() - scene).dot(self.sight.camera.scene_from_view().z_axis)
@@ -79,6 +84,19 @@ impl View {
         Some(Handle { position, behind: self.depth(scene) > self.depth(DVec3::ZERO) + 1e-9 })
     }
 
+    /// To the right of the picture, in scene space.
+    pub(super) fn right(&self) -> DVec3 {
+        self.sight.camera.scene_from_view().x_axis
+    }
+
+    /// The scene point that is seen at a place of the window, on the plane through `through` that faces the eye.
+    pub(super) fn facing(&self, through: DVec3, at: Pos2) -> Option<DVec3> {
+        let (origin, direction) = self.sight.ray(at);
+        let normal = self.sight.camera.scene_from_view().z_axis;
+        let along = (through - origin).dot(normal) / direction.dot(normal);
+        along.is_finite().then(|| origin + direction * along)
+    }
+
     /// Moves a light so that its handle comes to lie at a point of the window.
     pub(super) fn move_light(&self, light: &mut Light, to: Pos2, behind: bool) {
         let (origin, direction) = self.sight.ray(to);
@@ -87,11 +105,7 @@ impl View {
             LightKind::Parallel => {
                 (self.on_sphere(origin, direction, behind) * position.length().max(1e-3)).into()
             }
-            LightKind::Perspective => {
-                let normal = self.sight.camera.scene_from_view().z_axis;
-                let along = (position - origin).dot(normal) / direction.dot(normal);
-                if along.is_finite() { (origin + direction * along).into() } else { light.position }
-            }
+            LightKind::Perspective => self.facing(position, to).map_or(light.position, Into::into),
         };
     }
 

@@ -5,7 +5,7 @@ use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Sense, Ui, vec2};
 use super::super::commands::Command;
 use super::super::theme;
 use super::super::volume_facts::VolumeFacts;
-use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, PRESETS, TransferFunction};
+use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
 /// Size of the strip that shows a colour map.
 const STRIP: egui::Vec2 = vec2(96.0, 14.0);
@@ -13,6 +13,11 @@ const STRIP: egui::Vec2 = vec2(96.0, 14.0);
 /// Presets, by domain.
 pub(super) fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.menu_button("Presets", |ui| {
+        let all = ui.button(&*Command::TryPresets.label()).on_hover_text("Shows each on your volume");
+        if all.clicked() {
+            commands.push(Command::TryPresets);
+        }
+        ui.separator();
         let mut domain = "";
         // The one of the benchmarks is for the command line.
         for preset in PRESETS.into_iter().filter(|preset| preset.domain() != "bench") {
@@ -39,7 +44,7 @@ fn heading(domain: &str) -> &str {
 }
 
 /// Colour maps, with their colours.
-pub(super) fn colors(ui: &mut Ui, commands: &mut Vec<Command>) {
+pub(super) fn colors(ui: &mut Ui, function: &mut TransferFunction, commands: &mut Vec<Command>) {
     ui.menu_button("Colours", |ui| {
         for (at, map) in COLOR_MAPS.iter().enumerate() {
             ui.horizontal(|ui| {
@@ -61,6 +66,12 @@ pub(super) fn colors(ui: &mut Ui, commands: &mut Vec<Command>) {
             if button.clicked() {
                 commands.push(command);
             }
+        }
+        let mut seen = function.mixing == Mixing::Seen;
+        let switch = ui.checkbox(&mut seen, "Mix as seen");
+        let tip = "Mixes colours between points in Oklab: lightness is even, and blue to yellow has no glare";
+        if switch.on_hover_text(tip).changed() {
+            function.mixing = if seen { Mixing::Seen } else { Mixing::Light };
         }
         if ui.button("Invert opacities").on_hover_text("What is dense becomes clear").clicked() {
             commands.push(Command::InvertTransfer);
@@ -92,10 +103,22 @@ fn strip(ui: &mut Ui, map: &ColorMap) {
 
 /// Moves the whole curve, or spreads it. The limits keep every point near the volume's values.
 pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (f64, f64)) {
-    let (Some(first), Some(last)) = (function.points.first(), function.points.last()) else { return };
+    let (Some(&first), Some(&last)) = (function.points.first(), function.points.last()) else { return };
     let span = (range.1 - range.0).max(1e-12);
     let (middle, width) = (f64::midpoint(first.value, last.value), last.value - first.value);
     let (mut to, mut wide) = (middle, width);
+    let most = function.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
+    let mut opacity = most;
+    let label = ui.label("Opacity");
+    let field = DragValue::new(&mut opacity).speed(0.005).range(0.001..=1.0).max_decimals(3);
+    ui.add_enabled(most > 0.0, field)
+        .labelled_by(label.id)
+        .on_hover_text("The highest opacity: all others keep their share of it");
+    if opacity != most && most > 0.0 {
+        for point in &mut function.points {
+            point.opacity = (point.opacity * opacity / most).min(1.0);
+        }
+    }
     let label = ui.label("Level");
     let level = DragValue::new(&mut to).speed(span / 400.0).range(range.0 - span..=range.1 + span);
     ui.add(level).labelled_by(label.id).on_hover_text("Moves all points along the values");
@@ -108,9 +131,29 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
     }
 }
 
+/// What changes the shape of the curve. `shown`: the values that the plot shows.
+pub(super) fn shapes(
+    ui: &mut Ui,
+    function: &mut TransferFunction,
+    volume: &VolumeFacts,
+    shown: ((f64, f64), bool),
+) {
+    ui.menu_button("Shape", |ui| {
+        if ui.button("Fit").on_hover_text("Spreads the points over the values that occur").clicked() {
+            fit(function, volume);
+        }
+        if ui.button("Bump").on_hover_text("Adds a smooth bump of opacity: a band of values").clicked() {
+            add_bump(function, shown);
+        }
+        if ui.button("Box").on_hover_text("Adds a band of values with sharp ends").clicked() {
+            add_box(function, shown);
+        }
+    });
+}
+
 /// Spreads the points over the values that occur: all but two hundredths of the voxels at either end, since most
 /// volumes have much that is empty.
-pub(super) fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
+fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
     let value =
         |share: f64| volume.range.0 + volume.histogram.percentile(share) * (volume.range.1 - volume.range.0);
     let (low, high) = (value(0.02), value(0.998));
@@ -125,7 +168,7 @@ pub(super) fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
 }
 
 /// A smooth bump of opacity around the middle of the window that is shown.
-pub(super) fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
+fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
     let (middle, width) = (f64::midpoint(low, high), (high - low) / 10.0);
     // A Gaussian, by its values at multiples of half its standard deviation.
     for step in -5_i32..=5 {
@@ -139,9 +182,48 @@ pub(super) fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64,
     }
 }
 
+/// A band of opacity with sharp ends around the middle of the window that is shown.
+fn add_box(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
+    let (middle, half) = (f64::midpoint(low, high), (high - low) / 20.0);
+    let before = function.clone();
+    let inside = |point: &ControlPoint| (point.value - middle).abs() < half;
+    function.points.retain(|point| !inside(point));
+    for (value, easing) in [(middle - half, Easing::Step), (middle + half, Easing::Linear)] {
+        let point = before.point_at(value);
+        let opacity = if easing == Easing::Step { point.opacity.max(0.7) } else { point.opacity };
+        let index = function.points.partition_point(|point| point.value <= value);
+        if easing == Easing::Step {
+            // What comes before ends where it was.
+            function.points.insert(index, point);
+            function.points.insert(index + 1, ControlPoint { opacity, easing, ..point });
+        } else {
+            function.points.insert(index, ControlPoint { easing: before.easing_at(value), ..point });
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_box_is_a_box() {
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        let mut function = TransferFunction {
+            points: vec![point(0.0, 0.0), point(49.0, 0.1), point(100.0, 0.2)],
+            ..TransferFunction::default()
+        };
+        let before = function.clone();
+        add_box(&mut function, ((0.0, 100.0), true));
+        assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
+        for value in [45.001, 50.0, 54.999] {
+            assert!((function.opacity_at(value) - 0.7).abs() < 1e-9, "{value}");
+        }
+        for value in [0.0, 30.0, 44.999, 55.0, 80.0] {
+            let apart = (function.opacity_at(value) - before.opacity_at(value)).abs();
+            assert!(apart < 2e-3, "{value}: {apart}");
+        }
+    }
 
     #[test]
     fn a_bump_is_a_bump() {

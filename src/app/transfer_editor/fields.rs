@@ -1,0 +1,111 @@
+//! What is typed about selected points: value, opacity, colour, and the way to the next point.
+
+use eframe::egui::{self, DragValue, Slider, Ui};
+
+use super::super::panels::controls::color;
+use crate::model::{
+    ControlPoint, Easing, TransferFunction, lab_from_lch, lch_from_lab, linear_from_oklab, linear_from_srgb,
+    oklab_from_linear, srgb_from_linear,
+};
+
+/// Ways from a point to the next.
+const WAYS: [(Easing, &str); 3] =
+    [(Easing::Linear, "Straight"), (Easing::Smooth, "Smooth"), (Easing::Step, "Step")];
+
+/// The most colourful colours of displays have about this chroma.
+const MOST_CHROMA: f64 = 0.33;
+
+/// Fields of one point, or of several at once. `true`: they are to be removed.
+pub(super) fn points(
+    ui: &mut Ui,
+    function: &mut TransferFunction,
+    selected: &[usize],
+    range: (f64, f64),
+    light: bool,
+) -> bool {
+    let Some(&first) = selected.first() else { return false };
+    let mut point = function.points[first];
+    let before = point;
+    if selected.len() == 1 {
+        let (low, high) = neighbours(function, first, range);
+        let label = ui.label("Value");
+        let speed = (range.1 - range.0).max(1e-12) / 500.0;
+        ui.add(DragValue::new(&mut point.value).range(low..=high).speed(speed)).labelled_by(label.id);
+    } else {
+        ui.label(format!("{} points", selected.len()));
+    }
+    let label = ui.label("Opacity");
+    ui.add(DragValue::new(&mut point.opacity).range(0.0..=1.0).speed(0.005).max_decimals(3))
+        .labelled_by(label.id);
+    if !light {
+        color(ui, "Colour of the point", &mut point.color);
+        perceived(ui, &mut point.color);
+    }
+    way(ui, &mut point.easing);
+    // What was typed holds for all; each keeps its own value.
+    for &index in selected {
+        let other = &mut function.points[index];
+        if point.opacity != before.opacity {
+            other.opacity = point.opacity;
+        }
+        if point.color != before.color {
+            other.color = point.color;
+        }
+        if point.easing != before.easing {
+            other.easing = point.easing;
+        }
+    }
+    function.points[first].value = point.value;
+    ui.add_enabled(function.points.len() > 1, egui::Button::new("Remove")).clicked()
+}
+
+/// Lightness, chroma and hue, for colours that are to be as light or as colourful as others.
+fn perceived(ui: &mut Ui, srgb: &mut [f32; 3]) {
+    let menu = ui.menu_button("As seen", |ui| {
+        let linear = srgb.map(|c| linear_from_srgb(f64::from(c)));
+        let mut lch = lch_from_lab(oklab_from_linear(linear));
+        let mut changed = false;
+        let [lightness, chroma, hue] = &mut lch;
+        egui::Grid::new("lightness, chroma, hue").num_columns(2).show(ui, |ui| {
+            for (value, most, name, unit) in [
+                (lightness, 1.0, "Lightness", ""),
+                (chroma, MOST_CHROMA, "Chroma", ""),
+                (hue, 360.0, "Hue", "°"),
+            ] {
+                ui.label(name);
+                let slider = Slider::new(value, 0.0..=most).suffix(unit).max_decimals(3);
+                // Showing a colour must not round it.
+                let slider = slider.clamping(egui::SliderClamping::Edits);
+                changed |= ui.name_inputs(name, |ui| ui.add(slider)).changed();
+                ui.end_row();
+            }
+        });
+        if changed {
+            *srgb = linear_from_oklab(lab_from_lch(lch)).map(|c| srgb_from_linear(c) as f32);
+        }
+    });
+    menu.response.on_hover_text("Lightness, chroma and hue: equal steps look equally large");
+}
+
+fn way(ui: &mut Ui, easing: &mut Easing) {
+    let name = WAYS.iter().find(|(way, _)| way == easing).map_or("", |(_, name)| name);
+    let menu = ui.menu_button(name, |ui| {
+        for (way, name) in WAYS {
+            if ui.selectable_label(*easing == way, name).clicked() {
+                *easing = way;
+                ui.close();
+            }
+        }
+    });
+    menu.response.on_hover_text("The way to the next point");
+}
+
+/// The values between which a point can be moved.
+fn neighbours(function: &TransferFunction, index: usize, range: (f64, f64)) -> (f64, f64) {
+    let points: &[ControlPoint] = &function.points;
+    let low = index.checked_sub(1).map_or(range.0, |before| points[before].value);
+    let high = points.get(index + 1).map_or(range.1, |after| after.value);
+    // Points from a preset may lie beyond this volume's values.
+    let value = points[index].value;
+    (low.min(value), high.max(value))
+}

@@ -1,0 +1,166 @@
+//! Which points are selected, and what moves them together.
+
+use std::collections::BTreeSet;
+
+use eframe::egui::{Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
+
+use super::plot::Axes;
+use super::theme;
+use crate::model::TransferFunction;
+
+/// Indices of points, and a frame that is being drawn around more of them.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(super) struct Selection {
+    points: BTreeSet<usize>,
+    /// Where the frame began.
+    frame: Option<Pos2>,
+}
+
+impl Selection {
+    /// Nothing but one point.
+    pub(super) fn only(&mut self, index: usize) {
+        self.points = [index].into();
+    }
+
+    /// One point more, or one less.
+    pub(super) fn toggle(&mut self, index: usize) {
+        if !self.points.remove(&index) {
+            self.points.insert(index);
+        }
+    }
+
+    /// All of so many.
+    pub(super) fn all(&mut self, count: usize) {
+        self.points = (0..count).collect();
+    }
+
+    /// None.
+    pub(super) fn clear(&mut self) {
+        self.points.clear();
+    }
+
+    /// Whether it has a point.
+    pub(super) fn has(&self, index: usize) -> bool {
+        self.points.contains(&index)
+    }
+
+    /// Those that are left of so many points, in ascending order.
+    pub(super) fn within(&mut self, count: usize) -> Vec<usize> {
+        self.points.retain(|&index| index < count);
+        self.points.iter().copied().collect()
+    }
+
+    /// Selects what a frame surrounds that is drawn with the mouse; with Shift, what was selected stays.
+    pub(super) fn frame(&mut self, ui: &Ui, response: &Response, axes: &Axes, function: &TransferFunction) {
+        let primary = PointerButton::Primary;
+        if response.drag_started_by(primary) {
+            self.frame = ui.input(|input| input.pointer.press_origin());
+        }
+        let Some((start, now)) = self.frame.zip(ui.ctx().pointer_latest_pos()) else { return };
+        let frame = Rect::from_two_pos(start, now);
+        if response.dragged_by(primary) {
+            paint(&ui.painter_at(axes.area), frame);
+        } else {
+            self.frame = None;
+        }
+        if response.dragged_by(primary) || response.drag_stopped_by(primary) {
+            if !ui.input(|input| input.modifiers.shift) {
+                self.points.clear();
+            }
+            let inside = |point: &crate::model::ControlPoint| {
+                axes.shows(point.value) && frame.contains(axes.position(point.value, point.opacity))
+            };
+            let found = function.points.iter().enumerate().filter(|(_, point)| inside(point));
+            self.points.extend(found.map(|(index, _)| index));
+        }
+    }
+
+    /// Removes its points, but for the last of a function: without any it would be invisible for good.
+    pub(super) fn remove(&mut self, function: &mut TransferFunction) {
+        for index in self.within(function.points.len()).into_iter().rev() {
+            if function.points.len() > 1 {
+                function.points.remove(index);
+            }
+        }
+        self.points.clear();
+    }
+
+    /// Moves its points by as much as none of them passes another that stays, leaves the values, or becomes more
+    /// than opaque or less than clear.
+    pub(super) fn shift(
+        &mut self,
+        function: &mut TransferFunction,
+        range: (f64, f64),
+        (value, opacity): (f64, f64),
+    ) {
+        let selected = self.within(function.points.len());
+        let points = &function.points;
+        let (mut left, mut right, mut down, mut up) =
+            (f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
+        for &index in &selected {
+            let point = points[index];
+            // Points from a preset may lie beyond this volume's values, and stay where they are.
+            let (mut low, mut high) = (range.0.min(point.value), range.1.max(point.value));
+            if let Some(before) = index.checked_sub(1).filter(|&before| !self.has(before)) {
+                low = points[before].value;
+            }
+            if let Some(after) = points.get(index + 1).filter(|_| !self.has(index + 1)) {
+                high = after.value;
+            }
+            (left, right) = (left.max(low - point.value), right.min(high - point.value));
+            (down, up) = (down.max(-point.opacity), up.min(1.0 - point.opacity));
+        }
+        for index in selected {
+            let point = &mut function.points[index];
+            point.value += value.max(left).min(right);
+            point.opacity = (point.opacity + opacity.max(down).min(up)).clamp(0.0, 1.0);
+        }
+    }
+}
+
+fn paint(painter: &Painter, frame: Rect) {
+    painter.rect_filled(frame, 0.0, theme::ACCENT.gamma_multiply(0.12));
+    painter.rect_stroke(frame, 0.0, Stroke::new(1.0, theme::ACCENT), eframe::egui::StrokeKind::Inside);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::ControlPoint;
+
+    fn function() -> TransferFunction {
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        TransferFunction {
+            points: vec![point(0.0, 0.0), point(20.0, 0.3), point(40.0, 0.8), point(90.0, 1.0)],
+            ..TransferFunction::default()
+        }
+    }
+
+    fn moved(selected: &[usize], by: (f64, f64)) -> Vec<(f64, f64)> {
+        let (mut function, mut selection) = (function(), Selection::default());
+        for &index in selected {
+            selection.toggle(index);
+        }
+        selection.shift(&mut function, (0.0, 100.0), by);
+        function.points.iter().map(|point| (point.value, (point.opacity * 1e6).round() / 1e6)).collect()
+    }
+
+    #[test]
+    fn points_move_together_and_pass_none() {
+        assert_eq!(moved(&[1, 2], (10.0, 0.1)), [(0.0, 0.0), (30.0, 0.4), (50.0, 0.9), (90.0, 1.0)]);
+        assert_eq!(moved(&[1, 2], (70.0, 0.9))[1..3], [(70.0, 0.5), (90.0, 1.0)], "up to what stays");
+        assert_eq!(moved(&[1], (-50.0, -0.9))[1], (0.0, 0.0));
+        assert_eq!(moved(&[3], (50.0, 0.0))[3], (100.0, 1.0), "up to the values' end");
+        assert_eq!(moved(&[], (5.0, 0.5)), moved(&[1], (0.0, 0.0)));
+        assert_eq!(moved(&[7], (5.0, 0.5)), moved(&[], (0.0, 0.0)), "points that are gone");
+    }
+
+    #[test]
+    fn one_point_always_stays() {
+        let (mut function, mut selection) = (function(), Selection::default());
+        selection.all(4);
+        selection.remove(&mut function);
+        assert_eq!(function.points.len(), 1);
+        assert_eq!(selection, Selection::default());
+    }
+}
