@@ -779,6 +779,11 @@ fn fine_pictures_can_be_made_again_from_themselves() {
     assert_eq!(folder.run("replay changed.exr --check").code, Some(1));
     // A look can be taken from any of them.
     folder.succeed("render builtin:chair:16 -o from.png --size 48x36 --session light.exr");
+    export_png([1, 1], &[0; 4], false, None, &folder.path("bare.png")).expect("written");
+    let outcome = folder.run("render builtin:chair:16 -o x.png --session bare.png");
+    assert!(outcome.code == Some(3) && outcome.stderr.contains("carries no settings"), "{outcome:?}");
+    let outcome = folder.run("render builtin:chair:16 -o x.gif --size 48x36");
+    assert!(outcome.code == Some(6) && outcome.stderr.contains(".png or .exr"), "{outcome:?}");
     assert_ne!(folder.run("render builtin:chair:16 -o x.png --samples 5").code, Some(0));
     assert_ne!(folder.run("render builtin:chair:16 -o x.png --bits 12").code, Some(0));
 }

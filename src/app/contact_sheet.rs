@@ -186,9 +186,20 @@ impl ContactSheet {
         let window =
             egui::Window::new(self.sheet.title()).open(&mut open).resizable(false).collapsible(false);
         window.default_pos([60.0, 60.0]).show(ctx, |ui| {
+            ui.horizontal(|ui| {
+                if self.work.is_some() || self.wanted {
+                    ui.spinner();
+                    ui.label("trying them on your volume");
+                } else if ui.button("Again, as it looks now").clicked() {
+                    self.wanted = true;
+                }
+                ui.add_space(theme::HANDLE_RADIUS);
+                ui.weak("the picture's own size and quality come with a click");
+            });
             // Low windows have bars instead of a sheet that hangs over.
             let most = ctx.content_rect().height() - 170.0;
-            let area = egui::ScrollArea::vertical().max_height(most.max(150.0));
+            let most = most.max(150.0);
+            let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
                 egui::Grid::new("contact sheet").spacing([8.0, 8.0]).show(ui, |ui| {
                     for (at, tried) in self.prints.iter().enumerate() {
@@ -208,16 +219,6 @@ impl ContactSheet {
                         });
                     }
                 })
-            });
-            ui.horizontal(|ui| {
-                if self.work.is_some() || self.wanted {
-                    ui.spinner();
-                    ui.label("trying them on your volume");
-                } else if ui.button("Again, as it looks now").clicked() {
-                    self.wanted = true;
-                }
-                ui.add_space(theme::HANDLE_RADIUS);
-                ui.weak("the picture's own size and quality come with a click");
             });
         });
         self.open = open;

@@ -5,6 +5,8 @@ mod worker;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
 use eframe::egui;
 
@@ -12,7 +14,10 @@ use self::worker::Progress;
 pub(super) use self::worker::{Exported, Subject, Worker};
 use super::work::Work;
 use crate::export::{AnimationFormat, Reel};
-use crate::model::{Depth, Shot};
+use crate::model::Shot;
+
+/// How long a window that closes waits for an export to end: a part of a picture takes seconds on slow adapters.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,6 +93,15 @@ impl Export {
         self.work.is_some()
     }
 
+    /// Ends what is being made, because the window closes, and waits for that: so that nothing is left of it.
+    pub(super) fn abandon(&mut self) {
+        self.progress.cancelled.store(true, Ordering::Relaxed);
+        let begin = Instant::now();
+        while self.is_busy() && self.take().is_none() && begin.elapsed() < PATIENCE {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
     /// How the last export ended, once.
     pub(super) fn take(&mut self) -> Option<Result<Exported, String>> {
         let result = self.work.as_ref()?.take()?;
@@ -117,7 +131,8 @@ impl Export {
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<(), String> {
-        let shot = Shot { size, depth: Depth::Eight, ..self.shot };
+        let shot = Shot { transparent: self.shot.transparent, ..Shot::new(size) };
+        self.progress = Arc::default();
         self.run(ctx, move || worker::copy(&subject, &shot))
     }
 

@@ -373,6 +373,7 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.keep_look();
+        self.export.abandon();
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

@@ -34,6 +34,8 @@ enum Curve {
 pub(super) struct TransferEditor {
     curve: Curve,
     selection: Selection,
+    /// The curve as it was left: the selection means its points.
+    left: TransferFunction,
     /// Rare values are raised so that they can be seen.
     log_histogram: bool,
     /// Values that are shown, if not all.
@@ -45,6 +47,7 @@ impl Default for TransferEditor {
         Self {
             curve: Curve::Eye,
             selection: Selection::default(),
+            left: TransferFunction::default(),
             log_histogram: true,
             zoom: Zoom::default(),
         }
@@ -71,6 +74,10 @@ impl TransferEditor {
         if settings.lighting.linked {
             self.curve = Curve::Eye;
         }
+        if *self.edited(settings) != self.left {
+            // Somebody else has changed it: its points may be others.
+            self.selection.clear();
+        }
         let is_wide = ui.available_width() >= WIDE;
         ui.horizontal(|ui| {
             self.curve_tools(ui, settings, volume, is_wide);
@@ -88,13 +95,13 @@ impl TransferEditor {
         self.zoom.ui(ui, &response, area, volume.range);
         let axes = Axes::new(area, self.zoom.shown(volume.range));
         self.paint(ui, &axes, settings, volume);
-        let light = self.curve == Curve::Light;
-        let name = if light { "Light point" } else { "Eye point" };
-        let function = if light { &mut settings.lighting.curve } else { &mut settings.transfer };
+        let name = if self.curve == Curve::Light { "Light point" } else { "Eye point" };
+        let function = self.edited(settings);
         self.add_point(&response, &axes, function);
         self.selection.frame(ui, &response, &axes, function);
         self.select_by_keys(ui, &response, function.points.len());
-        self.edit_points(ui, &axes, function, name);
+        self.edit_points(ui, &axes, function, (name, volume.range), response.contains_pointer());
+        self.left = self.edited(settings).clone();
         plot::readout(ui, &axes, &response, settings);
         plot::mark(ui, &axes, marked);
     }
@@ -114,7 +121,7 @@ impl TransferEditor {
         }
         ui.separator();
         let light = self.curve == Curve::Light;
-        let function = if light { &mut settings.lighting.curve } else { &mut settings.transfer };
+        let function = self.edited(settings);
         let selected = self.selection.within(function.points.len());
         if selected.is_empty() {
             menus::whole_curve(ui, function, volume.range);
@@ -128,10 +135,17 @@ impl TransferEditor {
         }
     }
 
+    /// The curve that is edited.
+    fn edited<'a>(&self, settings: &'a mut Settings) -> &'a mut TransferFunction {
+        match self.curve {
+            Curve::Eye => &mut settings.transfer,
+            Curve::Light => &mut settings.lighting.curve,
+        }
+    }
+
     /// What replaces the whole curve, and how the plot shows it.
     fn plot_tools(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
-        let light = self.curve == Curve::Light;
-        let function = if light { &mut settings.lighting.curve } else { &mut settings.transfer };
+        let function = self.edited(settings);
         let automatic = ui.button("Automatic").on_hover_text("Puts the automatic transfer function back");
         if automatic.clicked() {
             self.selection.clear();
@@ -179,16 +193,31 @@ impl TransferEditor {
         }
     }
 
-    fn edit_points(&mut self, ui: &Ui, axes: &Axes, function: &mut TransferFunction, name: &str) {
+    /// Shows the points and lets the user move and remove them. `range`: all values of the volume; `hovered`: the
+    /// pointer is on the plot.
+    fn edit_points(
+        &mut self,
+        ui: &Ui,
+        axes: &Axes,
+        function: &mut TransferFunction,
+        (name, range): (&str, (f64, f64)),
+        hovered: bool,
+    ) {
         let painter = ui.painter_at(axes.area.expand(theme::POINT_RADIUS + 2.0));
-        let mut removes = false;
+        let id_of = |index: usize| ui.scope_id().with((name, index));
+        let focused = ui.memory(egui::Memory::focused);
+        let on_point = (0..function.points.len()).any(|index| focused == Some(id_of(index)));
+        let deletes =
+            |input: &egui::InputState| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace);
+        // Somebody may be typing, or working elsewhere.
+        let mut removes = (on_point || (focused.is_none() && hovered)) && ui.input(deletes);
         for index in 0..function.points.len() {
             if !axes.shows(function.points[index].value) {
                 continue;
             }
             let at = axes.position(function.points[index].value, function.points[index].opacity);
             let area = Rect::from_center_size(at, Vec2::splat(2.0 * theme::POINT_RADIUS + 6.0));
-            let id = ui.scope_id().with((name, index));
+            let id = id_of(index);
             let response = ui.interact(area, id, Sense::click_and_drag());
             response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("{name} {}", index + 1)));
             let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
@@ -197,23 +226,24 @@ impl TransferEditor {
             } else if response.clicked() || (response.drag_started() && !self.selection.has(index)) {
                 self.selection.only(index);
             }
-            if response.clicked() || response.drag_started() {
+            let wanted = self.selection.wants_focus && self.selection.has(index);
+            if ((response.clicked() || response.drag_started()) && self.selection.has(index)) || wanted {
+                self.selection.wants_focus = false;
                 response.request_focus();
+            } else if response.gained_focus() && !self.selection.has(index) {
+                // Reached by the keyboard.
+                self.selection.only(index);
             }
             if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
                 let (value, opacity) = axes.values(pointer);
                 let point = function.points[index];
                 let by = (value - point.value, opacity - point.opacity);
-                self.selection.shift(function, axes.range, by);
+                self.selection.shift(function, range, by);
             }
             if response.has_focus() {
-                self.nudge(ui, id, axes, function);
+                self.nudge(ui, id, axes, function, range);
             }
             let selected = self.selection.has(index);
-            let deletes = |input: &egui::InputState| {
-                input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace)
-            };
-            removes |= selected && !typing_elsewhere(ui, id) && ui.input(deletes);
             if response.double_clicked() {
                 self.selection.only(index);
                 removes = true;
@@ -236,7 +266,14 @@ impl TransferEditor {
     }
 
     /// Arrow keys move what is selected.
-    fn nudge(&mut self, ui: &Ui, id: egui::Id, axes: &Axes, function: &mut TransferFunction) {
+    fn nudge(
+        &mut self,
+        ui: &Ui,
+        id: egui::Id,
+        axes: &Axes,
+        function: &mut TransferFunction,
+        range: (f64, f64),
+    ) {
         let arrows =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(id, arrows));
@@ -246,12 +283,7 @@ impl TransferEditor {
         let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
         if right != 0.0 || up != 0.0 {
             let span = axes.range.1 - axes.range.0;
-            self.selection.shift(function, axes.range, (right * NUDGE[0] * span, up * NUDGE[1]));
+            self.selection.shift(function, range, (right * NUDGE[0] * span, up * NUDGE[1]));
         }
     }
-}
-
-/// Whether another widget has the keyboard.
-fn typing_elsewhere(ui: &Ui, id: egui::Id) -> bool {
-    ui.memory(egui::Memory::focused).is_some_and(|focused| focused != id)
 }

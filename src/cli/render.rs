@@ -8,7 +8,7 @@ use serde_json::json;
 use super::scene::SceneArgs;
 use super::shot::ShotArgs;
 use super::{CliError, print_line, warn_line};
-use crate::export::{write_atomically, write_picture};
+use crate::export::{check_picture, check_writable, write_atomically, write_picture};
 use crate::gpu::{Context, RenderOptions, Renderer, dark_share, mean_luminance};
 use crate::model::{PictureRecord, Record, VolumeRecord};
 
@@ -46,13 +46,18 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let settings = look.settings(&mut renderer, &loaded)?;
     say("rendering");
     let shot = args.shot.shot(&args.output);
-    if let Some(path) = &args.report {
+    check_picture(&args.output, &shot)?;
+    for path in std::iter::once(&args.output).chain(&args.report) {
+        check_writable(path)?;
+    }
+    let mut report = None;
+    if args.report.is_some() {
         // It measures a whole picture, light volumes included, not what the balance left over.
         renderer = Renderer::new(&context)?;
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
         let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, shot.size, &options)?;
         let took = renderer.report();
-        let report = json!({
+        report = Some(json!({
             "adapter": context.info.name,
             "driver": format!("{} {}", context.info.driver, context.info.driver_info),
             "image_size": shot.size,
@@ -74,8 +79,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             "dark_share": dark_share(&picture.light),
             "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(&settings).unwrap_or_default())),
             "settings": settings,
-        });
-        write_atomically(path, format!("{report:#}\n").as_bytes())?;
+        }));
     }
     let folder = args.output.parent();
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
@@ -89,12 +93,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         }
         Ok(bands.next_rows()?)
     };
-    if let Err(err) = write_picture(&args.output, &shot, Some(&record), &mut rows) {
-        // A report without its picture would mislead.
-        if let Some(path) = &args.report {
-            std::fs::remove_file(path).ok();
-        }
-        return Err(err);
+    write_picture(&args.output, &shot, Some(&record), &mut rows)?;
+    // A report without its picture would mislead.
+    if let Some((path, report)) = args.report.as_ref().zip(report) {
+        write_atomically(path, format!("{report:#}\n").as_bytes())?;
     }
     print_line(&format!("{}", args.output.display()));
     Ok(())

@@ -7,7 +7,7 @@ use clap::Args;
 use super::scene::{Loaded, RawArgs};
 use super::{CliError, print_line, warn_line};
 use crate::data::load::{LoadControl, open};
-use crate::export::{Rows, read_picture, read_record, write_picture};
+use crate::export::{Rows, check_picture, read_picture, read_record, write_picture};
 use crate::gpu::{Context, Distance, Renderer};
 use crate::model::{PresetError, Record, Settings};
 
@@ -58,12 +58,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         warn_line(&format!("made by version {}, again by {}", how.version, env!("CARGO_PKG_VERSION")));
     }
     let shot = how.shot.within_limits();
-    let mut renderer = Renderer::new(&context)?;
-    let again = renderer.bands(&loaded.volume, &loaded.bricks, &settings, &shot).all()?;
     let (size, before) = read_picture(&args.picture)?;
     if size != shot.size {
         return Err(unusable(format!("it is {size:?} pixels and not {:?}", shot.size)));
     }
+    if let Some(output) = &args.output {
+        check_picture(output, &shot)?;
+    }
+    let mut renderer = Renderer::new(&context)?;
+    let again = renderer.bands(&loaded.volume, &loaded.bricks, &settings, &shot).all()?;
     let again = again.as_written(&shot);
     if let Some(output) = &args.output {
         let mut rows = Some(again.clone());

@@ -271,7 +271,11 @@ fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliE
         .is_some_and(|ending| ["png", "exr"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
     let text = match builtin {
         Some(preset) => preset.text().as_bytes().to_vec(),
-        None if is_picture => read_record(path)?.unwrap_or_default().into_bytes(),
+        None if is_picture => {
+            let unusable =
+                || CliError::Replay { path: name.clone(), why: "it carries no settings".to_owned() };
+            read_record(path)?.ok_or_else(unusable)?.into_bytes()
+        }
         None => read_small(path).map_err(|source| CliError::Read { what, path: name.clone(), source })?,
     };
     let value = serde_json::from_slice(&text).map_err(|err| CliError::Preset {

@@ -48,6 +48,9 @@ pub struct Reel {
     pub transparent: bool,
 }
 
+/// Endings of pictures and videos that are no name for a folder.
+const OTHERS: [&str; 10] = ["avi", "avif", "bmp", "exr", "jpeg", "jpg", "mkv", "mov", "webm", "webp"];
+
 /// A kind of file that is being written.
 trait Moving: Send {
     /// Adds a picture.
@@ -74,6 +77,11 @@ impl Animation {
     /// When the folder cannot be written to, the kind of file cannot hold what is asked for, or ffmpeg is
     /// needed and not there.
     pub fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+        let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase).unwrap_or_default();
+        if OTHERS.iter().any(|other| ending == *other) {
+            let what = "turns are written as .png, .gif, .mp4 or into a folder";
+            return Err(ExportError::Unfit { what, path: path.to_owned() });
+        }
         Ok(Self(match AnimationFormat::of_path(path) {
             AnimationFormat::Apng => Box::new(apng::Apng::create(path, reel)?),
             AnimationFormat::Gif => Box::new(gif::Gif::create(path, reel)?),
@@ -159,5 +167,11 @@ mod tests {
         assert_eq!(crate::export::read_record(&last).unwrap().as_deref(), Some("{\"at\": 2}"));
         assert_eq!(image::open(&last).unwrap().to_rgba8().get_pixel(1, 0).0, [120, 10, 30, 255]);
         assert_eq!(std::fs::read_dir(&path).unwrap().count(), 3);
+        // A shorter turn would be mixed with what is left of this one.
+        assert!(Animation::create(&path, &Reel { frames: 2, ..REEL }).is_err());
+        assert!(Animation::create(&path, &REEL).is_ok());
+        for name in ["turn.webm", "turn.exr"] {
+            assert!(Animation::create(&folder.path().join(name), &REEL).is_err(), "{name}");
+        }
     }
 }

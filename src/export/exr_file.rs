@@ -1,6 +1,6 @@
 //! EXR: linear, premultiplied light in 16-bit floats, for programs that grade and composite.
 
-use std::io::BufWriter;
+use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
 use exr::block::writer::ChunksWriter as _;
@@ -11,7 +11,7 @@ use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::Compression;
 
 use super::picture_file::RECORD;
-use super::whole_file::{place, temporary_beside};
+use super::whole_file::{open_regular, place, temporary_beside};
 use super::{ExportError, ReadPictureError, Rows};
 use crate::model::Shot;
 
@@ -104,7 +104,8 @@ fn ascii(json: &str) -> String {
 
 /// The record in an EXR file, if there is one.
 pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
-    let meta = MetaData::read_from_file(path, false).map_err(|err| ReadPictureError::new(path, &err))?;
+    let meta = MetaData::read_from_buffered(BufReader::new(open_regular(path)?), false)
+        .map_err(|err| ReadPictureError::new(path, &err))?;
     let Some(header) = meta.headers.first() else { return Ok(None) };
     let piece = |at| header.own_attributes.other.get(&piece_name(at))?.to_text().ok();
     let text: String = (0..).map_while(piece).map(ToString::to_string).collect();

@@ -12,6 +12,6 @@ mod whole_file;
 
 pub use animation::{Animation, AnimationFormat, Reel};
 pub use error::{ExportError, ReadPictureError};
-pub use picture_file::{PictureFormat, Rows, read_picture, read_record, write_picture};
+pub use picture_file::{PictureFormat, Rows, check_picture, read_picture, read_record, write_picture};
 pub use png_file::{encode_png, export_png};
-pub use whole_file::write_atomically;
+pub use whole_file::{check_writable, write_atomically};

@@ -94,18 +94,36 @@ pub fn write_picture<E: From<ExportError>>(
     record: Option<&str>,
     rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
 ) -> Result<(), E> {
+    check_picture(path, shot)?;
+    match PictureFormat::of_path(path) {
+        PictureFormat::Png => png_file::write(path, shot, record, rows),
+        PictureFormat::Exr => exr_file::write(path, shot, record, rows),
+    }
+}
+
+/// Endings of pictures and videos that are no name for a PNG file.
+const OTHERS: [&str; 13] =
+    ["apng", "avif", "avi", "bmp", "gif", "jpeg", "jpg", "mkv", "mov", "mp4", "tif", "tiff", "webp"];
+
+/// Says before anything is drawn whether a picture cannot be written under a name.
+///
+/// # Errors
+/// When the name stands for another kind of file, or that kind does not fit the depth.
+pub fn check_picture(path: &Path, shot: &Shot) -> Result<(), ExportError> {
+    let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase).unwrap_or_default();
     let format = PictureFormat::of_path(path);
+    if OTHERS.iter().any(|other| ending == *other) {
+        let what = "pictures are written as .png or .exr";
+        return Err(ExportError::Unfit { what, path: path.to_owned() });
+    }
     if format.depth(shot.depth) != shot.depth {
         let what = match format {
             PictureFormat::Png => "PNG files hold 8 or 16 bits; EXR files hold linear light",
             PictureFormat::Exr => "EXR files hold linear light; PNG files hold 8 or 16 bits",
         };
-        return Err(ExportError::Unfit { what, path: path.to_owned() }.into());
+        return Err(ExportError::Unfit { what, path: path.to_owned() });
     }
-    match format {
-        PictureFormat::Png => png_file::write(path, shot, record, rows),
-        PictureFormat::Exr => exr_file::write(path, shot, record, rows),
-    }
+    Ok(())
 }
 
 /// A picture's columns and rows, and all its rows: bytes of 8-bit PNG, else floats.
@@ -144,6 +162,9 @@ mod tests {
             ("a.png", Depth::Linear, false),
             ("a.exr", Depth::Eight, false),
             ("a.EXR", Depth::Linear, true),
+            ("a.gif", Depth::Eight, false),
+            ("a.JPG", Depth::Eight, false),
+            ("v1.5", Depth::Eight, true),
         ] {
             shot.depth = depth;
             let mut rows = match depth {

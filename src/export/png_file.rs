@@ -1,12 +1,12 @@
 //! PNG: display colours in 8 or 16 bits, with a record as text.
 
-use std::io::{BufWriter, Write as _};
+use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
 use super::picture_file::RECORD;
-use super::whole_file::{place, temporary_beside, write_atomically};
+use super::whole_file::{open_regular, place, temporary_beside, write_atomically};
 use super::{ExportError, ReadPictureError, Rows};
-use crate::model::{Depth, Shot};
+use crate::model::{Depth, MAX_EDGE, Shot};
 
 /// Most bytes that are read of a picture's texts: a thousand times a real record.
 const MOST_TEXT: usize = 16 << 20;
@@ -63,24 +63,26 @@ pub(super) fn write<E: From<ExportError>>(
 ) -> Result<(), E> {
     let failed = ExportError::writing(path);
     let file = temporary_beside(path)?;
-    let out = BufWriter::new(file.reopen().map_err(&failed)?);
-    let mut encoder = png::Encoder::new(out, shot.size[0], shot.size[1]);
+    let mut out = BufWriter::new(file.reopen().map_err(&failed)?);
+    let mut encoder = png::Encoder::new(&mut out, shot.size[0], shot.size[1]);
     encoder.set_depth(if shot.depth == Depth::Eight { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
     encoder.set_color(if shot.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
     if let Some(record) = record {
         encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned()).map_err(ExportError::Encode)?;
     }
-    let writer = encoder.write_header().and_then(|writer| writer.into_stream_writer_with_size(1 << 20));
-    let mut writer = writer.map_err(ExportError::Encode)?;
+    let mut writer = encoder.write_header().map_err(ExportError::Encode)?;
+    let mut stream = writer.stream_writer_with_size(1 << 20).map_err(ExportError::Encode)?;
     while let Some(rows) = rows()? {
         let bytes = match rows {
             Rows::Bytes(shown) if shot.transparent => shown,
             Rows::Bytes(shown) => rgb(&shown),
             Rows::Floats(shown) => words(&shown, shot.transparent),
         };
-        writer.write_all(&bytes).map_err(&failed)?;
+        stream.write_all(&bytes).map_err(&failed)?;
     }
+    stream.finish().map_err(ExportError::Encode)?;
     writer.finish().map_err(ExportError::Encode)?;
+    out.flush().map_err(&failed)?;
     Ok(place(file, path)?)
 }
 
@@ -103,8 +105,22 @@ pub(super) fn word(value: f32) -> u16 {
 
 /// All of a PNG file.
 pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
-    let image = image::open(path).map_err(|err| ReadPictureError::new(path, &err))?;
-    let size = [image.width(), image.height()];
+    let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
+    let reader = || {
+        let file = open_regular(path)?;
+        Ok(image::ImageReader::with_format(BufReader::new(file), image::ImageFormat::Png))
+    };
+    let (width, height) = reader()?.into_dimensions().map_err(|err| failed(&err))?;
+    let size = [width, height];
+    if size.iter().any(|&edge| edge > MAX_EDGE) {
+        return Err(failed(&format!("it has {width} × {height} pixels, which none of this program has")));
+    }
+    let mut reader = reader()?;
+    // As much as our own largest pictures need, twice: not what the file makes of its text or colours.
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(16 * u64::from(width) * u64::from(height) + (1 << 20));
+    reader.limits(limits);
+    let image = reader.decode().map_err(|err| failed(&err))?;
     let is_deep = matches!(image.color(), image::ColorType::Rgb16 | image::ColorType::Rgba16);
     let rows = if is_deep {
         let words = image.to_rgba16().into_raw();
@@ -118,12 +134,14 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
 /// The record in a PNG file, if there is one.
 pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
-    let file = std::fs::File::open(path).map_err(|err| failed(&err))?;
+    let file = open_regular(path)?;
     let limits = png::Limits { bytes: MOST_TEXT };
-    let decoder = png::Decoder::new_with_limits(std::io::BufReader::new(file), limits);
+    let decoder = png::Decoder::new_with_limits(BufReader::new(file), limits);
     let reader = decoder.read_info().map_err(|err| failed(&err))?;
     let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD);
-    found.map(|text| text.get_text().map_err(|err| failed(&err))).transpose()
+    let Some(mut text) = found.cloned() else { return Ok(None) };
+    text.decompress_text_with_limit(MOST_TEXT).map_err(|err| failed(&err))?;
+    text.get_text().map(Some).map_err(|err| failed(&err))
 }
 
 #[cfg(test)]
@@ -145,6 +163,24 @@ mod tests {
         assert_eq!(read_record(&path).unwrap().as_deref(), Some(record));
         std::fs::write(&path, b"no picture").unwrap();
         assert!(read_record(&path).is_err() && read_record(Path::new("/no/such.png")).is_err());
+    }
+
+    #[test]
+    fn texts_that_swell_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut info = png::Info::with_size(1, 1);
+        let mut text = png::text_metadata::ITXtChunk::new(RECORD, "x".repeat(MOST_TEXT + 1));
+        text.compressed = true;
+        text.compress_text().unwrap();
+        info.utf8_text.push(text);
+        let file = std::fs::File::create(&path).unwrap();
+        let mut writer = png::Encoder::with_info(file, info).unwrap().write_header().unwrap();
+        writer.write_image_data(&[0]).unwrap();
+        writer.finish().unwrap();
+        assert!(std::fs::metadata(&path).unwrap().len() < 1 << 20, "a small file");
+        assert!(read_record(&path).is_err());
+        assert!(read_record(folder.path()).is_err(), "a folder");
     }
 
     #[test]

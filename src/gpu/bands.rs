@@ -22,6 +22,8 @@ pub struct Bands<'a> {
     bricks: &'a Arc<Bricks>,
     settings: &'a Settings,
     shot: Shot,
+    /// Pixels that are drawn around each part.
+    margin: u32,
     /// Those that are left, the next one last.
     left: Vec<Vec<PixelWindow>>,
     total: usize,
@@ -51,11 +53,13 @@ impl Renderer {
         (longest, most): (u32, u32),
     ) -> Bands<'a> {
         let samples = shot.samples.max(1);
-        let (longest, most) = (longest / samples, most / (samples * samples));
-        let mut left: Vec<_> = PixelWindow::bands(shot.size, longest, most).collect();
+        let margin = margin(volume, settings, shot.size, samples);
+        let longest = (longest / samples).saturating_sub(2 * margin);
+        let mut left: Vec<_> = PixelWindow::bands(shot.size, longest, most / (samples * samples)).collect();
         left.reverse();
         let total = left.len();
-        Bands { renderer: self, volume, bricks, settings, shot: Shot { samples, ..*shot }, left, total }
+        let shot = Shot { samples, ..*shot };
+        Bands { renderer: self, volume, bricks, settings, shot, margin, left, total }
     }
 }
 
@@ -80,9 +84,8 @@ impl Bands<'_> {
         } else {
             floats.resize(channels, 0.0);
         }
-        let margin = self.margin();
         for part in parts {
-            let drawn = part.widened(margin);
+            let drawn = part.widened(self.margin);
             let options = RenderOptions { part: Some(drawn), ..RenderOptions::of_shot(&self.shot) };
             self.renderer.draw(self.volume, self.bricks, self.settings, self.shot.size, &options)?;
             let front = self.renderer.front.as_ref();
@@ -94,17 +97,6 @@ impl Bands<'_> {
             }
         }
         Ok(Some(if self.shot.depth == Depth::Eight { Rows::Bytes(bytes) } else { Rows::Floats(floats) }))
-    }
-
-    /// Pixels around a part that its own need: gradients of scattered sheets are differences of neighbours.
-    fn margin(&self) -> u32 {
-        if !self.settings.scatters() {
-            return 0;
-        }
-        let scene = SceneSpace::new(self.volume.dims(), self.volume.world_from_index());
-        let fine = PixelWindow::from(self.shot.size).finer(self.shot.samples);
-        let frame = eye_frame(&self.settings.camera, &scene, fine, self.settings.sampling.slab);
-        frame.gradient_steps().0.div_ceil(self.shot.samples)
     }
 
     /// All that is left of the picture at once.
@@ -125,6 +117,17 @@ impl Bands<'_> {
         }
         Ok(whole)
     }
+}
+
+/// Pixels around a part that its own need: gradients of scattered sheets are differences of neighbours.
+fn margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) -> u32 {
+    if !settings.scatters() {
+        return 0;
+    }
+    let scene = SceneSpace::new(volume.dims(), volume.world_from_index());
+    let fine = PixelWindow::from(size).finer(samples);
+    let frame = eye_frame(&settings.camera, &scene, fine, settings.sampling.slab);
+    frame.gradient_steps().0.div_ceil(samples)
 }
 
 /// Puts a part of what was drawn into its place in a band.

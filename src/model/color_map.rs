@@ -1,6 +1,6 @@
 //! Colour maps that are known to read well, each as nine evenly spaced sRGB colours.
 
-use super::{ControlPoint, TransferFunction};
+use super::{ControlPoint, Easing, TransferFunction};
 
 /// Colours along a scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl TransferFunction {
             let value = low + span * f64::from(stop) / 8.0;
             let near = |point: &ControlPoint| (point.value - value).abs() <= NEAREST * span;
             if !self.points.iter().any(near) {
-                self.insert_on_curve(value);
+                self.cut_at(value);
             }
         }
         for point in &mut self.points {
@@ -122,6 +122,12 @@ impl TransferFunction {
 
     /// Opacities the other way round along the values that have points.
     pub fn invert(&mut self) {
+        // What stays until the next point would have to stay since the one before.
+        for index in (0..self.points.len()).rev() {
+            if self.points[index].easing == Easing::Step {
+                self.straighten(index);
+            }
+        }
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return };
         let sum = first.value + last.value;
         for point in &mut self.points {
@@ -187,6 +193,21 @@ mod tests {
             let expected = [COLOR_MAPS[0].at(0.0), COLOR_MAPS[0].at(1.0)];
             assert_eq!(ends, if reversed { [expected[1], expected[0]] } else { expected });
         }
+    }
+
+    #[test]
+    fn bands_are_bands_the_other_way_round() {
+        let mut function = ramp();
+        function.points[1].easing = Easing::Step;
+        function.points[1].opacity = 0.7;
+        function.points[2].easing = Easing::Smooth;
+        let before = function.clone();
+        function.invert();
+        for value in [10.0, 101.0, 150.0, 199.0, 230.0, 260.0] {
+            let apart = (function.opacity_at(300.0 - value) - before.opacity_at(value)).abs();
+            assert!(apart < 1e-9, "{value}: {apart}");
+        }
+        assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
     }
 
     #[test]

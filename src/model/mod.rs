@@ -43,8 +43,8 @@ pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shadi
 pub use shadows::{Deposit, LightStorage, MAX_BIAS_VOXELS, Precision, Resolution, ShadowAlgorithm, Shadows};
 pub use shot::{Depth, MAX_EDGE, MAX_SAMPLES, Shot};
 pub use transfer::{
-    BakedTransfer, ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, Mixing, TransferFunction,
-    linear_from_srgb, srgb_from_linear,
+    BakedTransfer, ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, Mixing, STEPS,
+    TransferFunction, linear_from_srgb, srgb_from_linear,
 };
 pub use variant::Variant;
 pub use view::StandardView;

@@ -15,6 +15,9 @@ pub const LUT_SIZE: usize = 1024;
 /// within one unit for every display.
 pub const MAX_OPACITY: f64 = 0.9999;
 
+/// Straight pieces that stand for a smooth way.
+pub const STEPS: u32 = 8;
+
 /// How opacity runs between two control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -166,7 +169,38 @@ impl TransferFunction {
         index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing)
     }
 
-    /// Adds a point on the curve. Returns its index.
+    /// Replaces the way from a point to the next by straight ones, if it is not: a step by a jump, a smooth way by
+    /// [`STEPS`] pieces. Returns how many points there are more.
+    pub fn straighten(&mut self, index: usize) -> usize {
+        let (Some(&point), Some(&next)) = (self.points.get(index), self.points.get(index + 1)) else {
+            return 0;
+        };
+        let between: Vec<ControlPoint> = match point.easing {
+            Easing::Linear => Vec::new(),
+            Easing::Smooth => {
+                let share = |step: u32| f64::from(step) / f64::from(STEPS);
+                (1..STEPS)
+                    .map(|step| self.point_at(point.value + (next.value - point.value) * share(step)))
+                    .collect()
+            }
+            Easing::Step => vec![ControlPoint { value: next.value, easing: Easing::Linear, ..point }],
+        };
+        let count = between.len();
+        self.points[index].easing = Easing::Linear;
+        self.points.splice(index + 1..=index, between);
+        count
+    }
+
+    /// Adds a point on the curve, which stays as it is (a smooth way nearly so). Returns its index.
+    pub fn cut_at(&mut self, value: f64) -> usize {
+        let upper = self.points.partition_point(|point| point.value <= value);
+        if self.easing_at(value) == Easing::Smooth {
+            self.straighten(upper - 1);
+        }
+        self.insert_on_curve(value)
+    }
+
+    /// Adds a point on the curve, with ways as before to both sides. Returns its index.
     pub fn insert_on_curve(&mut self, value: f64) -> usize {
         let point = self.point_at(value);
         let index = self.points.partition_point(|point| point.value <= value);
@@ -309,6 +343,26 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn straight_ways_stand_for_others() {
+        for (easing, more, apart) in
+            [(Easing::Linear, 0, 1e-9), (Easing::Step, 1, 1e-9), (Easing::Smooth, 7, 0.01)]
+        {
+            let mut function = ramp(Interpolation::Opacity);
+            function.points[0].easing = easing;
+            let before = function.clone();
+            assert_eq!(function.clone().straighten(0), more, "{easing:?}");
+            let index = function.cut_at(13.0);
+            assert_eq!(function.points[index].value, 13.0);
+            for i in 0..100 {
+                let value = 9.03 + f64::from(i) * 0.12;
+                let found = (function.opacity_at(value) - before.opacity_at(value)).abs();
+                assert!(found < apart, "{easing:?} at {value}: {found}");
+            }
+        }
+        assert_eq!(ramp(Interpolation::Opacity).straighten(1), 0, "nothing follows");
     }
 
     #[test]

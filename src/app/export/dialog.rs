@@ -35,6 +35,9 @@ const TURNS: [(AnimationFormat, &str, &str, &str); 4] = [
     (AnimationFormat::Folder, "One file per picture", "", "A folder of PNG files, for video programs"),
 ];
 
+/// All endings of files that are written.
+const ENDINGS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
+
 impl Export {
     /// Shows the window if it is open.
     pub(in crate::app) fn ui(&mut self, ctx: &egui::Context, viewport: [u32; 2]) -> Option<Request> {
@@ -106,8 +109,16 @@ impl Export {
         self.shot.depth = PictureFormat::of_path(Path::new(self.path.trim())).depth(self.shot.depth);
     }
 
+    /// Gives the name an ending, instead of one of ours if it has one: what follows another dot is a part of it.
     fn set_ending(&mut self, ending: &str) {
-        self.path = Path::new(self.path.trim()).with_extension(ending).display().to_string();
+        let path = Path::new(self.path.trim());
+        let known =
+            path.extension().is_some_and(|found| ENDINGS.iter().any(|own| found.eq_ignore_ascii_case(own)));
+        let stem = if known { path.with_extension("") } else { path.to_owned() };
+        self.path = stem.display().to_string();
+        if !ending.is_empty() {
+            self.path = format!("{}.{ending}", self.path);
+        }
     }
 
     /// How fine a picture is, and what its file holds.
@@ -148,7 +159,8 @@ impl Export {
         });
         ui.horizontal(|ui| {
             for (format, name, ending, tip) in TURNS {
-                if ui.selectable_label(self.animation() == format, name).on_hover_text(tip).clicked() {
+                let is_it = self.animation() == format;
+                if ui.selectable_label(is_it, name).on_hover_text(tip).clicked() && !is_it {
                     self.set_ending(ending);
                 }
             }

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::super::theme;
 use super::geometry::View;
-use crate::model::{Light, LightKind};
+use crate::model::{Hood, Light, LightKind};
 
 /// Half angles that can be dragged, in degrees, as in the side panel.
 const HALF_ANGLES_DEG: RangeInclusive<f64> = 1.0..=89.0;
@@ -90,7 +90,9 @@ impl HoodHandle {
         light: &Light,
         index: usize,
     ) -> Option<f64> {
-        let spot = self.dragged.or_else(|| Spot::seen(view, light)).filter(|_| has_cone(light))?;
+        let dragged = self.dragged.take();
+        self.active = false;
+        let spot = dragged.or_else(|| Spot::seen(view, light)).filter(|_| has_cone(light))?;
         let at = spot.place(view, light);
         let seen = view.point(at)?;
         let area = Rect::from_center_size(seen, Vec2::splat(2.0 * HALF_EDGE + 6.0));
@@ -108,14 +110,18 @@ impl HoodHandle {
         painter.rect(square, 1.0, theme::color(light.color), outline, StrokeKind::Outside);
         let pointer = response.interact_pointer_pos().filter(|_| response.dragged());
         let moved = pointer.filter(|_| ui.input(|input| input.pointer.delta()) != Vec2::ZERO);
-        Some(spot.half_angle_deg(view, light, view.facing(at, moved?)?))
+        let half_angle_deg = spot.half_angle_deg(view, light, view.facing(at, moved?)?);
+        // Not so far that nobody could grab it any more.
+        let hood = Hood { half_angle_deg, ..light.hood };
+        let moved = spot.place(view, &Light { hood, ..light.clone() });
+        view.point(moved).is_some_and(|at| view.shows(at)).then_some(half_angle_deg)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Camera, Hood};
+    use crate::model::Camera;
     use eframe::egui::Pos2;
 
     #[test]

@@ -111,6 +111,8 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
     let mut opacity = most;
     let label = ui.label("Opacity");
     let field = DragValue::new(&mut opacity).speed(0.005).range(0.001..=1.0).max_decimals(3);
+    // What a file brought stays until somebody changes it.
+    let field = field.clamp_existing_to_range(false);
     ui.add_enabled(most > 0.0, field)
         .labelled_by(label.id)
         .on_hover_text("The highest opacity: all others keep their share of it");
@@ -120,10 +122,16 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
         }
     }
     let label = ui.label("Level");
-    let level = DragValue::new(&mut to).speed(span / 400.0).range(range.0 - span..=range.1 + span);
+    let level = DragValue::new(&mut to)
+        .speed(span / 400.0)
+        .range(range.0 - span..=range.1 + span)
+        .clamp_existing_to_range(false);
     ui.add(level).labelled_by(label.id).on_hover_text("Moves all points along the values");
     let label = ui.label("Window");
-    let window = DragValue::new(&mut wide).speed(span / 400.0).range(span / 1000.0..=4.0 * span);
+    let window = DragValue::new(&mut wide)
+        .speed(span / 400.0)
+        .range(span / 1000.0..=4.0 * span)
+        .clamp_existing_to_range(false);
     ui.add(window).labelled_by(label.id).on_hover_text("Spreads all points around their middle");
     if to != middle || (wide != width && width > 0.0) {
         let stretch = if width > 0.0 { wide / width } else { 1.0 };
@@ -170,36 +178,37 @@ fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
 /// A smooth bump of opacity around the middle of the window that is shown.
 fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
     let (middle, width) = (f64::midpoint(low, high), (high - low) / 10.0);
+    let (first, last) = (middle - 1.25 * width, middle + 1.25 * width);
+    cut_out(function, first, last);
+    let before = function.clone();
     // A Gaussian, by its values at multiples of half its standard deviation.
-    for step in -5_i32..=5 {
+    for step in -4_i32..=4 {
         let at = f64::from(step) * 0.5;
-        let value = middle + at * width * 0.5;
-        let opacity = (0.7 * (-0.5 * at * at).exp()).max(function.opacity_at(value));
-        let color = super::plot::srgb(function.at(value).0);
-        let opacity = if step.abs() == 5 { function.opacity_at(value) } else { opacity };
-        let index = function.points.partition_point(|point| point.value <= value);
-        function.points.insert(index, ControlPoint::new(value, color, opacity));
+        let point = before.point_at(middle + at * width * 0.5);
+        let opacity = (0.7 * (-0.5 * at * at).exp()).max(point.opacity);
+        let index = function.points.partition_point(|other| other.value <= point.value);
+        function.points.insert(index, ControlPoint { opacity, ..point });
     }
 }
 
 /// A band of opacity with sharp ends around the middle of the window that is shown.
 fn add_box(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
     let (middle, half) = (f64::midpoint(low, high), (high - low) / 20.0);
-    let before = function.clone();
-    let inside = |point: &ControlPoint| (point.value - middle).abs() < half;
-    function.points.retain(|point| !inside(point));
-    for (value, easing) in [(middle - half, Easing::Step), (middle + half, Easing::Linear)] {
-        let point = before.point_at(value);
-        let opacity = if easing == Easing::Step { point.opacity.max(0.7) } else { point.opacity };
-        let index = function.points.partition_point(|point| point.value <= value);
-        if easing == Easing::Step {
-            // What comes before ends where it was.
-            function.points.insert(index, point);
-            function.points.insert(index + 1, ControlPoint { opacity, easing, ..point });
-        } else {
-            function.points.insert(index, ControlPoint { easing: before.easing_at(value), ..point });
-        }
-    }
+    let first = cut_out(function, middle - half, middle + half);
+    let begin = function.points[first];
+    let inside = ControlPoint { opacity: begin.opacity.max(0.7), easing: Easing::Step, ..begin };
+    function.points.insert(first + 1, inside);
+}
+
+/// Sets points on the curve at both ends of a band, and removes those in it: the rest stays as it is. Returns the
+/// index of the first end, from which it goes straight to the second.
+fn cut_out(function: &mut TransferFunction, low: f64, high: f64) -> usize {
+    function.cut_at(high);
+    function.cut_at(low);
+    function.points.retain(|point| point.value <= low || point.value >= high);
+    let first = function.points.partition_point(|point| point.value <= low) - 1;
+    function.points[first].easing = Easing::Linear;
+    first
 }
 
 #[cfg(test)]
@@ -235,6 +244,12 @@ mod tests {
         add_bump(&mut function, ((0.0, 100.0), true));
         assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
         assert!((function.opacity_at(50.0) - 0.7).abs() < 1e-9);
-        assert!((function.opacity_at(20.0) - 0.04).abs() < 1e-9, "elsewhere nothing has changed");
+        for value in [20.0, 37.0, 63.0, 80.0] {
+            let wanted = 0.002 * value;
+            let found = function.opacity_at(value);
+            assert!((found - wanted).abs() < 2e-3, "elsewhere nothing has changed: {found} at {value}");
+        }
+        let (left, right) = (function.opacity_at(47.0), function.opacity_at(53.0));
+        assert!((left - right).abs() < 0.01 && left > 0.3, "both sides: {left} and {right}");
     }
 }

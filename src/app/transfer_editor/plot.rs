@@ -83,13 +83,6 @@ impl Axes {
     }
 }
 
-/// Linear light as an sRGB colour of the settings.
-pub(super) fn srgb(linear: [f64; 3]) -> [f32; 3] {
-    let [r, g, b] = linear.map(|c| c as f32);
-    let color = Color32::from(Rgba::from_rgb(r, g, b));
-    [color.r(), color.g(), color.b()].map(|c| f32::from(c) / 255.0)
-}
-
 /// Two greys behind everything, so that transparency can be seen.
 pub(super) fn checkerboard(painter: &Painter, area: Rect) {
     painter.rect_filled(area, 3.0, theme::CHECKER[0]);

@@ -5,6 +5,11 @@ use std::path::{Path, PathBuf};
 use super::{Moving, Reel};
 use crate::export::{ExportError, export_png};
 
+/// The name of a picture.
+fn name(at: u32) -> String {
+    format!("{at:04}.png")
+}
+
 /// A folder of pictures.
 pub(super) struct Folder {
     path: PathBuf,
@@ -14,6 +19,10 @@ pub(super) struct Folder {
 
 impl Folder {
     pub(super) fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+        if path.join(name(reel.frames)).exists() {
+            let what = "the folder holds the pictures of a longer turn; another folder keeps them apart";
+            return Err(ExportError::Unfit { what, path: path.to_owned() });
+        }
         std::fs::create_dir_all(path).map_err(ExportError::writing(path))?;
         Ok(Self { path: path.to_owned(), reel: *reel, written: 0 })
     }
@@ -21,7 +30,7 @@ impl Folder {
 
 impl Moving for Folder {
     fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
-        let path = self.path.join(format!("{:04}.png", self.written));
+        let path = self.path.join(name(self.written));
         export_png(self.reel.size, shown, self.reel.transparent, Some(record), &path)?;
         self.written += 1;
         Ok(())

@@ -32,7 +32,8 @@ pub(super) fn from_agave(tree: &Value, (low, high): (f64, f64)) -> Result<Transf
         Some(1) => {
             let (value, half) = (share("isovalue")?, share("isorange")?.abs().max(1e-6) / 2.0);
             let step = |at: f64, a: f64| ControlPoint { easing: Easing::Step, ..point(at, a) };
-            vec![step(value - half, 1.0), step(value + half, 0.0)]
+            // Nothing on either side.
+            vec![point(value - half, 0.0), step(value - half, 1.0), step(value + half, 0.0)]
         }
         Some(3) => custom(curve, &point)?,
         // Percentiles, and ends of the range: where they are in this volume, *Fit* finds.

@@ -17,7 +17,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{ControlPoint, Easing, Mixing, TransferFunction};
+use super::{ControlPoint, Easing, Interpolation, Mixing, STEPS, TransferFunction};
 
 /// Endings of the files that [`import`] reads.
 pub const IMPORTED: [&str; 6] = ["json", "vp", "itf", "tfi", "clut", "lut"];
@@ -25,8 +25,17 @@ pub const IMPORTED: [&str; 6] = ["json", "vp", "itf", "tfi", "clut", "lut"];
 /// Endings of the files that [`export`] writes.
 pub const EXPORTED: [&str; 5] = ["json", "vp", "itf", "clut", "lut"];
 
-/// Points that stand for a way that is not straight.
-const STEPS: u32 = 8;
+/// Most points of a function that is used: those of the largest tables are 4096.
+const MOST_POINTS: usize = 4096;
+
+/// Largest value: that of data in 32-bit floats.
+const MOST_VALUE: f64 = f32::MAX as f64;
+
+/// Bytes of the longest XML files and tables that are read: a table of 4096 keys has as many.
+const MOST_XML: usize = 2 << 20;
+
+/// Bytes of the longest table of nodes: 256 of them have a tenth of it.
+const MOST_CLUT: usize = 1 << 16;
 
 /// Why a file is no transfer function.
 #[derive(Debug, thiserror::Error)]
@@ -59,14 +68,25 @@ pub fn import(path: &Path, bytes: &[u8], range: (f64, f64)) -> Result<TransferFu
     let text = std::str::from_utf8(bytes).map_err(|err| form(&format!("it is no text: {err}")))?;
     let mut function = match ending.as_str() {
         "vp" => slicer::from_vp(text)?,
-        "itf" => inviwo::from_itf(text, range)?,
-        "tfi" => voreen::from_tfi(text, range)?,
-        "clut" => tables::from_clut(text, range)?,
+        "itf" => inviwo::from_itf(within(text, MOST_XML)?, range)?,
+        "tfi" => voreen::from_tfi(within(text, MOST_XML)?, range)?,
+        "clut" => tables::from_clut(within(text, MOST_CLUT)?, range)?,
         "lut" => tables::from_rows(text, range)?,
         _ => from_json(text, range)?,
     };
+    if function.points.len() > MOST_POINTS {
+        return Err(form(&format!("{} points are more than anybody has set", function.points.len())));
+    }
+    if function.points.iter().any(|point| point.value.abs() > MOST_VALUE) {
+        return Err(form("a value is beyond all that data has"));
+    }
     function.sort();
     Ok(function)
+}
+
+/// The same, for files whose readers take long over many things.
+fn within(text: &str, most: usize) -> Result<&str, ExchangeError> {
+    if text.len() > most { Err(form("it is longer than any transfer function")) } else { Ok(text) }
 }
 
 /// A JSON file of whichever program writes what it holds.
@@ -112,24 +132,24 @@ fn ending(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-/// The same function with nothing but straight ways, and colours mixed as light.
+/// The same function with nothing but straight ways, opacities that are linear, and colours mixed as light.
 fn straightened(function: &TransferFunction) -> TransferFunction {
-    let mut points: Vec<ControlPoint> = Vec::new();
-    let mut rest = function.points.iter().peekable();
-    while let Some(&point) = rest.next() {
-        points.push(ControlPoint { easing: Easing::Linear, ..point });
-        let Some(next) = rest.peek() else { break };
-        let bends =
-            point.easing == Easing::Smooth || (function.mixing == Mixing::Seen && point.color != next.color);
-        if point.easing == Easing::Step {
-            points.push(ControlPoint { value: next.value, easing: Easing::Linear, ..point });
-        } else if bends {
-            let value =
-                |step: u32| point.value + (next.value - point.value) * f64::from(step) / f64::from(STEPS);
-            points.extend((1..STEPS).map(|step| function.point_at(value(step))));
+    let mut straight = function.clone();
+    for index in (0..straight.points.len().saturating_sub(1)).rev() {
+        let (point, next) = (straight.points[index], straight.points[index + 1]);
+        let bends = (function.mixing == Mixing::Seen && point.color != next.color)
+            || (function.interpolation == Interpolation::Extinction && point.opacity != next.opacity);
+        if bends && point.easing == Easing::Linear {
+            // Pieces of what a straight way is here, which others draw as a curve.
+            let share = |step: u32| f64::from(step) / f64::from(STEPS);
+            let value = |step: u32| point.value + (next.value - point.value) * share(step);
+            let between: Vec<_> = (1..STEPS).map(|step| function.point_at(value(step))).collect();
+            straight.points.splice(index + 1..=index, between);
+        } else {
+            straight.straighten(index);
         }
     }
-    TransferFunction { points, mixing: Mixing::Light, ..function.clone() }
+    TransferFunction { interpolation: Interpolation::Opacity, mixing: Mixing::Light, ..straight }
 }
 
 /// A transfer function from colours and opacities at different values; neither list is empty.
@@ -144,8 +164,9 @@ fn merged(mut colors: Vec<(f64, [f32; 3])>, mut opacities: Vec<(f64, f64)>) -> T
     };
     // What jumps has two points at a value: the first opacity there belongs to the first colour there.
     let mut points = Vec::new();
+    let mut before = 0;
     for (at, &(value, opacity)) in opacities.iter().enumerate() {
-        let before = opacities[..at].iter().rev().take_while(|other| other.0 == value).count();
+        before = if at > 0 && opacities[at - 1].0 == value { before + 1 } else { 0 };
         let first = colors.partition_point(|other| other.0 < value);
         let jump = &colors[first..colors.partition_point(|other| other.0 <= value)];
         let color = jump.get(before).filter(|_| jump.len() > 1).map_or_else(|| color(value), |other| other.1);

@@ -55,11 +55,20 @@ pub(super) fn to_clut(function: &TransferFunction, range: (f64, f64)) -> String 
     let mut nodes: Vec<(u8, [u8; 4])> = Vec::new();
     for ControlPoint { value, color, opacity, easing: _ } in &function.points {
         let [r, g, b] = color.map(|c| byte(f64::from(c)));
-        // Places ascend: what jumps does so between two of them.
-        let least = nodes.last().map_or(0, |last| last.0.saturating_add(1));
-        let place = byte((value - low) / (high - low).max(1e-300)).max(least);
-        nodes.retain(|node| node.0 < place);
+        // Places ascend: what jumps does so between two of them, at the end between the last two.
+        let mut place = byte((value - low) / (high - low).max(1e-300));
+        if let Some(last) = nodes.last().map(|last| last.0).filter(|last| place <= *last) {
+            place = last.saturating_add(1);
+            if last == u8::MAX {
+                nodes.retain(|node| node.0 != u8::MAX - 1);
+                nodes.iter_mut().filter(|node| node.0 == u8::MAX).for_each(|node| node.0 -= 1);
+            }
+        }
         nodes.push((place, [r, g, b, byte(*opacity)]));
+    }
+    // A table has two nodes at least.
+    if let [(0..=254, color)] = nodes[..] {
+        nodes.push((u8::MAX, color));
     }
     let mut text = format!("[FLT]\nmin={low}\nmax={high}\n[INT]\nnumnodes={}\n[BYT]\n", nodes.len());
     for (at, (place, _)) in nodes.iter().enumerate() {

@@ -105,7 +105,16 @@ fn voreens_keys_with_splits_and_thresholds() {
     assert_eq!(function.points[2].color, [1.0, 0.0, 0.2]);
     let own = file(r#"<domain x="0" y="4000" />"#, r#"<threshold x="0.1" y="1" />"#);
     let function = read("a.tfi", own.as_bytes()).unwrap();
-    assert_eq!((function.points[0].opacity, function.points[2].value), (0.0, 2000.0));
+    // Below the threshold there is nothing, and from it on what there was.
+    assert_eq!((function.opacity_at(399.0), function.points.last().unwrap().value), (0.0, 2000.0));
+    assert!((function.opacity_at(401.0) - 0.2 * (1.0 - 401.0 / 2000.0)).abs() < 1e-9);
+    let band = r#"<TransFuncIntensity><threshold x="0.3" y="0.7" /><Keys>
+        <key><intensity value="0" /><split value="false" /><colorL r="0" g="0" b="0" a="255" /></key>
+        <key><intensity value="1" /><split value="false" /><colorL r="0" g="0" b="0" a="255" /></key>
+        </Keys></TransFuncIntensity>"#;
+    let function = read("a.tfi", band.as_bytes()).unwrap();
+    let found = [-500.0, -399.0, 399.0, 500.0].map(|value| function.opacity_at(value));
+    assert!(found[0] == 0.0 && found[1] > 0.99 && found[2] > 0.99 && found[3] == 0.0, "{found:?}");
 }
 
 #[test]
@@ -122,7 +131,7 @@ fn agaves_channels() {
     assert_eq!(ends, [(-250.0, 0.0), (250.0, 0.5)]);
     assert_eq!(window.points[0].color, [1.0, 0.5, 0.0]);
     let iso = read(r#""mode": 1, "isovalue": 0.5, "isorange": 0.1"#).unwrap();
-    assert_eq!((iso.opacity_at(-101.0), iso.opacity_at(101.0)), (0.5, 0.0));
+    assert_eq!((iso.opacity_at(-101.0), iso.opacity_at(101.0)), (0.0, 0.0));
     assert!((iso.opacity_at(0.0) - 0.5).abs() < 1e-12);
     let points =
         r#""mode": 3, "controlPoints": [{"x": 0, "value": [0,0,0,0]}, {"x": 1, "value": [1,1,1,1]}]"#;
@@ -135,6 +144,39 @@ fn agaves_channels() {
         let err = read(curve).unwrap_err();
         assert!(err.contains(what), "{err}");
     }
+}
+
+#[test]
+fn what_is_not_straight_elsewhere_gets_more_points() {
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+    let before = TransferFunction {
+        points: vec![point(0.0, 0.0), point(100.0, 0.8)],
+        interpolation: Interpolation::Extinction,
+        ..TransferFunction::default()
+    };
+    let after = read("a.vp", &export(Path::new("a.vp"), &before, RANGE).unwrap()).unwrap();
+    for value in [10.0, 50.0, 90.0] {
+        let apart = (after.opacity_at(value) - before.opacity_at(value)).abs();
+        assert!(apart < 0.01, "{value}: {apart}");
+    }
+    // A jump at the end is still one among bytes.
+    let mut plateau = TransferFunction { interpolation: Interpolation::Opacity, ..before };
+    plateau.points.insert(1, ControlPoint { easing: Easing::Step, ..point(50.0, 0.8) });
+    plateau.points[2].opacity = 0.0;
+    let after = read("a.clut", &export(Path::new("a.clut"), &plateau, RANGE).unwrap()).unwrap();
+    assert!(after.opacity_at(95.0) > 0.78 && after.opacity_at(100.0) < 0.01);
+    plateau.points.truncate(1);
+    assert!(read("a.clut", &export(Path::new("a.clut"), &plateau, RANGE).unwrap()).is_ok());
+}
+
+#[test]
+fn numbers_without_end_are_refused() {
+    let far = r#"<a><point><pos x="1e308"/><rgba x="1" y="1" z="1" w="1"/></point></a>"#;
+    assert!(read("a.itf", far.as_bytes()).unwrap_err().contains("beyond"));
+    let many: String = (0..5000).map(|_| "0 0.5 ").collect();
+    let text = format!("10000 {many}\n2 0 1\n4 0 1 1 1\n");
+    assert!(read("a.vp", text.as_bytes()).unwrap_err().contains("5000 points"));
+    assert!(read("a.clut", "x".repeat(MOST_CLUT + 1).as_bytes()).unwrap_err().contains("longer"));
 }
 
 #[test]

@@ -33,9 +33,8 @@ pub(super) fn from_tfi(text: &str, range: (f64, f64)) -> Result<TransferFunction
         let side = |name: &str| -> Result<ControlPoint, ExchangeError> {
             let node = part(name)?;
             let byte = |channel: &str| number(node, channel).map(|byte| (byte / 255.0).clamp(0.0, 1.0));
-            let opacity = if (from..=to).contains(&share) { byte("a")? } else { 0.0 };
             let color = rgb(&[byte("r")?, byte("g")?, byte("b")?]);
-            Ok(ControlPoint::new(low + (high - low) * share, color, opacity))
+            Ok(ControlPoint::new(low + (high - low) * share, color, byte("a")?))
         };
         points.push(side("colorL")?);
         if part("split").is_ok_and(|node| node.attribute("value") == Some("true")) {
@@ -45,5 +44,24 @@ pub(super) fn from_tfi(text: &str, range: (f64, f64)) -> Result<TransferFunction
     if points.is_empty() {
         return Err(form("there are no keys in the file"));
     }
-    Ok(TransferFunction { points, ..TransferFunction::default() })
+    let mut function = TransferFunction { points, ..TransferFunction::default() };
+    function.sort();
+    Ok(between(&function, low + (high - low) * from, low + (high - low) * to))
+}
+
+/// What is left of a function between thresholds.
+fn between(function: &TransferFunction, from: f64, to: f64) -> TransferFunction {
+    let begins = function.points.first().is_some_and(|first| first.value < from);
+    let goes_on = function.points.last().is_some_and(|last| last.value > to);
+    let mut points: Vec<_> =
+        function.points.iter().copied().filter(|point| (from..=to).contains(&point.value)).collect();
+    if begins {
+        let point = function.point_at(from);
+        points.splice(..0, [ControlPoint { opacity: 0.0, ..point }, point]);
+    }
+    if goes_on {
+        let point = function.point_at(to);
+        points.extend([point, ControlPoint { opacity: 0.0, ..point }]);
+    }
+    TransferFunction { points, ..function.clone() }
 }
