@@ -7,6 +7,7 @@ use eframe::egui;
 
 use super::work::Work;
 use crate::data::read_small;
+use crate::export::PictureFormat;
 use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, VolumeRecord, export, import};
 
 /// What a dialog is for.
@@ -220,7 +221,7 @@ fn read_text(path: &Path) -> Result<String, String> {
 /// Reads what a session, a preset or an exported picture says.
 pub(super) fn load_record(path: &Path) -> Result<Record, String> {
     let shown = path.display();
-    let text = if is_picture(path) {
+    let text = if PictureFormat::with_record(path).is_some() {
         crate::export::read_record(path).map_err(|err| err.to_string())?.ok_or_else(|| {
             format!("the picture carries no settings ({shown}); export it from this program")
         })?
@@ -248,15 +249,10 @@ pub(super) fn export_transfer(
     crate::export::write_atomically(path, &bytes).map_err(|err| err.to_string())
 }
 
-/// Whether a file is a picture by its name.
-pub(super) fn is_picture(path: &Path) -> bool {
-    let is = |ending| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
-    is("png") || is("exr")
-}
-
 /// Whether a file holds a look and not a volume, by its name.
 pub(super) fn is_record(path: &Path) -> bool {
-    is_picture(path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+    PictureFormat::with_record(path).is_some()
+        || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
 #[cfg(test)]

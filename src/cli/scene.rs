@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
 use crate::data::{Bricks, Histogram, Volume, VoxelType, read_small};
-use crate::export::read_record;
+use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Renderer, balance};
 use crate::model::{Engine, MAX_EDGE, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
 
@@ -266,12 +266,9 @@ impl Look {
 fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliError> {
     let name = path.display().to_string();
     let builtin = Preset::find(&name).filter(|_| what == "preset");
-    let is_picture = path
-        .extension()
-        .is_some_and(|ending| ["png", "exr"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
     let text = match builtin {
         Some(preset) => preset.text().as_bytes().to_vec(),
-        None if is_picture => {
+        None if PictureFormat::with_record(path).is_some() => {
             let unusable =
                 || CliError::Replay { path: name.clone(), why: "it carries no settings".to_owned() };
             read_record(path)?.ok_or_else(unusable)?.into_bytes()

@@ -55,8 +55,7 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     }
     let (size, frames, transparent) = (args.size, args.frames, args.transparent);
     let mut file = Animation::create(&args.output, &Reel { size, frames, rate: args.rate, transparent })?;
-    let is_folder = AnimationFormat::of_path(&args.output) == AnimationFormat::Folder;
-    let folder = if is_folder { Some(args.output.as_path()) } else { args.output.parent() };
+    let folder = AnimationFormat::record_folder(&args.output);
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
     let shot = Shot { transparent, ..Shot::new(size) };
     let how = PictureRecord::new(shot, context.description());

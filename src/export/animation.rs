@@ -33,6 +33,11 @@ impl AnimationFormat {
             _ => Self::Folder,
         }
     }
+
+    /// The folder from which the records of pictures see their volume: that of the file, or the one of pictures.
+    pub fn record_folder(path: &Path) -> Option<&Path> {
+        if Self::of_path(path) == Self::Folder { Some(path) } else { path.parent() }
+    }
 }
 
 /// What all pictures of a file that moves have in common.
@@ -129,6 +134,9 @@ mod tests {
             ("v1.5", AnimationFormat::Folder),
         ] {
             assert_eq!(AnimationFormat::of_path(Path::new(name)), format, "{name}");
+        }
+        for (path, folder) in [("a/turn.gif", "a"), ("a/frames", "a/frames")] {
+            assert_eq!(AnimationFormat::record_folder(Path::new(path)), Some(Path::new(folder)));
         }
     }
 

@@ -24,6 +24,12 @@ impl PictureFormat {
         if is_exr { Self::Exr } else { Self::Png }
     }
 
+    /// The kind of a file that may carry a record, by its name.
+    pub fn with_record(path: &Path) -> Option<Self> {
+        let is_one = |ending: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
+        (is_one("png") || is_one("exr")).then(|| Self::of_path(path))
+    }
+
     /// The depth in which a file of this kind is written when its display colours would have `wanted`.
     pub fn depth(self, wanted: Depth) -> Depth {
         match (self, wanted) {
@@ -174,6 +180,14 @@ mod tests {
             let mut next = || Ok::<_, ExportError>(rows.take());
             let written = write_picture(&folder.path().join(name), &shot, None, &mut next);
             assert_eq!(written.is_ok(), fits, "{name} {depth:?}: {written:?}");
+        }
+        for (name, kind) in [
+            ("a.PNG", Some(PictureFormat::Png)),
+            ("b.Exr", Some(PictureFormat::Exr)),
+            ("c.json", None),
+            ("png", None),
+        ] {
+            assert_eq!(PictureFormat::with_record(Path::new(name)), kind, "{name}");
         }
         assert_eq!(PictureFormat::of_path(Path::new("a.exr")).depth(Depth::Sixteen), Depth::Linear);
     }

@@ -152,8 +152,7 @@ pub(super) fn turn(
     progress: &Progress,
 ) -> Result<Exported, String> {
     let mut worker = Worker::new(subject)?;
-    let is_folder = AnimationFormat::of_path(&path) == AnimationFormat::Folder;
-    let folder = if is_folder { Some(path.as_path()) } else { path.parent() };
+    let folder = AnimationFormat::record_folder(&path);
     let shot = Shot { transparent: reel.transparent, ..Shot::new(reel.size) };
     let mut write = || {
         let mut file = Animation::create(&path, reel)?;
