@@ -70,7 +70,8 @@ fn with_presets(settings: &Settings, range: (f64, f64)) -> Vec<Candidate> {
     presets
         .filter_map(|preset| {
             let settings = preset.apply(settings, range).ok()?;
-            let name = format!("{}: {}", preset.domain_title(), preset.title());
+            let [domain, _] = preset.domain_titles();
+            let name = format!("{domain}: {}", preset.title());
             Some(Candidate { name, settings, command: Command::UsePreset(preset) })
         })
         .collect()

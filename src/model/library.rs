@@ -56,15 +56,15 @@ impl Preset {
         self.name.split_once('/').map_or("", |(domain, _)| domain)
     }
 
-    /// What menus call the domain.
-    pub fn domain_title(&self) -> &'static str {
+    /// What the domain is called: in short, and over a list.
+    pub fn domain_titles(&self) -> [&'static str; 2] {
         match self.domain() {
-            "ct" => "CT",
-            "mr" => "MR",
-            "microscopy" => "Microscopy",
-            "simulation" => "Simulation",
-            "paper" => "Paper",
-            other => other,
+            "ct" => ["CT", "CT (Hounsfield units)"],
+            "mr" => ["MR", "Magnetic resonance"],
+            "microscopy" => ["Microscopy"; 2],
+            "simulation" => ["Simulation"; 2],
+            "paper" => ["Paper", "Splatting with shadows"],
+            other => [other; 2],
         }
     }
 

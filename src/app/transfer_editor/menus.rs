@@ -23,24 +23,13 @@ pub(super) fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
         for preset in PRESETS.into_iter().filter(|preset| preset.domain() != "bench") {
             if preset.domain() != domain {
                 domain = preset.domain();
-                ui.weak(heading(domain));
+                ui.weak(preset.domain_titles()[1]);
             }
             if ui.button(preset.title()).on_hover_text(preset.about()).clicked() {
                 commands.push(Command::UsePreset(preset));
             }
         }
     });
-}
-
-fn heading(domain: &str) -> &str {
-    match domain {
-        "ct" => "CT (Hounsfield units)",
-        "mr" => "Magnetic resonance",
-        "microscopy" => "Microscopy",
-        "simulation" => "Simulation",
-        "paper" => "Splatting with shadows",
-        other => other,
-    }
 }
 
 /// Colour maps, with their colours.
