@@ -12,7 +12,7 @@ use super::marks::Marks;
 use super::sight::Sight;
 use super::slices::Slices;
 use super::viewport::{Facts, Viewport};
-use super::{light_chips, light_probe, orbit, theme};
+use super::{light_chips, light_probe, orbit, text, theme};
 use crate::gpu::GpuError;
 use crate::math::SceneSpace;
 use crate::model::Settings;
@@ -93,7 +93,7 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     } = stage;
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
     // Where no picture is, the window's clear colour is seen: filling costs a software driver 15 ms.
     let Some((scene, is_anatomical)) = scene else { return (canvas, Ok(())) };
     orbit::navigate(

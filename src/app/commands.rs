@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
+use super::text;
 use crate::model::{COLOR_MAPS, Light, PRESETS, Preset, Rig, StandardView};
 
 /// Something the user asked for.
@@ -234,74 +235,74 @@ pub(super) fn listed() -> Vec<Command> {
 impl Command {
     /// What help calls it.
     pub(super) fn label(&self) -> Cow<'static, str> {
-        let text = match self {
-            Self::LookFrom(view) => return format!("Look: {}", view.name()).into(),
-            Self::UseRig(rig) => return format!("Lights: {}", rig.name()).into(),
+        let label = match self {
+            Self::LookFrom(view) => return text::commands::look_from(view.name()).into(),
+            Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
             Self::UsePreset(preset) => {
-                return format!("Preset: {}, {}", preset.domain(), preset.title()).into();
+                return text::commands::use_preset(preset.domain(), &preset.title()).into();
             }
             Self::UseColors(at, back) => {
                 let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
-                return format!("Colours: {name}{}", if *back { ", reversed" } else { "" }).into();
+                return text::commands::use_colors(name, *back).into();
             }
-            Self::ImportTransfer => "Import transfer function…",
-            Self::ExportTransfer => "Export transfer function…",
-            Self::InvertTransfer => "Invert opacities",
-            Self::StoreView(slot) => return format!("Store view {slot}").into(),
-            Self::RecallView(slot) => return format!("Recall view {slot}").into(),
-            Self::FrameAll => "Frame all",
-            Self::ToggleProjection => "Perspective or orthographic",
-            Self::ToggleFullScreen => "Full screen",
-            Self::ToggleMarks => "Marks over the picture",
-            Self::ToggleProbe => "Why is this dark? (probe)",
-            Self::ToggleCrop => "Crop box",
-            Self::TogglePlane => "Clip plane",
-            Self::FacePlane => "Clip plane towards the eye",
-            Self::ToggleGround => "Floor with shadows",
-            Self::ShowPalette => "Find a command…",
-            Self::UseLights(_) => "Use lights",
-            Self::TryLights => "Try lights…",
-            Self::TryPresets => "Try presets…",
-            Self::NextLight => "Next light",
-            Self::PreviousLight => "Previous light",
-            Self::Solo => "Solo the selected light",
-            Self::Mute => "Mute the selected light",
-            Self::Brighter => "Brighter light",
-            Self::Dimmer => "Dimmer light",
-            Self::OpenDialog => "Open…",
-            Self::OpenPath => "Open path…",
-            Self::Open(_) => "Open built-in",
-            Self::CancelOpening => "Cancel",
-            Self::GoOn => "Go on where you left off",
-            Self::SaveSettings => "Save settings…",
-            Self::LoadSettings => "Load settings…",
-            Self::Export => "Export picture or turntable…",
-            Self::CopyPicture => "Copy picture",
-            Self::KeepLook => "Keep this look for the next file",
-            Self::Quit => "Quit",
-            Self::Undo => "Undo",
-            Self::Redo => "Redo",
-            Self::ResetView => "Reset view",
-            Self::AddLight => "Add light",
-            Self::AutomaticTransfer => "Automatic transfer function",
-            Self::Balance => "Balance brightness",
-            Self::ToggleSide => "Side panel",
-            Self::ToggleHandles => "Handles",
-            Self::ToggleCompare => "Compare two looks",
-            Self::ShowSlices => "Slices of the data",
-            Self::ShowLightVolume => "Light volume…",
-            Self::CompareWithFile => "Compare with settings…",
-            Self::ShowHelp => "Keys and mouse",
-            Self::ShowAbout => "About Chiaroscuro",
+            Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
+            Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
+            Self::InvertTransfer => text::commands::INVERT_TRANSFER,
+            Self::StoreView(slot) => return text::commands::store_view(*slot).into(),
+            Self::RecallView(slot) => return text::commands::recall_view(*slot).into(),
+            Self::FrameAll => text::commands::FRAME_ALL,
+            Self::ToggleProjection => text::commands::TOGGLE_PROJECTION,
+            Self::ToggleFullScreen => text::commands::TOGGLE_FULL_SCREEN,
+            Self::ToggleMarks => text::commands::TOGGLE_MARKS,
+            Self::ToggleProbe => text::commands::TOGGLE_PROBE,
+            Self::ToggleCrop => text::commands::TOGGLE_CROP,
+            Self::TogglePlane => text::commands::TOGGLE_PLANE,
+            Self::FacePlane => text::commands::FACE_PLANE,
+            Self::ToggleGround => text::commands::TOGGLE_GROUND,
+            Self::ShowPalette => text::commands::SHOW_PALETTE,
+            Self::UseLights(_) => text::commands::USE_LIGHTS,
+            Self::TryLights => text::commands::TRY_LIGHTS,
+            Self::TryPresets => text::commands::TRY_PRESETS,
+            Self::NextLight => text::commands::NEXT_LIGHT,
+            Self::PreviousLight => text::commands::PREVIOUS_LIGHT,
+            Self::Solo => text::commands::SOLO,
+            Self::Mute => text::commands::MUTE,
+            Self::Brighter => text::commands::BRIGHTER,
+            Self::Dimmer => text::commands::DIMMER,
+            Self::OpenDialog => text::commands::OPEN_DIALOG,
+            Self::OpenPath => text::commands::OPEN_PATH,
+            Self::Open(_) => text::commands::OPEN_BUILT_IN,
+            Self::CancelOpening => text::commands::CANCEL_OPENING,
+            Self::GoOn => text::commands::GO_ON,
+            Self::SaveSettings => text::commands::SAVE_SETTINGS,
+            Self::LoadSettings => text::commands::LOAD_SETTINGS,
+            Self::Export => text::commands::EXPORT,
+            Self::CopyPicture => text::commands::COPY_PICTURE,
+            Self::KeepLook => text::commands::KEEP_LOOK,
+            Self::Quit => text::commands::QUIT,
+            Self::Undo => text::commands::UNDO,
+            Self::Redo => text::commands::REDO,
+            Self::ResetView => text::commands::RESET_VIEW,
+            Self::AddLight => text::commands::ADD_LIGHT,
+            Self::AutomaticTransfer => text::commands::AUTOMATIC_TRANSFER,
+            Self::Balance => text::commands::BALANCE,
+            Self::ToggleSide => text::commands::TOGGLE_SIDE,
+            Self::ToggleHandles => text::commands::TOGGLE_HANDLES,
+            Self::ToggleCompare => text::commands::TOGGLE_COMPARE,
+            Self::ShowSlices => text::commands::SHOW_SLICES,
+            Self::ShowLightVolume => text::commands::SHOW_LIGHT_VOLUME,
+            Self::CompareWithFile => text::commands::COMPARE_WITH_FILE,
+            Self::ShowHelp => text::help::KEYS_AND_MOUSE,
+            Self::ShowAbout => text::help::ABOUT,
         };
-        text.into()
+        label.into()
     }
 
     /// Its key, for menus.
     pub(super) fn shortcut_text(&self, ctx: &egui::Context) -> String {
         match self {
-            Self::StoreView(slot) => return format!("Ctrl+Shift+{slot}"),
-            Self::RecallView(slot) => return format!("Ctrl+{slot}"),
+            Self::StoreView(slot) => return text::commands::store_view_keys(*slot),
+            Self::RecallView(slot) => return text::commands::recall_view_keys(*slot),
             _ => {}
         }
         let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
@@ -312,9 +313,14 @@ impl Command {
 /// A key as it is printed on the keyboard.
 pub(super) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
     let named = ctx.format_shortcut(&shortcut);
-    let signs =
-        [("OpenBracket", "["), ("CloseBracket", "]"), ("Comma", ","), ("Period", "."), ("Questionmark", "?")];
-    signs.into_iter().fold(named, |text, (name, sign)| text.replace(name, sign))
+    let signs = [
+        (Key::OpenBracket, "["),
+        (Key::CloseBracket, "]"),
+        (Key::Comma, ","),
+        (Key::Period, "."),
+        (Key::Questionmark, "?"),
+    ];
+    signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
 }
 
 /// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited.

@@ -5,6 +5,7 @@ use eframe::egui::{
 };
 use eframe::egui::{WidgetInfo, pos2, vec2};
 
+use super::text;
 use super::theme;
 use super::viewport::Pictures;
 use crate::gpu::Distance;
@@ -80,19 +81,20 @@ impl Compare {
         if !self.difference {
             self.divide(ui, rect);
         }
+        let [left, right] = [&self.left, &self.right].map(text::compared::variant);
         let label = |at: Pos2, align: Align2, text: &str| chip(ui, at, align, text);
         let top = rect.top() + 8.0;
         if self.difference {
-            let text = format!("{} − {}, eight times", self.left.label(), self.right.label());
-            label(pos2(rect.center().x, top), Align2::CENTER_TOP, &text);
+            let words = text::picture::difference(left, right);
+            label(pos2(rect.center().x, top), Align2::CENTER_TOP, &words);
         } else {
-            label(pos2(rect.left() + 8.0, top), Align2::LEFT_TOP, self.left.label());
-            label(pos2(rect.right() - 8.0, top), Align2::RIGHT_TOP, self.right.label());
+            label(pos2(rect.left() + 8.0, top), Align2::LEFT_TOP, left);
+            label(pos2(rect.right() - 8.0, top), Align2::RIGHT_TOP, right);
         }
         if let Some(other) = pictures.other {
             let Distance { rmse, largest } = other.distance;
-            let text = format!("RMSE {rmse:.2} of 255, largest {largest}");
-            label(pos2(rect.center().x, rect.bottom() - 8.0), Align2::CENTER_BOTTOM, &text);
+            let words = text::picture::distance(rmse, largest);
+            label(pos2(rect.center().x, rect.bottom() - 8.0), Align2::CENTER_BOTTOM, &words);
         }
     }
 
@@ -101,7 +103,7 @@ impl Compare {
         let x = rect.left() + self.divider * rect.width();
         let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
         let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Splitter, true, "Divider"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Splitter, true, text::picture::DIVIDER));
         if let Some(pointer) = response.interact_pointer_pos() {
             self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
         }

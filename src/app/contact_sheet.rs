@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::commands::Command;
 use super::export::{Subject, Worker};
+use super::text;
 use super::theme;
 use super::work::Work;
 use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Shot};
@@ -51,8 +52,8 @@ struct Print {
 impl Sheet {
     fn title(self) -> &'static str {
         match self {
-            Self::Lights => "Try lights",
-            Self::Presets => "Try presets",
+            Self::Lights => text::contact_sheet::LIGHTS,
+            Self::Presets => text::contact_sheet::PRESETS,
         }
     }
 
@@ -116,7 +117,7 @@ fn lights_to_try(settings: &Settings, selected: usize) -> Vec<(String, Vec<Light
             let mut lights = settings.lights.clone();
             let world = at_hour(light, &settings.camera, hour);
             lights[selected].set_world_position(world, &settings.camera);
-            (format!("{} at {hour} o'clock", light.name), lights)
+            (text::contact_sheet::at_hour(&light.name, hour), lights)
         }));
     }
     all
@@ -165,7 +166,7 @@ impl ContactSheet {
                 .collect()
         };
         let work = Work::start("contact-sheet", ctx, task);
-        self.work = Some(work.map_err(|err| format!("no thread for the pictures: {err}"))?);
+        self.work = Some(work.map_err(text::contact_sheet::no_thread)?);
         Ok(())
     }
 
@@ -190,12 +191,12 @@ impl ContactSheet {
             ui.horizontal(|ui| {
                 if self.work.is_some() || self.wanted {
                     ui.spinner();
-                    ui.label("trying them on your volume");
-                } else if ui.button("Again, as it looks now").clicked() {
+                    ui.label(text::contact_sheet::TRYING);
+                } else if ui.button(text::contact_sheet::AGAIN).clicked() {
                     self.wanted = true;
                 }
                 ui.add_space(theme::HANDLE_RADIUS);
-                ui.weak("the picture's own size and quality come with a click");
+                ui.weak(text::contact_sheet::QUALITY);
             });
             // Low windows have bars instead of a sheet that hangs over.
             let most = ctx.content_rect().height() - 170.0;
@@ -211,9 +212,9 @@ impl ContactSheet {
                             let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
                             let image = egui::Image::new((tried.texture.id(), size));
                             let button = ui.add(egui::Button::image(image).frame(false));
-                            let name = format!("Use {}", tried.name);
+                            let name = text::contact_sheet::use_look(&tried.name);
                             button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-                            if button.on_hover_text("Use it").clicked() {
+                            if button.on_hover_text(text::contact_sheet::USE_TIP).clicked() {
                                 commands.push(tried.command.clone());
                             }
                             ui.small(&tried.name);

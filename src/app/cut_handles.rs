@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::orbit::wheel_notches;
 use super::sight::Sight;
+use super::text;
 use super::theme;
 use crate::math::SceneSpace;
 use crate::model::{CropBox, MAX_PLANE_OFFSET, MIN_CROP, Settings};
@@ -75,10 +76,10 @@ impl CutHandles {
             }
         }
         for axis in 0..3 {
-            for (is_high, sign) in [(false, "−"), (true, "+")] {
+            for is_high in [false, true] {
                 let (at, along) = outline::side(crop, scene, axis, is_high);
                 let Some(position) = sight.point(at) else { continue };
-                let name = format!("Crop box, side {sign}{}", ["x", "y", "z"][axis]);
+                let name = text::cut_handles::crop_side(axis, is_high);
                 let id = Id::unique("crop side").with((axis, is_high));
                 let (response, to) = self.interact(ui, id, &name, position, DVec3::ZERO, false);
                 if let Some(to) = to
@@ -121,7 +122,7 @@ impl CutHandles {
 
         // The tip first, so that where both lie on each other the plane is moved.
         let id = Id::unique("plane tip");
-        let (turned, to) = self.interact(ui, id, "Clip plane, direction", end, middle, behind);
+        let (turned, to) = self.interact(ui, id, text::cut_handles::PLANE_DIRECTION, end, middle, behind);
         if let (Some(to), Some(drag)) = (to, self.drag) {
             let (origin, direction) = sight.ray(to);
             let normal = towards_sphere(origin - drag.pivot, direction, ARROW, drag.behind);
@@ -129,7 +130,7 @@ impl CutHandles {
             plane.offset = normal.dot(drag.pivot);
         }
         let id = Id::unique("plane middle");
-        let (moved, to) = self.interact(ui, id, "Clip plane, place", at, middle, behind);
+        let (moved, to) = self.interact(ui, id, text::cut_handles::PLANE_PLACE, at, middle, behind);
         if let Some(to) = to
             && let Some(distance) = sight.along(to, middle, normal)
         {

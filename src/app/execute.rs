@@ -9,6 +9,7 @@ use super::contact_sheet::Sheet;
 use super::export::Exported;
 use super::files::{self, Purpose};
 use super::loader::Outcome;
+use super::text;
 use super::work::Work;
 use super::{App, export, light_keys, light_slice, panels};
 use crate::gpu::{GpuError, Renderer};
@@ -23,7 +24,7 @@ impl App {
             Command::Open(source) => self.open(&source, ctx),
             Command::GoOn => match self.memory.before().map(Path::to_owned) {
                 Some(path) => self.open_record(&path, ctx),
-                None => self.messages.note("There is nothing to go on with"),
+                None => self.messages.note(text::messages::NOTHING_TO_GO_ON_WITH),
             },
             Command::CancelOpening => self.loader.cancel(),
             Command::SaveSettings => match self.session.clone() {
@@ -52,7 +53,7 @@ impl App {
                 if let Some(volume) = &self.volume {
                     match preset.apply(&self.settings, volume.range) {
                         Ok(settings) => self.settings = settings,
-                        Err(err) => self.messages.error("the preset was not applied", err.to_string()),
+                        Err(err) => self.messages.error(text::messages::PRESET_NOT_APPLIED, err.to_string()),
                     }
                 }
             }
@@ -77,11 +78,11 @@ impl App {
             Command::ToggleProjection => self.settings.camera.toggle_projection(),
             Command::StoreView(slot) => {
                 self.settings.views.insert(slot, self.settings.camera.clone());
-                self.messages.note(format!("View {slot} is kept: Ctrl+{slot} looks that way again"));
+                self.messages.note(text::messages::view_kept(slot));
             }
             Command::RecallView(slot) => match self.settings.views.get(&slot) {
                 Some(camera) => self.settings.camera = camera.clone(),
-                None => self.messages.note(format!("No view is kept as {slot}: Ctrl+Shift+{slot} keeps one")),
+                None => self.messages.note(text::messages::no_view_kept(slot)),
             },
             Command::ToggleFullScreen => {
                 let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
@@ -134,7 +135,7 @@ impl App {
             Some(Outcome::Opened(opened)) => self.take_in(*opened, ctx),
             Some(Outcome::Cancelled) => {
                 self.pending = None;
-                self.messages.note("Opening was cancelled");
+                self.messages.note(text::messages::OPENING_CANCELLED);
             }
             Some(Outcome::NotDescribed { path, why, guess }) => {
                 self.raw_dialog.ask(&path, why, guess);
@@ -151,19 +152,19 @@ impl App {
                     self.settings.shadows.balance = balance;
                     self.settings.sanitise();
                 }
-                Ok(Err(err)) => self.messages.error("the balance could not be measured", err.to_string()),
-                Err(panic) => self.messages.error("the balance could not be measured", panic),
+                Ok(Err(err)) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+                Err(panic) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, panic),
             }
         }
         match self.export.take() {
             None => {}
-            Some(Ok(Exported::File(path))) => self.messages.note(format!("Exported {}", path.display())),
+            Some(Ok(Exported::File(path))) => self.messages.note(text::messages::exported(&path)),
             Some(Ok(Exported::Picture(picture))) => {
                 ctx.copy_image(picture);
-                self.messages.note("The picture is on the clipboard");
+                self.messages.note(text::messages::PICTURE_COPIED);
             }
-            Some(Ok(Exported::Cancelled)) => self.messages.note("Exporting was cancelled"),
-            Some(Err(err)) => self.messages.error("the picture was not exported", err),
+            Some(Ok(Exported::Cancelled)) => self.messages.note(text::messages::EXPORT_CANCELLED),
+            Some(Err(err)) => self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err),
         }
         if let Some((purpose, path)) = self.files.take() {
             self.chosen(purpose, &path, ctx);
@@ -181,10 +182,10 @@ impl App {
             && let Some(subject) = self.subject()
             && let Err(err) = self.contact_sheet.start(subject, ctx)
         {
-            self.messages.error("looks could not be tried", err);
+            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
         }
         if let Err(err) = self.contact_sheet.ui(ctx, commands) {
-            self.messages.error("looks could not be tried", err);
+            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
         }
         if let Some(described) = self.raw_dialog.ui(ctx) {
             self.open_described(&described, ctx);
@@ -203,7 +204,7 @@ impl App {
         match self.light_slice.ui(ctx, &scene) {
             Ok(false) => {}
             Ok(true) => self.files.ask(Purpose::ExportLight, frame, ctx),
-            Err(err) => self.messages.error("the light volume could not be shown", err),
+            Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
         }
         match self.export.ui(ctx, self.viewport_size()) {
             None => {}
@@ -225,26 +226,26 @@ impl App {
             Purpose::ExportLight => {
                 let Some((volume, _)) = self.viewport.volume() else { return };
                 match self.light_slice.export(path, &volume) {
-                    Ok(()) => self.messages.note(format!("Exported {}", path.display())),
-                    Err(err) => self.messages.error("the light volume was not exported", err),
+                    Ok(()) => self.messages.note(text::messages::exported(path)),
+                    Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
                 }
             }
             Purpose::LoadSettings => self.load_settings(path),
             Purpose::ImportTransfer => match files::import_transfer(path, self.value_range()) {
                 Ok(function) => self.settings.transfer = function,
-                Err(err) => self.messages.error("the transfer function was not imported", err),
+                Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
             },
             Purpose::ExportTransfer => {
                 match files::export_transfer(path, &self.settings.transfer, self.value_range()) {
-                    Ok(()) => self.messages.note(format!("Wrote {}", path.display())),
-                    Err(err) => self.messages.error("the transfer function was not written", err),
+                    Ok(()) => self.messages.note(text::messages::wrote(path)),
+                    Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
             }
             Purpose::CompareSettings => {
                 let read = files::load_record(path);
                 match read.and_then(|read| self.with_record(&read, self.value_range())) {
                     Ok(look) => self.compare.with(look),
-                    Err(err) => self.messages.error("the settings were not loaded", err),
+                    Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
                 }
             }
         }
@@ -261,14 +262,14 @@ impl App {
         };
         match Work::start("balance", ctx, task) {
             Ok(work) => self.balance = Some(work),
-            Err(err) => self.messages.error("the balance could not be measured", err.to_string()),
+            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
         }
     }
 
     /// What is to be exported; a message if there is nothing.
     fn subject(&mut self) -> Option<export::Subject> {
         let Some((volume, bricks)) = self.viewport.volume() else {
-            self.messages.note("There is no picture to export yet");
+            self.messages.note(text::messages::NO_PICTURE);
             return None;
         };
         Some(export::Subject {
@@ -285,32 +286,33 @@ impl App {
         if let Some(subject) = self.subject()
             && let Err(err) = self.export.start(subject, ctx)
         {
-            self.messages.error("the picture was not exported", err);
+            self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
         }
     }
 
     fn copy_picture(&mut self, ctx: &egui::Context) {
         if self.export.is_busy() {
-            self.messages.note("A picture is being exported");
+            self.messages.note(text::messages::EXPORT_RUNS);
         } else if let Some(subject) = self.subject()
             && let Err(err) = self.export.copy(subject, self.viewport_size(), ctx)
         {
-            self.messages.error("the picture was not copied", err);
+            self.messages.error(text::messages::PICTURE_NOT_COPIED, err);
         }
     }
 
     /// The renderer gave up on something. When the device is gone, the settings are made safe.
     pub(super) fn rendering_failed(&mut self, err: &GpuError) {
         if !self.viewport.is_lost() {
-            self.messages.error("the picture could not be rendered", err.to_string());
+            self.messages.error(text::messages::NOT_RENDERED, err.to_string());
             return;
         }
         let path =
             self.session.clone().unwrap_or_else(|| std::env::temp_dir().join("chiaroscuro-rescued.json"));
         let rescue = match files::save_settings(&path, &self.settings, self.volume_record()) {
-            Ok(()) => format!("the settings were saved to {}", path.display()),
-            Err(failure) => format!("the settings could not be saved: {failure}"),
+            Ok(()) => text::messages::rescued(&path),
+            Err(failure) => text::messages::not_rescued(&failure),
         };
-        self.messages.error("the graphics device was lost; start again to go on", format!("{err}; {rescue}"));
+        let details = text::messages::lost_and_rescued(&err.to_string(), &rescue);
+        self.messages.error(text::messages::DEVICE_LOST, details);
     }
 }

@@ -12,6 +12,7 @@ use eframe::egui;
 
 use self::worker::Progress;
 pub(super) use self::worker::{Exported, Subject, Worker};
+use super::text;
 use super::work::Work;
 use crate::export::{AnimationFormat, Reel};
 use crate::model::Shot;
@@ -142,7 +143,7 @@ impl Export {
         task: impl FnOnce() -> Result<Exported, String> + Send + 'static,
     ) -> Result<(), String> {
         let work = Work::start("export", ctx, task);
-        self.work = Some(work.map_err(|err| format!("no thread for the export: {err}"))?);
+        self.work = Some(work.map_err(text::export::no_thread)?);
         Ok(())
     }
 }

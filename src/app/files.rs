@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
+use super::text;
+use super::text::files::Question;
 use super::work::Work;
 use crate::data::read_small;
 use crate::export::PictureFormat;
@@ -32,34 +34,17 @@ pub(super) enum Purpose {
 }
 
 impl Purpose {
-    fn title(self) -> &'static str {
+    /// How the user is asked.
+    fn question(self) -> Question {
         match self {
-            Self::OpenVolume => "Open volume",
-            Self::LoadSettings => "Load settings",
-            Self::ImportTransfer => "Import transfer function",
-            Self::ExportTransfer => "Export transfer function",
-            Self::CompareSettings => "Compare with settings",
-            Self::SaveSettings => "Save settings",
-            Self::ExportPicture => "Export picture",
-            Self::ExportLight => "Export light volume",
-        }
-    }
-
-    fn hint(self) -> &'static str {
-        match self {
-            Self::OpenVolume => "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
-            Self::LoadSettings | Self::CompareSettings => {
-                "a .json file, or a .png or .exr picture that was exported"
-            }
-            Self::ImportTransfer => {
-                "ParaView, AGAVE .json, Slicer .vp, Inviwo .itf, Voreen .tfi, MRIcroGL .clut, ImageJ .lut"
-            }
-            Self::ExportTransfer => {
-                "ParaView .json, Slicer .vp or .vp.json, Inviwo .itf, MRIcroGL .clut, ImageJ .lut, our own .preset.json"
-            }
-            Self::SaveSettings => "a .json file",
-            Self::ExportPicture => ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turn",
-            Self::ExportLight => "a .nrrd file for the volume, a .png file for the slice",
+            Self::OpenVolume => text::files::OPEN_VOLUME,
+            Self::LoadSettings => text::files::LOAD_SETTINGS,
+            Self::ImportTransfer => text::files::IMPORT_TRANSFER,
+            Self::ExportTransfer => text::files::EXPORT_TRANSFER,
+            Self::CompareSettings => text::files::COMPARE_SETTINGS,
+            Self::SaveSettings => text::files::SAVE_SETTINGS,
+            Self::ExportPicture => text::files::EXPORT_PICTURE,
+            Self::ExportLight => text::files::EXPORT_LIGHT,
         }
     }
 }
@@ -95,31 +80,36 @@ impl Files {
         if self.dialog.is_some() {
             return;
         }
-        let dialog = rfd::AsyncFileDialog::new().set_title(purpose.title()).set_parent(frame);
+        let dialog = rfd::AsyncFileDialog::new().set_title(purpose.question().title).set_parent(frame);
         type Pending = std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
         let pending: Pending = match purpose {
             Purpose::OpenVolume => {
                 let filters = ["nrrd", "nhdr", "raw", "gz"];
-                Box::pin(dialog.add_filter("Volumes", &filters).add_filter("All files", &["*"]).pick_file())
+                let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
+                Box::pin(dialog.add_filter(text::files::ALL_FILES, &["*"]).pick_file())
             }
             Purpose::LoadSettings | Purpose::CompareSettings => {
-                Box::pin(dialog.add_filter("Settings and pictures", &["json", "png", "exr"]).pick_file())
+                let endings = ["json", "png", "exr"];
+                Box::pin(dialog.add_filter(text::files::SETTINGS_AND_PICTURES, &endings).pick_file())
             }
             Purpose::ImportTransfer => {
-                Box::pin(dialog.add_filter("Transfer functions", &IMPORTED).pick_file())
+                Box::pin(dialog.add_filter(text::files::TRANSFER_FUNCTIONS, &IMPORTED).pick_file())
             }
-            Purpose::ExportTransfer => Box::pin(
-                dialog.add_filter("Transfer functions", &EXPORTED).set_file_name("colors.json").save_file(),
-            ),
+            Purpose::ExportTransfer => {
+                let dialog = dialog.add_filter(text::files::TRANSFER_FUNCTIONS, &EXPORTED);
+                Box::pin(dialog.set_file_name("colors.json").save_file())
+            }
             Purpose::SaveSettings => {
-                Box::pin(dialog.add_filter("Settings", &["json"]).set_file_name("settings.json").save_file())
+                let dialog = dialog.add_filter(text::files::SETTINGS, &["json"]);
+                Box::pin(dialog.set_file_name("settings.json").save_file())
             }
             Purpose::ExportPicture => {
-                let endings = ["png", "exr", "gif", "mp4"];
-                Box::pin(dialog.add_filter("Pictures", &endings).set_file_name("picture.png").save_file())
+                let dialog = dialog.add_filter(text::files::PICTURES, &["png", "exr", "gif", "mp4"]);
+                Box::pin(dialog.set_file_name("picture.png").save_file())
             }
             Purpose::ExportLight => {
-                let dialog = dialog.add_filter("Light volume", &["nrrd"]).add_filter("Slice", &["png"]);
+                let dialog = dialog.add_filter(text::files::LIGHT_VOLUME, &["nrrd"]);
+                let dialog = dialog.add_filter(text::files::SLICE, &["png"]);
                 Box::pin(dialog.set_file_name("light.nrrd").save_file())
             }
         };
@@ -160,12 +150,12 @@ impl Files {
     pub(super) fn ui(&mut self, ctx: &egui::Context) -> Option<(Purpose, PathBuf)> {
         let typed = self.typed.as_mut()?;
         let (mut open, mut accepted, mut cancelled) = (true, false, false);
-        let window =
-            egui::Window::new(typed.purpose.title()).id(egui::Id::unique("typed path")).open(&mut open);
+        let Question { title, hint, verb } = typed.purpose.question();
+        let window = egui::Window::new(title).id(egui::Id::unique("typed path")).open(&mut open);
         window.collapsible(false).resizable(false).default_pos([140.0, 110.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
-                let label = ui.label("Path");
-                let field = egui::TextEdit::singleline(&mut typed.text).hint_text(typed.purpose.hint());
+                let label = ui.label(text::files::PATH);
+                let field = egui::TextEdit::singleline(&mut typed.text).hint_text(hint);
                 let field = ui.add(field.desired_width(380.0)).labelled_by(label.id);
                 if std::mem::take(&mut typed.focus) {
                     field.request_focus();
@@ -173,18 +163,8 @@ impl Files {
                 accepted = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             });
             ui.horizontal(|ui| {
-                let verb = match typed.purpose {
-                    Purpose::OpenVolume => "Open",
-                    Purpose::LoadSettings => "Load",
-                    Purpose::CompareSettings => "Compare",
-                    Purpose::ImportTransfer => "Import",
-                    Purpose::ExportTransfer => "Write",
-                    Purpose::SaveSettings => "Save",
-                    Purpose::ExportPicture => "Use",
-                    Purpose::ExportLight => "Export",
-                };
                 accepted |= ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
-                cancelled = ui.button("Cancel").clicked();
+                cancelled = ui.button(text::files::CANCEL).clicked();
             });
         });
         let chosen = (accepted && !typed.text.trim().is_empty())
@@ -215,28 +195,24 @@ pub(super) fn save_settings(
 /// A small file as text.
 fn read_text(path: &Path) -> Result<String, String> {
     let bytes = read_small(path).map_err(|err| err.to_string())?;
-    String::from_utf8(bytes).map_err(|err| format!("it is no text: {err}"))
+    String::from_utf8(bytes).map_err(text::files::no_text)
 }
 
 /// Reads what a session, a preset or an exported picture says.
 pub(super) fn load_record(path: &Path) -> Result<Record, String> {
-    let shown = path.display();
-    let text = if PictureFormat::with_record(path).is_some() {
-        crate::export::read_record(path).map_err(|err| err.to_string())?.ok_or_else(|| {
-            format!("the picture carries no settings ({shown}); export it from this program")
-        })?
+    let record = if PictureFormat::with_record(path).is_some() {
+        let found = crate::export::read_record(path).map_err(|err| err.to_string())?;
+        found.ok_or_else(|| text::files::no_settings(path))?
     } else {
-        read_text(path).map_err(|err| format!("could not read the settings: {err} ({shown})"))?
+        read_text(path).map_err(|err| text::files::settings_not_read(path, err))?
     };
-    Record::read(&text).map_err(|err| format!("could not use the settings: {err} ({shown})"))
+    Record::read(&record).map_err(|err| text::files::settings_not_used(path, err))
 }
 
 /// Reads a transfer function of another program.
 pub(super) fn import_transfer(path: &Path, range: (f64, f64)) -> Result<TransferFunction, String> {
-    let shown = path.display();
-    let bytes =
-        read_small(path).map_err(|err| format!("could not read the transfer function: {err} ({shown})"))?;
-    import(path, &bytes, range).map_err(|err| format!("could not use the transfer function: {err} ({shown})"))
+    let bytes = read_small(path).map_err(|err| text::files::transfer_not_read(path, err))?;
+    import(path, &bytes, range).map_err(|err| text::files::transfer_not_used(path, err))
 }
 
 /// Writes a transfer function for another program.

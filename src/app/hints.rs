@@ -2,13 +2,8 @@
 
 use eframe::egui::{self, Align2, Color32, Id, Rect, Response, Sense, Ui, WidgetInfo, vec2};
 
+use super::text;
 use super::theme;
-
-const HINTS: [(&str, &str); 3] = [
-    ("Drag a light's disc", "the shadows follow your hand"),
-    ("Drag the picture, turn the wheel", "to look from elsewhere, and nearer"),
-    ("Drop a file on the window", "Ctrl+O opens one, Ctrl+P finds everything else"),
-];
 
 /// Whether they are shown.
 #[derive(Debug, Default)]
@@ -31,20 +26,20 @@ impl Hints {
         painter.multiply_opacity(strength);
         let font = egui::TextStyle::Body.resolve(ui.style());
         let width = 460.0_f32.min(picture.width() - 40.0);
-        let size = vec2(width, 24.0 * HINTS.len() as f32 + 16.0);
+        let size = vec2(width, 24.0 * text::help::HINTS.len() as f32 + 16.0);
         let middle = picture.center_bottom() - vec2(0.0, size.y / 2.0 + 44.0);
         let area = Rect::from_center_size(middle, size);
         painter.rect_filled(area, 8.0, theme::OUTLINE.gamma_multiply(0.78));
-        for (row, (gesture, effect)) in (0..).zip(HINTS) {
+        for (row, (gesture, effect)) in (0..).zip(text::help::HINTS) {
             let left = area.left_top() + vec2(16.0, 20.0 + 24.0 * row as f32);
-            let text = |at, ink: Color32, words: &str| {
+            let write = |at, ink: Color32, words: &str| {
                 painter.text(at, Align2::LEFT_CENTER, words, font.clone(), ink)
             };
-            let said = text(left, theme::ACCENT, gesture);
-            text(said.right_center() + vec2(10.0, 0.0), theme::EYE_CURVE, effect);
+            let said = write(left, theme::ACCENT, gesture);
+            write(said.right_center() + vec2(10.0, 0.0), theme::EYE_CURVE, effect);
         }
         let response = ui.interact(area, Id::unique("hints"), Sense::click());
-        response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, "Close the hints"));
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, text::help::CLOSE_HINTS));
         if response.clicked() {
             self.on = false;
         }

@@ -4,6 +4,7 @@ use eframe::egui::{self, Rect, Sense, Ui, UiBuilder, vec2};
 
 use super::commands::Command;
 use super::light_keys::solo;
+use super::text;
 use super::theme;
 use super::viewport::Facts;
 use crate::model::{Light, MAX_LIGHTS, Settings};
@@ -34,23 +35,24 @@ pub(super) fn show(
             }
             response.context_menu(|ui| {
                 let light = &mut settings.lights[at];
-                if ui.button(if light.on { "Mute" } else { "Unmute" }).clicked() {
+                if ui.button(if light.on { text::lights::MUTE } else { text::lights::UNMUTE }).clicked() {
                     light.on ^= true;
                 }
-                if ui.button("Solo").clicked() {
+                if ui.button(text::lights::SOLO).clicked() {
                     alone = Some(at);
                 }
-                ui.checkbox(&mut light.casts_shadows, "Casts shadows");
-                ui.add(egui::Slider::new(&mut light.intensity, 0.0..=4.0).text("Intensity"));
+                ui.checkbox(&mut light.casts_shadows, text::lights::CASTS_SHADOWS.name);
+                let intensity = egui::Slider::new(&mut light.intensity, 0.0..=4.0);
+                ui.add(intensity.text(text::lights::INTENSITY.name));
             });
         }
         if let Some(at) = alone {
             solo(&mut settings.lights, at);
         }
         if settings.lights.len() < MAX_LIGHTS {
-            let plus = egui::RichText::new("+").color(theme::EYE_CURVE);
+            let plus = egui::RichText::new(text::lights::ADD_CHIP.name).color(theme::EYE_CURVE);
             let add = ui.add(egui::Button::new(plus).small().fill(ground(false)));
-            if add.on_hover_text("Add a light").clicked() {
+            if add.on_hover_text(text::lights::ADD_CHIP.tip).clicked() {
                 commands.push(Command::AddLight);
             }
         }
@@ -64,7 +66,7 @@ fn ground(selected: bool) -> egui::Color32 {
 /// A dot in the light's colour, dimmed with its intensity and hollow when it is off; and its name.
 fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     let font = egui::TextStyle::Button.resolve(ui.style());
-    let name = if light.name.is_empty() { "Light" } else { &light.name };
+    let name = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
     let ink = match (selected, light.on) {
         (true, _) => theme::ACCENT,
         (false, true) => theme::EYE_CURVE,
@@ -73,10 +75,8 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     let galley = ui.painter().layout_no_wrap(name.to_owned(), font, ink);
     let size = vec2(galley.size().x + 30.0, 20.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    response.widget_info(|| {
-        let state = if light.on { "on" } else { "off" };
-        egui::WidgetInfo::selected(egui::Role::RadioButton, true, selected, format!("Light {name}, {state}"))
-    });
+    let spoken = text::lights::chip(name, light.on);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, selected, &spoken));
     let painter = ui.painter();
     painter.rect_filled(rect, 10.0, ground(selected || response.hovered()));
     if selected || response.has_focus() {
@@ -95,19 +95,15 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     response
 }
 
-/// What a light's shadows cost: (milliseconds of filling, bytes, whether they are there).
+/// What a light's shadows cost.
 fn what_it_costs(light: &Light, volume: Option<super::viewport::LightFigures>) -> String {
     let shadows = match volume {
-        _ if !light.casts_shadows => "casts no shadows".to_owned(),
-        None => "shadows are not filled yet".to_owned(),
+        _ if !light.casts_shadows => text::lights::NO_SHADOWS.to_owned(),
+        None => text::lights::NOT_FILLED.to_owned(),
         Some(volume) => {
-            let state = if volume.complete { "cached" } else { "being filled" };
-            let ms = volume.fill_ms.map_or_else(String::new, |ms| format!(", {ms:.0} ms"));
-            format!("light volume {state}{ms}, {:.1} MiB", volume.bytes as f64 / f64::from(1 << 20))
+            let mebibytes = volume.bytes as f64 / f64::from(1 << 20);
+            text::lights::light_volume(volume.complete, volume.fill_ms, mebibytes)
         }
     };
-    format!(
-        "{}: intensity {:.2}, {shadows}\nClick selects, drag its handle or use the arrow keys; right click for more",
-        light.name, light.intensity
-    )
+    text::lights::chip_tip(&light.name, light.intensity, &shadows)
 }

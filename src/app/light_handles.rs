@@ -13,6 +13,7 @@ use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke,
 use self::geometry::View;
 use self::hood_handle::HoodHandle;
 use super::orbit::wheel_notches;
+use super::text;
 use super::theme;
 use crate::model::{LightKind, Settings};
 
@@ -74,7 +75,7 @@ impl LightHandles {
             let Some(handle) = seen(settings) else { continue };
             let area = Rect::from_center_size(handle.position, Vec2::splat(2.0 * theme::HANDLE_RADIUS + 6.0));
             let response = ui.interact(area, Id::unique("light handle").with(light), Sense::click_and_drag());
-            let name = format!("Light handle {}", settings.lights[light].name);
+            let name = text::lights::handle(&settings.lights[light].name);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             self.drag(ui, &response, &view, &handle, light, settings, selected);
             let active = response.hovered() || self.drag.is_some_and(|drag| drag.light == light);

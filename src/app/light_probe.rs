@@ -3,6 +3,7 @@
 use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
 
+use super::text;
 use super::theme;
 use crate::data::Volume;
 use crate::model::{Camera, Light, LightKind, Settings};
@@ -40,10 +41,10 @@ impl LightProbe {
         if let Some(found) = found {
             rays(&painter, picture, settings, found);
         }
-        let text = found.map_or_else(|| "Nothing is seen here".to_owned(), |found| answer(settings, found));
+        let words = found.map_or_else(|| text::probe::NOTHING.to_owned(), |found| answer(settings, found));
         // In a corner of its own, so that it does not hide what it speaks of.
         let galley = painter.layout(
-            text,
+            words,
             egui::TextStyle::Small.resolve(ui.style()),
             theme::EYE_CURVE,
             (picture.width() - 40.0).max(60.0),
@@ -75,47 +76,37 @@ pub(super) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: P
 
 /// The answer in words and numbers.
 fn answer(settings: &Settings, found: &Probe) -> String {
-    let [x, y, z] = found.index.to_array();
-    let world = found.world_mm;
-    let mut text = format!(
-        "Value {:.4}, opacity {:.0} %\nvoxel {x:.0}, {y:.0}, {z:.0} · {:.1}, {:.1}, {:.1} mm",
-        found.value,
-        100.0 * found.opacity,
-        world.x,
-        world.y,
-        world.z,
-    );
+    let (voxel, mm) = (found.index.to_array(), found.world_mm.to_array());
+    let mut words = text::probe::found(found.value, found.opacity, voxel, mm);
     for (light, arrival) in settings.lights.iter().zip(&found.lights) {
-        text.push('\n');
-        text.push_str(&light.name);
-        text.push_str(": ");
-        text.push_str(&reason(light, arrival));
+        words.push('\n');
+        words.push_str(&text::probe::of_light(&light.name, &reason(light, arrival)));
     }
-    text
+    words
 }
 
 /// Why a light lights a point, or does not.
 fn reason(light: &Light, arrival: &Arrival) -> String {
     let Arrival { transmittance, hood, facing } = *arrival;
     if !light.on {
-        return "off".to_owned();
+        return text::probe::OFF.to_owned();
     }
     if hood <= 0.0 {
-        return "outside its hood".to_owned();
+        return text::probe::OUTSIDE_HOOD.to_owned();
     }
     if let Some(facing) = facing
         && facing <= 0.0
     {
-        return "the surface faces away from it".to_owned();
+        return text::probe::FACES_AWAY.to_owned();
     }
     let angle = facing.map_or_else(String::new, |facing| {
-        format!(", at {:.0}° to the surface", 90.0 - facing.clamp(-1.0, 1.0).acos().to_degrees())
+        text::probe::at_angle(90.0 - facing.clamp(-1.0, 1.0).acos().to_degrees())
     });
     let arrives = transmittance * hood;
     let through = match arrives {
-        _ if !light.casts_shadows => "casts no shadows".to_owned(),
-        share if share < 0.005 => "nothing arrives: something stands in its way".to_owned(),
-        share => format!("{:.0} % arrives", 100.0 * share),
+        _ if !light.casts_shadows => text::probe::CASTS_NO_SHADOWS.to_owned(),
+        share if share < 0.005 => text::probe::IN_ITS_WAY.to_owned(),
+        share => text::probe::arrives(share),
     };
     format!("{through}{angle}")
 }

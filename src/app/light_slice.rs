@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
+use super::text;
 use super::work::Work;
 use crate::data::{Bricks, Volume};
 use crate::export::write_atomically;
@@ -63,7 +64,8 @@ impl LightSlice {
         }
         let result = self.collect(ctx, scene);
         let (mut open, mut export) = (true, false);
-        let window = egui::Window::new("Light volume").open(&mut open).collapsible(false).resizable(false);
+        let window =
+            egui::Window::new(text::light_volume::TITLE).open(&mut open).collapsible(false).resizable(false);
         window.default_pos([24.0, 60.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
                 let casting =
@@ -76,27 +78,25 @@ impl LightSlice {
                 }
             });
             ui.horizontal(|ui| {
-                for (axis, name) in ["across x", "across y", "across z"].into_iter().enumerate() {
+                for (axis, name) in text::light_volume::ACROSS.into_iter().enumerate() {
                     ui.selectable_value(&mut self.axis, axis, name);
                 }
             });
             let Some((key, attenuation)) = self.filled.clone() else {
-                ui.weak(
-                    "No light volume: shadows must be on, splatted or by rays, and a light must cast them",
-                );
+                ui.weak(text::light_volume::NONE);
                 return;
             };
             let count = attenuation.dims[self.axis];
             let mut at = self.at[self.axis].unwrap_or(count / 2).min(count - 1);
             ui.spacing_mut().slider_width = EDGE - 80.0;
             let slider = egui::Slider::new(&mut at, 0..=count - 1);
-            if ui.name_inputs("Slice", |ui| ui.add(slider)).changed() {
+            if ui.name_inputs(text::light_volume::SLICE, |ui| ui.add(slider)).changed() {
                 self.at[self.axis] = Some(at);
             }
             self.picture(ui, &attenuation, (key, self.axis, at));
             scale(ui);
-            export =
-                ui.button("Export…").on_hover_text("The whole as .nrrd, or this slice as .png").clicked();
+            let button = text::light_volume::EXPORT;
+            export = ui.button(button.name).on_hover_text(button.tip).clicked();
         });
         self.open = open;
         result.map(|()| export)
@@ -104,11 +104,13 @@ impl LightSlice {
 
     /// Writes what is shown: the slice if the name ends in .png, else the whole.
     pub(super) fn export(&self, path: &Path, volume: &Volume) -> Result<(), String> {
-        let Some((_, attenuation)) = &self.filled else { return Err("there is no light volume".to_owned()) };
+        let Some((_, attenuation)) = &self.filled else {
+            return Err(text::light_volume::NOTHING_TO_EXPORT.to_owned());
+        };
         let is_slice = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
         let written = if is_slice {
             let at = self.at[self.axis].unwrap_or(attenuation.dims[self.axis] / 2);
-            let slice = attenuation.slice(self.axis, at).ok_or("there is no such slice")?;
+            let slice = attenuation.slice(self.axis, at).ok_or(text::light_volume::NO_SUCH_SLICE)?;
             export_slice(&slice, path)
         } else {
             write_atomically(path, &light_volume_nrrd(volume, attenuation))
@@ -184,7 +186,7 @@ impl LightSlice {
 /// What the colours mean.
 fn scale(ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
-        ui.weak("dark");
+        ui.weak(text::light_volume::DARK);
         let (rect, _) = ui.allocate_exact_size(Vec2::new(EDGE - 110.0, 10.0), egui::Sense::hover());
         let mut mesh = egui::Mesh::default();
         const STEPS: u32 = 32;
@@ -202,6 +204,6 @@ fn scale(ui: &mut egui::Ui) {
             }
         }
         ui.painter().add(mesh);
-        ui.weak("fully lit");
+        ui.weak(text::light_volume::FULLY_LIT);
     });
 }

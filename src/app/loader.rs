@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 
 use eframe::egui;
 
+use super::text;
 use super::work::Work;
 use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
 use crate::data::{Bricks, Histogram, Volume};
@@ -104,7 +105,8 @@ impl Drop for WarmUp {
 }
 
 /// What the user is told, by phase.
-const PHASES: [&str; 4] = ["reading", "counting values", "uploading", "finding a first look"];
+const PHASES: [&str; 4] =
+    [text::opening::READING, text::opening::COUNTING, text::opening::UPLOADING, text::opening::FIRST_LOOK];
 
 impl Loader {
     /// A loader for volumes that a device will show. Begins to make its pipelines.
@@ -149,8 +151,7 @@ impl Loader {
             let (control, phase, source) = (Arc::clone(&control), Arc::clone(&phase), source.to_owned());
             move || open(source, (&context, shaders), &options, &control, &phase)
         };
-        let work =
-            Work::start("loader", ctx, task).map_err(|err| format!("no thread for the loader: {err}"))?;
+        let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
         self.running = Some(Running { source: source.to_owned(), control, phase, work });
         Ok(())
     }
@@ -166,8 +167,8 @@ impl Loader {
     pub(super) fn take(&mut self) -> Option<Outcome> {
         let running = self.running.as_ref()?;
         let outcome = running.work.take()?.unwrap_or_else(|panic| Outcome::Failed {
-            short: format!("Opening {} failed", running.source),
-            details: format!("the loader stopped unexpectedly: {panic}"),
+            short: text::opening::failed(&running.source),
+            details: text::opening::stopped(&panic),
         });
         self.running = None;
         Some(outcome)
@@ -233,6 +234,6 @@ fn open(
         Ok((renderer, settings)) => {
             Outcome::Opened(Box::new(Opened { source, volume, bricks, histogram, renderer, settings }))
         }
-        Err(err) => Outcome::Failed { short: format!("cannot show {source}"), details: err.to_string() },
+        Err(err) => Outcome::Failed { short: text::opening::not_shown(&source), details: err.to_string() },
     }
 }

@@ -8,6 +8,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::sight::Sight;
+use super::text;
 use super::theme;
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};
@@ -84,15 +85,15 @@ fn bar_length_mm(longest_mm: f64) -> Option<(f64, String)> {
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= longest_mm).unwrap_or(1.0);
     let length = step * power;
     let (value, unit) = match length {
-        length if length >= 1e6 => (length * 1e-6, "km"),
-        length if length >= 1e3 => (length * 1e-3, "m"),
-        length if length >= 10.0 => (length / 10.0, "cm"),
-        length if length >= 1.0 => (length, "mm"),
-        length if length >= 1e-3 => (length * 1e3, "µm"),
-        length => (length * 1e6, "nm"),
+        length if length >= 1e6 => (length * 1e-6, text::marks::KILOMETRES),
+        length if length >= 1e3 => (length * 1e-3, text::marks::METRES),
+        length if length >= 10.0 => (length / 10.0, text::marks::CENTIMETRES),
+        length if length >= 1.0 => (length, text::marks::MILLIMETRES),
+        length if length >= 1e-3 => (length * 1e3, text::marks::MICROMETRES),
+        length => (length * 1e6, text::marks::NANOMETRES),
     };
     // At most one digit that is not zero: no rounding shows.
-    Some((length, format!("{} {unit}", (value * 1e3).round() / 1e3)))
+    Some((length, text::marks::length((value * 1e3).round() / 1e3, unit)))
 }
 
 /// A bar at the bottom left whose length holds at the middle of the view.
@@ -186,15 +187,14 @@ fn cube(
     clicked
 }
 
-/// The sides of the cube, and what is written on them: signs, or for bodies right, left, anterior, posterior,
-/// superior and inferior.
+/// The sides of the cube, and what is written on them: signs, or for bodies what lies there.
 const SIDES: [(DVec3, [&str; 2]); 6] = [
-    (DVec3::X, ["+x", "R"]),
-    (DVec3::NEG_X, ["−x", "L"]),
-    (DVec3::Y, ["+y", "A"]),
-    (DVec3::NEG_Y, ["−y", "P"]),
-    (DVec3::Z, ["+z", "S"]),
-    (DVec3::NEG_Z, ["−z", "I"]),
+    (DVec3::X, text::marks::RIGHT),
+    (DVec3::NEG_X, text::marks::LEFT),
+    (DVec3::Y, text::marks::ANTERIOR),
+    (DVec3::NEG_Y, text::marks::POSTERIOR),
+    (DVec3::Z, text::marks::SUPERIOR),
+    (DVec3::NEG_Z, text::marks::INFERIOR),
 ];
 
 /// An opaque colour: one over another.

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Button, ThemePreference};
 
 use super::commands::{Command, VIEW_SLOTS};
+use super::text;
 use crate::data::synthetic;
 use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
 
@@ -47,17 +48,17 @@ pub(super) struct Shown {
 pub(super) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     egui::Panel::top("menu").resizable(false).show(ui, |ui| {
         egui::MenuBar::new().ui(ui, |ui| {
-            ui.menu_button("File", |ui| file(ui, menu));
-            ui.menu_button("Edit", |ui| {
+            ui.menu_button(text::menu::FILE, |ui| file(ui, menu));
+            ui.menu_button(text::menu::EDIT, |ui| {
                 let (undo, redo) = menu.undo_redo;
                 item(ui, menu, Command::Undo, undo);
                 item(ui, menu, Command::Redo, redo);
                 ui.separator();
                 item(ui, menu, Command::ShowPalette, true);
             });
-            ui.menu_button("View", |ui| view(ui, menu));
-            ui.menu_button("Light", |ui| light(ui, menu));
-            ui.menu_button("Help", |ui| {
+            ui.menu_button(text::menu::VIEW, |ui| view(ui, menu));
+            ui.menu_button(text::menu::LIGHT, |ui| light(ui, menu));
+            ui.menu_button(text::menu::HELP, |ui| {
                 item(ui, menu, Command::ShowHelp, true);
                 item(ui, menu, Command::ShowAbout, true);
             });
@@ -79,7 +80,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::OpenDialog, true);
     item(ui, menu, Command::OpenPath, true);
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
-        ui.menu_button("Open recent", |ui| {
+        ui.menu_button(text::menu::OPEN_RECENT, |ui| {
             for path in menu.recent {
                 let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy());
                 if ui.button(name.as_deref().unwrap_or(path)).on_hover_text(path).clicked() {
@@ -89,7 +90,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         });
     });
     item(ui, menu, Command::GoOn, menu.can_go_on);
-    ui.menu_button("Open built-in", |ui| {
+    ui.menu_button(text::commands::OPEN_BUILT_IN, |ui| {
         for name in synthetic::NAMES {
             if ui.button(name).clicked() {
                 menu.commands.push(Command::Open(format!("builtin:{name}")));
@@ -101,8 +102,8 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::LoadSettings, true);
     ui.separator();
     let mut keeps_look = menu.keeps_look;
-    let tip = "Lights, transfer function and shadows stay when another file is opened";
-    if ui.checkbox(&mut keeps_look, &*Command::KeepLook.label()).on_hover_text(tip).clicked() {
+    let switch = ui.checkbox(&mut keeps_look, &*Command::KeepLook.label());
+    if switch.on_hover_text(text::menu::KEEP_LOOK_TIP).clicked() {
         menu.commands.push(Command::KeepLook);
     }
     ui.separator();
@@ -115,7 +116,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::ResetView, true);
     item(ui, menu, Command::FrameAll, true);
-    ui.menu_button("Look from", |ui| {
+    ui.menu_button(text::menu::LOOK_FROM, |ui| {
         for view in StandardView::ALL {
             let command = Command::LookFrom(view);
             let button = Button::new(view.name()).shortcut_text(command.shortcut_text(ui.ctx()));
@@ -124,7 +125,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             }
         }
     });
-    ui.menu_button("Kept views", |ui| {
+    ui.menu_button(text::menu::KEPT_VIEWS, |ui| {
         for slot in VIEW_SLOTS {
             let kept = menu.settings.views.contains_key(&slot);
             ui.horizontal(|ui| {
@@ -139,8 +140,8 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::FacePlane, true);
     ui.separator();
     let projection = &mut menu.settings.camera.projection;
-    ui.radio_value(projection, Projection::Perspective, "Perspective");
-    ui.radio_value(projection, Projection::Orthographic, "Orthographic");
+    ui.radio_value(projection, Projection::Perspective, text::menu::PERSPECTIVE);
+    ui.radio_value(projection, Projection::Orthographic, text::menu::ORTHOGRAPHIC);
     ui.separator();
     let cuts = &menu.settings.cuts;
     let switches = [
@@ -154,13 +155,13 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         (Command::ToggleCompare, menu.shown.compares),
     ];
     for (command, mut shown) in switches {
-        let label = format!("{} ({})", command.label(), command.shortcut_text(ui.ctx()));
+        let label = text::menu::with_key(&command.label(), &command.shortcut_text(ui.ctx()));
         if ui.checkbox(&mut shown, label).clicked() {
             menu.commands.push(command);
         }
     }
     ui.separator();
-    ui.menu_button("While something moves", |ui| {
+    ui.menu_button(text::menu::WHILE_MOVING, |ui| {
         for (choice, name) in FRAME_MS {
             ui.radio_value(menu.frame_ms, choice, name);
         }
@@ -168,9 +169,9 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.separator();
     let mut theme = ui.ctx().options(|options| options.theme_preference);
     for (choice, name) in [
-        (ThemePreference::Dark, "Dark"),
-        (ThemePreference::Light, "Light"),
-        (ThemePreference::System, "As the system"),
+        (ThemePreference::Dark, text::menu::DARK),
+        (ThemePreference::Light, text::menu::BRIGHT),
+        (ThemePreference::System, text::menu::AS_SYSTEM),
     ] {
         if ui.radio_value(&mut theme, choice, name).changed() {
             ui.ctx().set_theme(choice);
@@ -180,17 +181,17 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 
 /// What a frame may take: 60, 30, 15 and 5 per second.
 const FRAME_MS: [(Option<f64>, &str); 5] = [
-    (None, "Automatic"),
-    (Some(16.0), "Smooth (16 ms)"),
-    (Some(33.0), "Balanced (33 ms)"),
-    (Some(66.0), "Sharp (66 ms)"),
-    (Some(200.0), "Sharpest (200 ms)"),
+    (None, text::menu::AUTOMATIC),
+    (Some(16.0), text::menu::SMOOTH),
+    (Some(33.0), text::menu::BALANCED),
+    (Some(66.0), text::menu::SHARP),
+    (Some(200.0), text::menu::SHARPEST),
 ];
 
 fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let room = menu.settings.lights.len() < MAX_LIGHTS;
     item(ui, menu, Command::AddLight, room);
-    ui.menu_button("Use other lights", |ui| {
+    ui.menu_button(text::menu::USE_RIG, |ui| {
         for rig in Rig::ALL {
             if ui.button(rig.name()).clicked() {
                 menu.commands.push(Command::UseRig(rig));

@@ -4,6 +4,7 @@
 
 use eframe::egui::{self, RichText};
 
+use super::text;
 use super::theme;
 
 /// How long a note stays; errors stay until they are dismissed.
@@ -71,13 +72,13 @@ impl Messages {
         let color = if message.is_error { ui.visuals().error_fg_color } else { theme::accent(ui.visuals()) };
         ui.separator();
         ui.label(RichText::new(&message.short).color(color));
-        if !message.details.is_empty() && ui.small_button("Details").clicked() {
+        if !message.details.is_empty() && ui.small_button(text::messages::DETAILS).clicked() {
             self.expanded ^= true;
         }
-        over |= ui.small_button("Dismiss").clicked();
+        over |= ui.small_button(text::messages::DISMISS).clicked();
         if self.expanded {
             let above_bar = egui::vec2(8.0, -36.0);
-            egui::Window::new("What happened")
+            egui::Window::new(text::messages::WHAT_HAPPENED)
                 .open(&mut self.expanded)
                 .collapsible(false)
                 .anchor(egui::Align2::LEFT_BOTTOM, above_bar)

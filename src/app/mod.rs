@@ -36,6 +36,7 @@ mod slices;
 mod start;
 mod status;
 mod status_file;
+mod text;
 mod theme;
 mod transfer_editor;
 mod viewport;
@@ -137,7 +138,7 @@ impl App {
     /// # Errors
     /// When the window's device cannot be used.
     pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
-        let no_wgpu = || GpuError::Refused("the window has no wgpu device".to_owned());
+        let no_wgpu = || GpuError::Refused(text::messages::NO_DEVICE.to_owned());
         let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
         // The window's own device draws the window alone: pictures are made beside it.
         let context = Context::new(&paint.adapter, paint.device, paint.queue)?.sibling()?;
@@ -236,9 +237,7 @@ impl App {
 
     fn title(&self) -> String {
         let Some(volume) = &self.volume else { return String::new() };
-        let [nx, ny, nz] = volume.dims;
-        let [sx, sy, sz] = volume.spacing_mm;
-        format!("{} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3} mm", volume.name)
+        text::menu::title(&volume.name, volume.dims, volume.spacing_mm)
     }
 
     /// The panels around the picture.

@@ -8,7 +8,7 @@ use super::history::History;
 use super::loader::Opened;
 use super::raw_dialog::Described;
 use super::volume_facts::VolumeFacts;
-use super::{App, files};
+use super::{App, files, text};
 use crate::data::load::RawFormat;
 use crate::model::{Record, Settings, VolumeRecord};
 
@@ -52,14 +52,14 @@ impl App {
         let Described { path, layout, header, is_gzip } = described;
         if let Some(header) = header {
             let data_file = path.file_name().unwrap_or_default().to_string_lossy();
-            let text = layout.header(&data_file, *is_gzip);
-            match crate::export::write_atomically(header, text.as_bytes()) {
+            let content = layout.header(&data_file, *is_gzip);
+            match crate::export::write_atomically(header, content.as_bytes()) {
                 Ok(()) => {
                     self.start_loading(&header.display().to_string(), None, ctx);
                     return;
                 }
                 // It is shown all the same.
-                Err(err) => self.messages.error("the header was not written", err.to_string()),
+                Err(err) => self.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
             }
         }
         self.start_loading(&path.display().to_string(), Some(layout.format()), ctx);
@@ -68,7 +68,7 @@ impl App {
     fn start_loading(&mut self, source: &str, raw: Option<RawFormat>, ctx: &egui::Context) -> bool {
         let started = self.loader.open(source, raw, ctx);
         if let Err(err) = &started {
-            self.messages.error("cannot open", err.clone());
+            self.messages.error(text::opening::NOT_OPENED, err.clone());
         }
         started.is_ok()
     }
@@ -78,7 +78,7 @@ impl App {
     pub(super) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
         let record = match files::load_record(path) {
             Ok(record) => record,
-            Err(err) => return self.messages.error("the settings were not loaded", err),
+            Err(err) => return self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         };
         let open = self.volume_record().map(|(_, content_id)| content_id);
         let source = match &record.volume {
@@ -99,11 +99,11 @@ impl App {
             Ok(record) => {
                 let open = self.volume_record().map(|(_, content_id)| content_id);
                 if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
-                    self.messages.note("The settings were made for another volume: Open… opens that one");
+                    self.messages.note(text::opening::OF_ANOTHER_VOLUME);
                 }
                 self.apply_record(&record, self.value_range());
             }
-            Err(err) => self.messages.error("the settings were not loaded", err),
+            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         }
     }
 
@@ -124,7 +124,7 @@ impl App {
     fn apply_record(&mut self, record: &Record, range: (f64, f64)) {
         match self.with_record(record, range) {
             Ok(settings) => self.settings = settings,
-            Err(err) => self.messages.error("the settings were not loaded", err),
+            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         }
     }
 
@@ -136,8 +136,8 @@ impl App {
 
     pub(super) fn save_settings(&mut self, path: &Path) {
         match files::save_settings(path, &self.settings, self.volume_record()) {
-            Ok(()) => self.messages.note(format!("Saved {}", path.display())),
-            Err(err) => self.messages.error("the settings were not saved", err),
+            Ok(()) => self.messages.note(text::opening::saved(path)),
+            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
         }
     }
 
@@ -170,13 +170,13 @@ impl App {
         {
             match files::load_record(&path) {
                 Ok(record) => self.apply_record(&record, range),
-                Err(err) => self.messages.error("the session was not loaded", err),
+                Err(err) => self.messages.error(text::opening::SESSION_NOT_LOADED, err),
             }
         }
         self.memory.opened(&source);
         if let Some(record) = self.pending.take() {
             if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
-                self.messages.note("The settings were made for other values than the file has now");
+                self.messages.note(text::opening::OF_OTHER_VALUES);
             }
             self.apply_record(&record, range);
         }
@@ -188,7 +188,7 @@ impl App {
         self.viewport.set_scene(renderer, volume, bricks);
         self.history = History::default();
         self.selected_light = 0;
-        let name = self.volume_name().unwrap_or_default();
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{name} – Chiaroscuro")));
+        let title = text::opening::title(self.volume_name().unwrap_or_default());
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }
 }

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Align2, Key, Modifiers, TextEdit};
 
 use super::commands::{self, Command};
+use super::text;
 
 /// Lines that are shown at once.
 const LINES: usize = 12;
@@ -34,10 +35,12 @@ impl Palette {
         let last = found.len().min(LINES).saturating_sub(1);
         self.chosen = (self.chosen + usize::from(down)).saturating_sub(usize::from(up)).min(last);
         let mut run = if enter && !found.is_empty() { Some(self.chosen) } else { None };
-        let window = egui::Window::new("Find a command").title_bar(false).resizable(false).collapsible(false);
+        let window =
+            egui::Window::new(text::commands::FIND).title_bar(false).resizable(false).collapsible(false);
         window.anchor(Align2::CENTER_TOP, [0.0, 60.0]).fixed_size([380.0, 320.0]).show(ctx, |ui| {
-            let field = TextEdit::singleline(&mut self.text).hint_text("What do you want to do?");
-            let response = ui.name_inputs("Find a command", |ui| ui.add(field.desired_width(f32::INFINITY)));
+            let field = TextEdit::singleline(&mut self.text).hint_text(text::commands::FIND_HINT);
+            let response =
+                ui.name_inputs(text::commands::FIND, |ui| ui.add(field.desired_width(f32::INFINITY)));
             response.request_focus();
             if response.changed() {
                 self.chosen = 0;
@@ -51,7 +54,7 @@ impl Palette {
                 }
             }
             if found.is_empty() {
-                ui.weak("Nothing is called like that");
+                ui.weak(text::commands::NOTHING_FOUND);
             }
         });
         if let Some(at) = run {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, DragValue, Ui};
 
+use super::text;
 use crate::data::VoxelType;
 use crate::data::load::{Endian, RawGuess, RawLayout};
 
@@ -52,8 +53,7 @@ impl RawDialog {
     pub(super) fn ui(&mut self, ctx: &egui::Context) -> Option<Described> {
         let form = self.form.as_mut()?;
         let (mut open, mut accepted, mut cancelled) = (true, false, false);
-        let window =
-            egui::Window::new("How is it stored?").open(&mut open).collapsible(false).resizable(false);
+        let window = egui::Window::new(text::raw::TITLE).open(&mut open).collapsible(false).resizable(false);
         window.default_pos([140.0, 90.0]).show(ctx, |ui| {
             ui.set_max_width(420.0);
             let name = form.path.file_name().unwrap_or_default().to_string_lossy();
@@ -65,13 +65,12 @@ impl RawDialog {
             let fits = form.length(ui);
             if let Some(header) = &form.header {
                 let header = header.file_name().unwrap_or_default().to_string_lossy();
-                let text = format!("Remember this as {header}, beside the file");
-                let tip = "A header as NRRD has it: that file then opens here and in other programs";
-                ui.checkbox(&mut form.keep, text).on_hover_text(tip);
+                let switch = ui.checkbox(&mut form.keep, text::raw::remember(&header));
+                switch.on_hover_text(text::raw::REMEMBER_TIP);
             }
             ui.horizontal(|ui| {
-                accepted = ui.add_enabled(fits, egui::Button::new("Open")).clicked();
-                cancelled = ui.button("Cancel").clicked();
+                accepted = ui.add_enabled(fits, egui::Button::new(text::raw::OPEN)).clicked();
+                cancelled = ui.button(text::raw::CANCEL).clicked();
             });
         });
         let described = accepted.then(|| Described {
@@ -91,50 +90,47 @@ impl Form {
     fn fields(&mut self, ui: &mut Ui) {
         let layout = &mut self.layout;
         egui::Grid::new("raw layout").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
-            ui.label("Voxels");
+            ui.label(text::raw::VOXELS);
             ui.horizontal(|ui| {
-                for (name, n) in ["x", "y", "z"].into_iter().zip(&mut layout.dims) {
-                    ui.name_inputs(format!("Voxels along {name}"), |ui| {
+                for (axis, n) in text::raw::AXES.into_iter().zip(&mut layout.dims) {
+                    ui.name_inputs(text::raw::voxels_along(axis), |ui| {
                         ui.add(DragValue::new(n).range(1..=LONGEST))
                     });
                 }
-                ui.weak("x, y, z; x is the fastest");
+                ui.weak(text::raw::FASTEST_AXIS);
             });
             ui.end_row();
-            ui.label("Number type");
+            ui.label(text::raw::NUMBER_TYPE);
             let combo = egui::ComboBox::from_id_salt("voxel type").selected_text(layout.voxel_type.name());
             let shown = combo.show_ui(ui, |ui| {
                 for voxel_type in VoxelType::ALL {
                     ui.selectable_value(&mut layout.voxel_type, voxel_type, voxel_type.name());
                 }
             });
-            shown
-                .response
-                .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Number type"));
+            let named = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text::raw::NUMBER_TYPE);
+            shown.response.widget_info(named);
             ui.end_row();
-            ui.label("Byte order");
+            ui.label(text::raw::BYTE_ORDER);
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut layout.endian, Endian::Little, "Little")
-                    .on_hover_text("Lowest byte first: usual");
-                ui.selectable_value(&mut layout.endian, Endian::Big, "Big")
-                    .on_hover_text("Highest byte first");
-            });
-            ui.end_row();
-            ui.label("Spacing");
-            ui.horizontal(|ui| {
-                for (name, mm) in ["x", "y", "z"].into_iter().zip(&mut layout.spacing_mm) {
-                    let field = DragValue::new(mm).range(1e-6..=1e6).speed(0.01).max_decimals(6);
-                    ui.name_inputs(format!("Spacing along {name}"), |ui| ui.add(field));
+                for (endian, order) in [(Endian::Little, text::raw::LITTLE), (Endian::Big, text::raw::BIG)] {
+                    let choice = ui.selectable_value(&mut layout.endian, endian, order.name);
+                    choice.on_hover_text(order.tip);
                 }
-                ui.weak("mm");
             });
             ui.end_row();
-            ui.label("Header");
+            ui.label(text::raw::SPACING);
             ui.horizontal(|ui| {
-                ui.name_inputs("Bytes before the first voxel", |ui| {
-                    ui.add(DragValue::new(&mut layout.offset))
-                });
-                ui.weak("bytes before the first voxel");
+                for (axis, mm) in text::raw::AXES.into_iter().zip(&mut layout.spacing_mm) {
+                    let field = DragValue::new(mm).range(1e-6..=1e6).speed(0.01).max_decimals(6);
+                    ui.name_inputs(text::raw::spacing_along(axis), |ui| ui.add(field));
+                }
+                ui.weak(text::raw::MILLIMETRES);
+            });
+            ui.end_row();
+            ui.label(text::raw::HEADER);
+            ui.horizontal(|ui| {
+                ui.name_inputs(text::raw::HEADER_BYTES, |ui| ui.add(DragValue::new(&mut layout.offset)));
+                ui.weak(text::raw::HEADER_UNIT);
             });
             ui.end_row();
         });
@@ -143,34 +139,33 @@ impl Form {
     /// Says whether the file is as long as that, and what helps. Whether it is, or may be.
     fn length(&mut self, ui: &mut Ui) -> bool {
         if self.guess.is_gzip {
-            ui.weak("The file is compressed: whether it fits is seen when it is read");
+            ui.weak(text::raw::COMPRESSED);
             return true;
         }
         let found = self.guess.file_bytes;
         let expected = self.layout.file_bytes();
         match expected {
             Some(expected) if expected == found => {
-                ui.label(format!("{found} bytes, as the file has"));
+                ui.label(text::raw::fits(found));
                 true
             }
             Some(expected) if expected < found => {
                 ui.horizontal(|ui| {
                     let more = found - expected;
-                    ui.colored_label(ui.visuals().warn_fg_color, format!("The file is {more} bytes longer"));
-                    if ui.button("They are a header").clicked() {
+                    ui.colored_label(ui.visuals().warn_fg_color, text::raw::longer(more));
+                    if ui.button(text::raw::ARE_HEADER).clicked() {
                         self.layout.offset += more;
                     }
                 });
                 false
             }
             Some(expected) => {
-                let text =
-                    format!("{} bytes are missing: the file has {found} of {expected}", expected - found);
-                ui.colored_label(ui.visuals().error_fg_color, text);
+                let missing = text::raw::shorter(found, expected);
+                ui.colored_label(ui.visuals().error_fg_color, missing);
                 false
             }
             None => {
-                ui.colored_label(ui.visuals().error_fg_color, "That is more than any file can hold");
+                ui.colored_label(ui.visuals().error_fg_color, text::raw::TOO_MANY);
                 false
             }
         }

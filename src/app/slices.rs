@@ -14,6 +14,7 @@ use glam::DVec3;
 use self::image::{Grey, across, lookup, slice};
 use super::orbit::wheel_notches;
 use super::sight::Sight;
+use super::text;
 use super::theme;
 use super::volume_facts::VolumeFacts;
 use crate::data::Volume;
@@ -85,7 +86,8 @@ impl Slices {
             }
         };
         let mut open = true;
-        let window = egui::Window::new("Slices").open(&mut open).collapsible(false).resizable(false);
+        let window =
+            egui::Window::new(text::slices::TITLE).open(&mut open).collapsible(false).resizable(false);
         window.default_pos([24.0, 60.0]).show(ctx, |ui| {
             // From above, from the front, from the right; and what is at the cursor.
             ui.horizontal_top(|ui| {
@@ -114,27 +116,29 @@ impl Slices {
         let value = volume.value(x, y, z);
         let world = volume.world_from_index().transform_point3(DVec3::from(self.cursor.map(|at| at as f64)));
         egui::Grid::new("cursor").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
-            let mut line = |what: &str, text: String| {
+            let mut line = |what: &str, found: String| {
                 ui.weak(what);
-                ui.label(text);
+                ui.label(found);
                 ui.end_row();
             };
-            line("Voxel", format!("{x}, {y}, {z}"));
-            line("mm", format!("{:.1}, {:.1}, {:.1}", world.x, world.y, world.z));
-            line("Value", if facts.levels.is_some() { format!("{value}") } else { format!("{value:.5}") });
-            line("Opacity", format!("{:.2}", transfer.opacity_at(value)));
+            line(text::slices::VOXEL, format!("{x}, {y}, {z}"));
+            line(text::slices::PLACE_MM, format!("{:.1}, {:.1}, {:.1}", world.x, world.y, world.z));
+            let digits = if facts.levels.is_some() { format!("{value}") } else { format!("{value:.5}") };
+            line(text::slices::VALUE, digits);
+            line(text::slices::OPACITY, format!("{:.2}", transfer.opacity_at(value)));
         });
         let speed = (facts.range.1 - facts.range.0) / 500.0;
-        for (name, level) in [("Black", &mut grey.black), ("White", &mut grey.white)] {
+        for (name, level) in [(text::slices::BLACK, &mut grey.black), (text::slices::WHITE, &mut grey.white)]
+        {
             ui.horizontal(|ui| {
                 let label = ui.label(name);
                 let field = egui::DragValue::new(level).speed(speed).max_decimals(3);
-                ui.add(field).labelled_by(label.id).on_hover_text("Drag a slice with the right button, too");
+                ui.add(field).labelled_by(label.id).on_hover_text(text::slices::LEVEL_TIP);
             });
         }
-        let tip = "Where the transfer function shows something, in its colours";
-        ui.checkbox(&mut self.colored, "As in the picture").on_hover_text(tip);
-        ui.weak("Drag: move the cursor\nWheel: next slice\nRight drag: grey levels");
+        let colored = text::slices::COLORED;
+        ui.checkbox(&mut self.colored, colored.name).on_hover_text(colored.tip);
+        ui.weak(text::slices::HINT);
     }
 
     /// The cut across an axis, and what the mouse does on it.
@@ -165,8 +169,7 @@ impl Slices {
         let size = (size * (EDGE / size.max_elem())).max(Vec2::splat(2.0));
         let (frame, response) = ui.allocate_exact_size(Vec2::splat(EDGE), Sense::click_and_drag());
         let area = Rect::from_center_size(frame.center(), size);
-        let name = format!("Slice across {}", ["x", "y", "z"][axis]);
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, &name));
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::slices::across(axis)));
         let painter = ui.painter_at(frame);
         painter.rect_filled(frame, 0.0, Color32::BLACK);
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::{App, icon};
+use super::{App, icon, text};
 use crate::data::load::LoadOptions;
 use crate::gpu::{GpuError, device_descriptor};
 use crate::model::Settings;
@@ -72,7 +72,7 @@ pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
 /// When there is no display or no usable graphics adapter.
 pub fn run(options: Options) -> Result<(), AppError> {
     let viewport = egui::ViewportBuilder::default()
-        .with_title("Chiaroscuro")
+        .with_title(text::opening::PROGRAM)
         .with_app_id(APP_ID)
         .with_inner_size([1280.0, 800.0])
         .with_min_inner_size([560.0, 420.0])
@@ -81,6 +81,6 @@ pub fn run(options: Options) -> Result<(), AppError> {
         eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup().into(), ..Default::default() };
     // Without dithering the picture reaches the screen byte for byte.
     let native = eframe::NativeOptions { viewport, wgpu_options, dithering: false, ..Default::default() };
-    eframe::run_native("Chiaroscuro", native, Box::new(|cc| Ok(Box::new(App::new(cc, options)?))))?;
+    eframe::run_native(text::opening::PROGRAM, native, Box::new(|cc| Ok(Box::new(App::new(cc, options)?))))?;
     Ok(())
 }

@@ -4,6 +4,7 @@ use eframe::egui::{self, ProgressBar, RichText};
 
 use super::commands::Command;
 use super::messages::Messages;
+use super::text;
 use super::theme;
 use super::viewport::{Doing, Facts};
 
@@ -23,8 +24,8 @@ pub(super) fn show(
             if let Some((source, phase, fraction)) = opening {
                 let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);
                 ui.add(bar.animate(fraction.is_none()));
-                ui.label(format!("{phase} {source}"));
-                if ui.small_button("Cancel").clicked() {
+                ui.label(text::status::opening(phase, source));
+                if ui.small_button(&*Command::CancelOpening.label()).clicked() {
                     commands.push(Command::CancelOpening);
                 }
             } else {
@@ -32,7 +33,8 @@ pub(super) fn show(
             }
             messages.ui(ui);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.add(egui::Label::new(figures(facts)).truncate()).on_hover_text(&facts.driver);
+                let figures = RichText::new(text::status::figures(facts)).weak();
+                ui.add(egui::Label::new(figures).truncate()).on_hover_text(&facts.driver);
             });
         });
     });
@@ -40,35 +42,17 @@ pub(super) fn show(
 
 fn doing(ui: &mut egui::Ui, doing: Doing) {
     match doing {
-        Doing::Nothing => ui.weak("no volume"),
-        Doing::FullQuality => ui.label("full quality"),
-        Doing::Preview => ui.label(RichText::new("preview").color(theme::accent(ui.visuals()))),
+        Doing::Nothing => ui.weak(text::status::NO_VOLUME),
+        Doing::FullQuality => ui.label(text::status::FULL_QUALITY),
+        Doing::Preview => ui.label(RichText::new(text::status::PREVIEW).color(theme::accent(ui.visuals()))),
         Doing::Refining(what, share) => {
             let bar = ProgressBar::new(share).desired_width(80.0).desired_height(8.0);
             ui.add(bar.fill(theme::ACCENT));
-            ui.label(format!("refining {:.0} %, {what}", share * 100.0))
+            ui.label(text::status::refining(share, what))
         }
-        Doing::Failed => ui.label(RichText::new("not rendered").color(ui.visuals().error_fg_color)),
-        Doing::Lost => ui.label(RichText::new("graphics device lost").color(ui.visuals().error_fg_color)),
+        Doing::Failed => {
+            ui.label(RichText::new(text::status::NOT_RENDERED).color(ui.visuals().error_fg_color))
+        }
+        Doing::Lost => ui.label(RichText::new(text::status::DEVICE_LOST).color(ui.visuals().error_fg_color)),
     };
-}
-
-fn figures(facts: &Facts) -> RichText {
-    let ms = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.0} ms"));
-    let software = if facts.software { " (software)" } else { "" };
-    let splats = if facts.splats > 0 {
-        format!("{:.1} million splats · ", facts.splats as f64 * 1e-6)
-    } else {
-        String::new()
-    };
-    RichText::new(format!(
-        "{splats}full {} · preview {} · light volumes {} cached, {} filled · {:.0} MiB · {}{software}",
-        ms(facts.full_ms),
-        ms(facts.preview_ms),
-        facts.cached_light_volumes,
-        facts.light_rebuilds,
-        facts.gpu_mebibytes,
-        facts.adapter,
-    ))
-    .weak()
 }

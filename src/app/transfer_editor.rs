@@ -15,6 +15,7 @@ use self::plot::Axes;
 use self::selection::Selection;
 use self::zoom::Zoom;
 use super::commands::Command;
+use super::text;
 use super::theme;
 use super::volume_facts::VolumeFacts;
 use crate::model::{Settings, TransferFunction};
@@ -91,11 +92,12 @@ impl TransferEditor {
         }
         let size = ui.available_size();
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Transfer function"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::transfer::PLOT));
         self.zoom.ui(ui, &response, area, volume.range);
         let axes = Axes::new(area, self.zoom.shown(volume.range));
         self.paint(ui, &axes, settings, volume);
-        let name = if self.curve == Curve::Light { "Light point" } else { "Eye point" };
+        let name =
+            if self.curve == Curve::Light { text::transfer::LIGHT_POINT } else { text::transfer::EYE_POINT };
         let function = self.edited(settings);
         self.add_point(&response, &axes, function);
         self.selection.frame(ui, &response, &axes, function);
@@ -109,12 +111,11 @@ impl TransferEditor {
     /// What edits the curve.
     fn curve_tools(&mut self, ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts, is_wide: bool) {
         let before = self.curve;
-        ui.selectable_value(&mut self.curve, Curve::Eye, "Eye").on_hover_text("Edit what the eye sees");
+        let eye = ui.selectable_value(&mut self.curve, Curve::Eye, text::transfer::EYE.name);
+        eye.on_hover_text(text::transfer::EYE.tip);
         ui.add_enabled_ui(!settings.lighting.linked, |ui| {
-            let label = ui.selectable_value(&mut self.curve, Curve::Light, "Light");
-            label
-                .on_hover_text("Edit what light meets")
-                .on_disabled_hover_text("Light follows the eye's opacity; unlink it in the section Shadows");
+            let light = ui.selectable_value(&mut self.curve, Curve::Light, text::transfer::LIGHT.name);
+            light.on_hover_text(text::transfer::LIGHT.tip).on_disabled_hover_text(text::transfer::LINKED_TIP);
         });
         if self.curve != before {
             self.selection.clear();
@@ -127,8 +128,7 @@ impl TransferEditor {
             menus::whole_curve(ui, function, volume.range);
             menus::shapes(ui, function, volume, self.zoom.shown(volume.range));
             if is_wide {
-                let hint = "Click adds a point, a drag selects, the wheel zooms";
-                ui.add(egui::Label::new(egui::RichText::new(hint).weak()).truncate());
+                ui.add(egui::Label::new(egui::RichText::new(text::transfer::HINT).weak()).truncate());
             }
         } else if fields::points(ui, function, &selected, volume.range, light) {
             self.selection.remove(function);
@@ -146,13 +146,13 @@ impl TransferEditor {
     /// What replaces the whole curve, and how the plot shows it.
     fn plot_tools(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
         let function = self.edited(settings);
-        let automatic = ui.button("Automatic").on_hover_text("Puts the automatic transfer function back");
-        if automatic.clicked() {
+        let automatic = text::transfer::AUTOMATIC;
+        if ui.button(automatic.name).on_hover_text(automatic.tip).clicked() {
             self.selection.clear();
             commands.push(Command::AutomaticTransfer);
         }
-        ui.checkbox(&mut self.log_histogram, "Log histogram")
-            .on_hover_text("Raises rare values in the histogram");
+        let log = text::transfer::LOG_HISTOGRAM;
+        ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
         menus::colors(ui, function, commands);
         menus::presets(ui, commands);
         self.zoom.button(ui);
@@ -219,7 +219,9 @@ impl TransferEditor {
             let area = Rect::from_center_size(at, Vec2::splat(2.0 * theme::POINT_RADIUS + 6.0));
             let id = id_of(index);
             let response = ui.interact(area, id, Sense::click_and_drag());
-            response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("{name} {}", index + 1)));
+            response.widget_info(|| {
+                WidgetInfo::labeled(Role::Slider, true, text::transfer::point(name, index + 1))
+            });
             let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
             if response.clicked() && adds {
                 self.selection.toggle(index);

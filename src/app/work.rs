@@ -7,6 +7,8 @@ use std::sync::mpsc::{self, TryRecvError};
 
 use eframe::egui;
 
+use super::text;
+
 /// A task on its own thread. Dropping this forgets the result, so a late one replaces nothing.
 #[derive(Debug)]
 pub(super) struct Work<T> {
@@ -36,7 +38,7 @@ impl<T: Send + 'static> Work<T> {
         match self.receiver.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Err("the thread ended without a result".to_owned())),
+            Err(TryRecvError::Disconnected) => Some(Err(text::work::NO_RESULT.to_owned())),
         }
     }
 }
@@ -45,7 +47,7 @@ impl<T: Send + 'static> Work<T> {
 pub(super) fn panic_message(panic: &(dyn Any + Send)) -> String {
     let said = panic.downcast_ref::<&str>().copied();
     said.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
-        .unwrap_or("for no stated reason")
+        .unwrap_or(text::work::NO_REASON)
         .to_owned()
 }
 

@@ -41,18 +41,6 @@ pub enum Stage {
     Display,
 }
 
-impl Stage {
-    /// What the user is told.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Upload => "uploading the volume",
-            Self::Pyramid => "preparing the volume",
-            Self::LightMarch | Self::LightBackproject | Self::LightRaycast => "filling the light volume",
-            Self::Eye | Self::Display => "drawing the picture",
-        }
-    }
-}
-
 /// A piece of one half of a light pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LightStep {

@@ -42,20 +42,6 @@ impl Variant {
         }
     }
 
-    /// What the user calls it.
-    pub fn label(&self) -> &'static str {
-        match self {
-            Self::Current => "This look",
-            Self::Off => "No shadows",
-            Self::Splat => "Splat",
-            Self::Raycast => "Ray",
-            Self::Direct => "Direct",
-            Self::Scatter => "Scattered",
-            Self::FirstTouch => "First touch",
-            Self::Look(_) => "Kept look",
-        }
-    }
-
     /// The settings to be shown in place of the current ones.
     #[must_use]
     pub fn of(&self, current: &Settings) -> Settings {

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Id, Painter, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo};
 use glam::DVec3;
 
+use super::super::text;
 use super::super::theme;
 use super::geometry::View;
 use crate::model::{Hood, Light, LightKind};
@@ -97,7 +98,7 @@ impl HoodHandle {
         let seen = view.point(at)?;
         let area = Rect::from_center_size(seen, Vec2::splat(2.0 * HALF_EDGE + 6.0));
         let response = ui.interact(area, Id::unique("hood handle").with(index), Sense::drag());
-        let name = format!("Hood handle {}", light.name);
+        let name = text::lights::hood_handle(&light.name);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
         self.dragged = response.dragged().then_some(spot);
         self.active = response.hovered() || response.dragged();

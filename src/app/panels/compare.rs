@@ -4,34 +4,32 @@ use eframe::egui::{self, Ui};
 
 use super::super::commands::Command;
 use super::super::compare::Compare;
-use super::controls::{row, switch};
+use super::super::text::{self, Named};
+use super::controls::{row, switch, unlabelled};
 use crate::model::{Settings, Variant};
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, commands: &mut Vec<Command>) {
-    let tip = "Shows two looks in one picture: drag the line between them (C)";
-    switch(ui, "Compare two looks", tip, &mut compare.on);
+    switch(ui, text::compared::ON, &mut compare.on);
     ui.add_enabled_ui(compare.on, |ui| {
-        side(ui, "Left", &mut compare.left);
-        side(ui, "Right", &mut compare.right);
-        let tip = "What lies between the two, eight times as bright; grey where they differ evenly";
-        switch(ui, "Show the difference", tip, &mut compare.difference);
+        side(ui, text::compared::LEFT, &mut compare.left);
+        side(ui, text::compared::RIGHT, &mut compare.right);
+        switch(ui, text::compared::DIFFERENCE, &mut compare.difference);
     });
-    row(ui, "", "Compares later changes with the look as it is now", |ui| {
-        let keep = ui.button("Keep this look on the right");
-        if keep.on_hover_text("Then change something: the left side follows, the right side stays").clicked()
-        {
+    unlabelled(ui, text::compared::KEEP_ROW_TIP, |ui| {
+        let keep = text::compared::KEEP;
+        if ui.button(keep.name).on_hover_text(keep.tip).clicked() {
             compare.with(settings.clone());
         }
     });
-    row(ui, "", "Settings or a preset, laid over the look as it is now", |ui| {
-        if ui.button("Compare with a file…").clicked() {
+    unlabelled(ui, text::compared::WITH_FILE.tip, |ui| {
+        if ui.button(text::compared::WITH_FILE.name).clicked() {
             commands.push(Command::CompareWithFile);
         }
     });
     if let Variant::Look(kept) = &compare.right {
-        row(ui, "", "Makes the right look the current one", |ui| {
-            if ui.button("Take the right look").clicked() {
+        unlabelled(ui, text::compared::TAKE_RIGHT.tip, |ui| {
+            if ui.button(text::compared::TAKE_RIGHT.name).clicked() {
                 let camera = settings.camera.clone();
                 *settings = Settings { camera, ..Settings::clone(kept) };
             }
@@ -39,20 +37,21 @@ pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, 
     }
 }
 
-fn side(ui: &mut Ui, label: &'static str, variant: &mut Variant) {
-    row(ui, label, "Which look is on this side", |ui| {
-        let combo = egui::ComboBox::from_id_salt(label).selected_text(variant.label()).width(120.0);
+fn side(ui: &mut Ui, named: Named, variant: &mut Variant) {
+    row(ui, named, |ui| {
+        let combo = egui::ComboBox::from_id_salt(named.name)
+            .selected_text(text::compared::variant(variant))
+            .width(120.0);
         let shown = combo.show_ui(ui, |ui| {
             for choice in Variant::PLAIN {
-                let text = choice.label();
-                ui.selectable_value(variant, choice, text);
+                let label = text::compared::variant(&choice);
+                ui.selectable_value(variant, choice, label);
             }
             if let Variant::Look(_) = variant {
-                ui.selectable_label(true, variant.label()).clicked();
+                ui.selectable_label(true, text::compared::variant(variant)).clicked();
             }
         });
-        shown
-            .response
-            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, format!("{label} look")));
+        let name = text::compared::look(named.name);
+        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &name));
     });
 }

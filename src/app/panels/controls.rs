@@ -4,13 +4,13 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Align, Layout, Response, Slider, Ui, Vec2};
 
+use super::super::text::{self, Named};
 use super::super::theme;
 
 /// A number with a slider.
 #[derive(Debug, Clone)]
 pub(super) struct Number {
-    label: &'static str,
-    tip: &'static str,
+    named: Named,
     range: RangeInclusive<f64>,
     unit: &'static str,
     log: bool,
@@ -19,8 +19,8 @@ pub(super) struct Number {
 
 impl Number {
     /// A slider over a range.
-    pub(super) fn new(label: &'static str, range: RangeInclusive<f64>, tip: &'static str) -> Self {
-        Self { label, tip, range, unit: "", log: false, decimals: 2 }
+    pub(super) fn new(named: Named, range: RangeInclusive<f64>) -> Self {
+        Self { named, range, unit: "", log: false, decimals: 2 }
     }
 
     /// Behind the number.
@@ -43,8 +43,8 @@ impl Number {
 
     /// Shows the row. `default`: what the reset button puts back.
     pub(super) fn show(self, ui: &mut Ui, value: &mut f64, default: f64) -> Response {
-        let Self { label, tip, range, unit, log, decimals } = self;
-        row(ui, label, tip, |ui| {
+        let Self { named, range, unit, log, decimals } = self;
+        row(ui, named, |ui| {
             let spacing = ui.spacing().item_spacing.x;
             let room = ui.available_width() - theme::VALUE_WIDTH - theme::RESET_WIDTH - 3.0 * spacing;
             ui.spacing_mut().slider_width = room.max(30.0);
@@ -52,8 +52,8 @@ impl Number {
             let slider = Slider::new(value, range).suffix(unit).logarithmic(log).max_decimals(decimals);
             // Settings from files may lie beyond the slider: they stay until the user moves it.
             let slider = slider.clamping(egui::SliderClamping::Edits);
-            let response = ui.name_inputs(label, |ui| ui.add(slider)).on_hover_text(tip);
-            if reset(ui, label, (*value - default).abs() > 1e-9) || response.double_clicked() {
+            let response = ui.name_inputs(named.name, |ui| ui.add(slider)).on_hover_text(named.tip);
+            if reset(ui, named.name, (*value - default).abs() > 1e-9) || response.double_clicked() {
                 *value = default;
             }
             response
@@ -62,16 +62,21 @@ impl Number {
 }
 
 /// A row: a label of the usual width, then what `add` shows.
-pub(super) fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+pub(super) fn row<R>(ui: &mut Ui, named: Named, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let size = Vec2::new(theme::LABEL_WIDTH, ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_width(theme::LABEL_WIDTH);
-            ui.add(egui::Label::new(label).truncate().selectable(false)).on_hover_text(tip);
+            ui.add(egui::Label::new(named.name).truncate().selectable(false)).on_hover_text(named.tip);
         });
         add(ui)
     })
     .inner
+}
+
+/// A row whose control says by itself what it is; only a tip is where the label would be.
+pub(super) fn unlabelled<R>(ui: &mut Ui, tip: &'static str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    row(ui, Named { name: "", tip }, add)
 }
 
 /// The button that puts a value back; it is there only when there is something to put back.
@@ -82,11 +87,11 @@ pub(super) fn reset(ui: &mut Ui, label: &str, differs: bool) -> bool {
         return false;
     }
     let (area, response) = ui.allocate_exact_size(size, egui::Sense::click());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Reset {label}")));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::common::reset(label)));
     let lit = response.hovered() || response.has_focus();
     let ink = if lit { theme::accent(ui.visuals()) } else { ui.visuals().weak_text_color() };
     circular_arrow(ui, area.center(), ink);
-    response.on_hover_text(format!("Reset {}", label.to_lowercase())).clicked()
+    response.on_hover_text(text::common::reset_tip(label)).clicked()
 }
 
 /// Three quarters of a circle with an arrowhead, turning back.
@@ -103,16 +108,15 @@ fn circular_arrow(ui: &Ui, middle: egui::Pos2, ink: egui::Color32) {
 /// One of a few values, side by side.
 pub(super) fn choice<T: PartialEq + Copy>(
     ui: &mut Ui,
-    label: &str,
-    tip: &str,
+    named: Named,
     value: &mut T,
-    options: &[(T, &str, &str)],
+    options: &[(T, Named)],
 ) -> bool {
-    row(ui, label, tip, |ui| {
+    row(ui, named, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut changed = false;
-        for (option, name, option_tip) in options {
-            let response = ui.selectable_label(value == option, *name).on_hover_text(*option_tip);
+        for (option, named) in options {
+            let response = ui.selectable_label(value == option, named.name).on_hover_text(named.tip);
             if response.clicked() && value != option {
                 *value = *option;
                 changed = true;
@@ -123,8 +127,8 @@ pub(super) fn choice<T: PartialEq + Copy>(
 }
 
 /// A switch.
-pub(super) fn switch(ui: &mut Ui, label: &'static str, tip: &str, value: &mut bool) -> Response {
-    ui.checkbox(value, label).on_hover_text(tip)
+pub(super) fn switch(ui: &mut Ui, named: Named, value: &mut bool) -> Response {
+    ui.checkbox(value, named.name).on_hover_text(named.tip)
 }
 
 /// An sRGB colour, stored as the button shows it.
@@ -150,5 +154,5 @@ pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mu
 
 /// Rarely needed things, folded away.
 pub(super) fn advanced(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
-    egui::CollapsingHeader::new("Advanced").id_salt(salt).show_unindented(ui, add);
+    egui::CollapsingHeader::new(text::common::ADVANCED).id_salt(salt).show_unindented(ui, add);
 }

@@ -4,24 +4,18 @@ use eframe::egui::{self, Ui};
 use glam::DVec3;
 
 use super::super::commands::Command;
+use super::super::text::common::{DEGREES, TIMES};
+use super::super::text::{self, Named};
 use super::super::theme;
 use super::Panels;
 use super::controls::{Number, choice, color, row, switch};
 use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, Settings};
 
-const KINDS: [(LightKind, &str, &str); 2] = [
-    (LightKind::Parallel, "Parallel", "Like the sun: shadows have the size of what casts them"),
-    (LightKind::Perspective, "Perspective", "Like a lamp at a point: shadows grow with the distance"),
-];
+const KINDS: [(LightKind, Named); 2] =
+    [(LightKind::Parallel, text::lights::PARALLEL), (LightKind::Perspective, text::lights::PERSPECTIVE)];
 
-const LOCKS: [(LightLock, &str, &str); 2] = [
-    (LightLock::World, "The volume", "The light stays where it is: turning the camera rebuilds no shadows"),
-    (
-        LightLock::Camera,
-        "The camera",
-        "The light turns with the camera, like a lamp on the photographer's shoulder",
-    ),
-];
+const LOCKS: [(LightLock, Named); 2] =
+    [(LightLock::World, text::lights::WITH_VOLUME), (LightLock::Camera, text::lights::WITH_CAMERA)];
 
 /// The list of lights; the selected one is open.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -43,8 +37,8 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         *panels.selected_light = index.saturating_sub(1);
     }
     let room = panels.settings.lights.len() < MAX_LIGHTS;
-    let button = ui.add_enabled(room, egui::Button::new("Add light"));
-    if button.on_hover_text("Adds a light beside the camera; up to eight").clicked() {
+    let button = ui.add_enabled(room, egui::Button::new(text::lights::ADD.name));
+    if button.on_hover_text(text::lights::ADD.tip).clicked() {
         panels.commands.push(Command::AddLight);
     }
 }
@@ -52,14 +46,13 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
 /// Switch, colour and name. Whether the user selected it.
 fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
     ui.horizontal(|ui| {
-        let on = ui.name_inputs(format!("{} on", light.name), |ui| ui.checkbox(&mut light.on, ""));
-        on.on_hover_text("Switches this light on or off; its shadows are kept");
-        color(ui, &format!("Colour of light {}", index + 1), &mut light.color);
-        let text = egui::RichText::new(if light.name.is_empty() { "Light" } else { &light.name });
-        let text = if selected { text.color(theme::accent(ui.visuals())).strong() } else { text };
-        ui.selectable_label(selected, text)
-            .on_hover_text("Select; its handle in the picture is marked")
-            .clicked()
+        let on = ui.name_inputs(text::lights::switch(&light.name), |ui| ui.checkbox(&mut light.on, ""));
+        on.on_hover_text(text::lights::ON_TIP);
+        color(ui, &text::lights::color(index + 1), &mut light.color);
+        let name = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
+        let name = egui::RichText::new(name);
+        let name = if selected { name.color(theme::accent(ui.visuals())).strong() } else { name };
+        ui.selectable_label(selected, name).on_hover_text(text::lights::SELECT_TIP).clicked()
     })
     .inner
 }
@@ -67,65 +60,49 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
 /// Everything else. Whether the light is to be removed.
 fn body(ui: &mut Ui, light: &mut Light, camera: &Camera) -> bool {
     let fresh = Light::default();
-    row(ui, "Name", "What this light is called in the list", |ui| {
-        let field = egui::TextEdit::singleline(&mut light.name).hint_text("Name of the light");
+    row(ui, text::lights::NAME, |ui| {
+        let field = egui::TextEdit::singleline(&mut light.name).hint_text(text::lights::NAME_HINT);
         ui.add(field.desired_width(ui.available_width() - theme::RESET_WIDTH));
     });
-    choice(ui, "Kind", "How the light's rays run", &mut light.kind, &KINDS);
-    Number::new("Intensity", 0.0..=4.0, "How bright this light is; costs no new shadows").show(
-        ui,
-        &mut light.intensity,
-        fresh.intensity,
-    );
+    choice(ui, text::lights::KIND, &mut light.kind, &KINDS);
+    Number::new(text::lights::INTENSITY, 0.0..=4.0).show(ui, &mut light.intensity, fresh.intensity);
     if light.kind == LightKind::Perspective {
         let mut position = DVec3::from(light.position);
         let mut distance = position.length();
-        let tip =
-            "From the middle of the volume, whose longest edge is 2 long; near lights spread their shadows";
-        if Number::new("Distance", 0.1..=20.0, tip).log().show(ui, &mut distance, 3.0).changed() {
+        let field = Number::new(text::lights::DISTANCE, 0.1..=20.0).log();
+        if field.show(ui, &mut distance, 3.0).changed() {
             position = position.normalize_or(DVec3::Z) * distance;
             light.position = position.into();
         }
         hood(ui, &mut light.hood);
     }
     let mut lock = light.lock;
-    choice(ui, "Stays with", "What the light keeps its place to while the camera turns", &mut lock, &LOCKS);
+    choice(ui, text::lights::LOCK, &mut lock, &LOCKS);
     if lock != light.lock {
         light.set_lock(lock, camera);
     }
-    row(ui, "", "", |ui| {
-        let tip =
-            "Puts this light where the eye is, and keeps it there: everything seen is lit, shadows hide";
-        if ui.button("Headlight").on_hover_text(tip).clicked() {
+    row(ui, text::NOTHING, |ui| {
+        let headlight = text::lights::HEADLIGHT;
+        if ui.button(headlight.name).on_hover_text(headlight.tip).clicked() {
             light.lock = LightLock::Camera;
             light.position = [0.0, 0.0, DVec3::from(light.position).length().max(2.0)];
         }
     });
-    let tip = "Multiplies how strongly material attenuates this light alone; refills its light volume";
-    Number::new("Density", 0.01..=4.0, tip).unit(" ×").log().show(
-        ui,
-        &mut light.density_scale,
-        fresh.density_scale,
-    );
-    let tip = "Whether material attenuates this light; a fill light does without";
-    switch(ui, "Casts shadows", tip, &mut light.casts_shadows);
-    ui.button("Remove light").on_hover_text("Takes this light away; undo brings it back").clicked()
+    let density = Number::new(text::lights::DENSITY, 0.01..=4.0).unit(TIMES).log();
+    density.show(ui, &mut light.density_scale, fresh.density_scale);
+    switch(ui, text::lights::CASTS_SHADOWS, &mut light.casts_shadows);
+    ui.button(text::lights::REMOVE.name).on_hover_text(text::lights::REMOVE.tip).clicked()
 }
 
 /// A lampshade.
 fn hood(ui: &mut Ui, hood: &mut Hood) {
     let fresh = Hood::default();
-    let tip = "A lampshade: the light shines only within a cone around the line to the middle of the volume";
-    switch(ui, "Hood", tip, &mut hood.on);
+    switch(ui, text::lights::HOOD, &mut hood.on);
     if hood.on {
-        let tip = "From the middle of the cone to where no light is left";
-        Number::new("Cone", 1.0..=89.0, tip).unit("°").decimals(1).show(
-            ui,
-            &mut hood.half_angle_deg,
-            fresh.half_angle_deg,
-        );
-        let tip = "How far inside that the light begins to fade; 0 is a hard edge";
-        Number::new("Rim", 0.0..=45.0, tip).unit("°").decimals(1).show(ui, &mut hood.rim_deg, fresh.rim_deg);
+        let cone = Number::new(text::lights::CONE, 1.0..=89.0).unit(DEGREES).decimals(1);
+        cone.show(ui, &mut hood.half_angle_deg, fresh.half_angle_deg);
+        let rim = Number::new(text::lights::RIM, 0.0..=45.0).unit(DEGREES).decimals(1);
+        rim.show(ui, &mut hood.rim_deg, fresh.rim_deg);
     }
 }
 
@@ -134,7 +111,7 @@ pub(in crate::app) fn add_light(settings: &mut Settings) -> Option<usize> {
     let index = settings.lights.len();
     (index < MAX_LIGHTS).then(|| {
         settings.lights.push(Light {
-            name: format!("Light {}", index + 1),
+            name: text::lights::numbered(index + 1),
             position: beside_the_eye(&settings.camera),
             intensity: 0.5,
             ..Light::default()

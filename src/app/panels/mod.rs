@@ -15,6 +15,7 @@ use eframe::egui;
 
 use super::commands::Command;
 use super::compare::Compare;
+use super::text;
 use super::viewport::Facts;
 use super::volume_facts::VolumeFacts;
 use crate::model::Settings;
@@ -45,15 +46,15 @@ pub(super) struct Panels<'a> {
 pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
-        controls::section(ui, "Lights", true, |ui| lights::show(ui, panels));
-        controls::section(ui, "Shadows", true, |ui| shadows::show(ui, panels));
-        controls::section(ui, "Shading", false, |ui| shading::show(ui, panels));
-        controls::section(ui, "Cut", false, |ui| cuts::show(ui, panels));
-        controls::section(ui, "Floor", false, |ui| ground::show(ui, panels));
-        controls::section(ui, "Camera", false, |ui| camera::show(ui, panels));
-        controls::section(ui, "Compare", false, |ui| {
+        controls::section(ui, text::sections::LIGHTS, true, |ui| lights::show(ui, panels));
+        controls::section(ui, text::sections::SHADOWS, true, |ui| shadows::show(ui, panels));
+        controls::section(ui, text::sections::SHADING, false, |ui| shading::show(ui, panels));
+        controls::section(ui, text::sections::CUTS, false, |ui| cuts::show(ui, panels));
+        controls::section(ui, text::sections::FLOOR, false, |ui| ground::show(ui, panels));
+        controls::section(ui, text::sections::CAMERA, false, |ui| camera::show(ui, panels));
+        controls::section(ui, text::sections::COMPARE, false, |ui| {
             compare::show(ui, panels.compare, panels.settings, panels.commands);
         });
-        controls::section(ui, "Data", false, |ui| data::show(ui, panels));
+        controls::section(ui, text::sections::DATA, false, |ui| data::show(ui, panels));
     });
 }

@@ -3,14 +3,19 @@
 use eframe::egui::{self, DragValue, Slider, Ui};
 
 use super::super::panels::controls::color;
+use super::super::text;
+use super::super::text::common::DEGREES;
 use crate::model::{
     ControlPoint, Easing, TransferFunction, lab_from_lch, lch_from_lab, linear_from_oklab, linear_from_srgb,
     oklab_from_linear, srgb_from_linear,
 };
 
 /// Ways from a point to the next.
-const WAYS: [(Easing, &str); 3] =
-    [(Easing::Linear, "Straight"), (Easing::Smooth, "Smooth"), (Easing::Step, "Step")];
+const WAYS: [(Easing, &str); 3] = [
+    (Easing::Linear, text::transfer::STRAIGHT),
+    (Easing::Smooth, text::transfer::SMOOTH),
+    (Easing::Step, text::transfer::STEP),
+];
 
 /// The most colourful colours of displays have about this chroma.
 const MOST_CHROMA: f64 = 0.33;
@@ -28,17 +33,17 @@ pub(super) fn points(
     let before = point;
     if selected.len() == 1 {
         let (low, high) = neighbours(function, first, range);
-        let label = ui.label("Value");
+        let label = ui.label(text::transfer::POINT_VALUE);
         let speed = (range.1 - range.0).max(1e-12) / 500.0;
         ui.add(DragValue::new(&mut point.value).range(low..=high).speed(speed)).labelled_by(label.id);
     } else {
-        ui.label(format!("{} points", selected.len()));
+        ui.label(text::transfer::several(selected.len()));
     }
-    let label = ui.label("Opacity");
+    let label = ui.label(text::transfer::POINT_OPACITY);
     ui.add(DragValue::new(&mut point.opacity).range(0.0..=1.0).speed(0.005).max_decimals(3))
         .labelled_by(label.id);
     if !light {
-        color(ui, "Colour of the point", &mut point.color);
+        color(ui, text::transfer::POINT_COLOR, &mut point.color);
         perceived(ui, &mut point.color);
     }
     way(ui, &mut point.easing);
@@ -56,21 +61,21 @@ pub(super) fn points(
         }
     }
     function.points[first].value = point.value;
-    ui.add_enabled(function.points.len() > 1, egui::Button::new("Remove")).clicked()
+    ui.add_enabled(function.points.len() > 1, egui::Button::new(text::transfer::REMOVE)).clicked()
 }
 
 /// Lightness, chroma and hue, for colours that are to be as light or as colourful as others.
 fn perceived(ui: &mut Ui, srgb: &mut [f32; 3]) {
-    let menu = ui.menu_button("As seen", |ui| {
+    let menu = ui.menu_button(text::transfer::AS_SEEN.name, |ui| {
         let linear = srgb.map(|c| linear_from_srgb(f64::from(c)));
         let mut lch = lch_from_lab(oklab_from_linear(linear));
         let mut changed = false;
         let [lightness, chroma, hue] = &mut lch;
         egui::Grid::new("lightness, chroma, hue").num_columns(2).show(ui, |ui| {
             for (value, most, name, unit) in [
-                (lightness, 1.0, "Lightness", ""),
-                (chroma, MOST_CHROMA, "Chroma", ""),
-                (hue, 360.0, "Hue", "°"),
+                (lightness, 1.0, text::transfer::LIGHTNESS, ""),
+                (chroma, MOST_CHROMA, text::transfer::CHROMA, ""),
+                (hue, 360.0, text::transfer::HUE, DEGREES),
             ] {
                 ui.label(name);
                 let slider = Slider::new(value, 0.0..=most).suffix(unit).max_decimals(3);
@@ -84,7 +89,7 @@ fn perceived(ui: &mut Ui, srgb: &mut [f32; 3]) {
             *srgb = linear_from_oklab(lab_from_lch(lch)).map(|c| srgb_from_linear(c) as f32);
         }
     });
-    menu.response.on_hover_text("Lightness, chroma and hue: equal steps look equally large");
+    menu.response.on_hover_text(text::transfer::AS_SEEN.tip);
 }
 
 fn way(ui: &mut Ui, easing: &mut Easing) {
@@ -97,7 +102,7 @@ fn way(ui: &mut Ui, easing: &mut Easing) {
             }
         }
     });
-    menu.response.on_hover_text("The way to the next point");
+    menu.response.on_hover_text(text::transfer::WAY_TIP);
 }
 
 /// The values between which a point can be moved.

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Sense, Ui, vec2};
 
 use super::super::commands::Command;
+use super::super::text::{self, Named};
 use super::super::theme;
 use super::super::volume_facts::VolumeFacts;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
@@ -12,8 +13,8 @@ const STRIP: egui::Vec2 = vec2(96.0, 14.0);
 
 /// Presets, by domain.
 pub(super) fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
-    ui.menu_button("Presets", |ui| {
-        let all = ui.button(&*Command::TryPresets.label()).on_hover_text("Shows each on your volume");
+    ui.menu_button(text::transfer::PRESETS, |ui| {
+        let all = ui.button(&*Command::TryPresets.label()).on_hover_text(text::transfer::TRY_PRESETS_TIP);
         if all.clicked() {
             commands.push(Command::TryPresets);
         }
@@ -34,35 +35,33 @@ pub(super) fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 /// Colour maps, with their colours.
 pub(super) fn colors(ui: &mut Ui, function: &mut TransferFunction, commands: &mut Vec<Command>) {
-    ui.menu_button("Colours", |ui| {
+    ui.menu_button(text::transfer::COLORS, |ui| {
         for (at, map) in COLOR_MAPS.iter().enumerate() {
             ui.horizontal(|ui| {
                 strip(ui, map);
-                if ui.button(map.name).on_hover_text("Colours the visible values").clicked() {
+                if ui.button(map.name).on_hover_text(text::transfer::COLOR_MAP_TIP).clicked() {
                     commands.push(Command::UseColors(at, false));
                 }
-                let reversed = ui.small_button("reversed");
-                if reversed.on_hover_text(format!("{} from the high end", map.name)).clicked() {
+                let reversed = ui.small_button(text::transfer::REVERSED);
+                if reversed.on_hover_text(text::transfer::reversed_tip(map.name)).clicked() {
                     commands.push(Command::UseColors(at, true));
                 }
             });
         }
         ui.separator();
         for command in [Command::ImportTransfer, Command::ExportTransfer] {
-            let button = ui
-                .button(&*command.label())
-                .on_hover_text("ParaView, Slicer, Inviwo, MRIcroGL and ImageJ; Voreen and AGAVE can be read");
+            let button = ui.button(&*command.label()).on_hover_text(text::transfer::FILES_TIP);
             if button.clicked() {
                 commands.push(command);
             }
         }
         let mut seen = function.mixing == Mixing::Seen;
-        let switch = ui.checkbox(&mut seen, "Mix as seen");
-        let tip = "Mixes colours between points in Oklab: lightness is even, and blue to yellow has no glare";
-        if switch.on_hover_text(tip).changed() {
+        let mix = text::transfer::MIX_AS_SEEN;
+        if ui.checkbox(&mut seen, mix.name).on_hover_text(mix.tip).changed() {
             function.mixing = if seen { Mixing::Seen } else { Mixing::Light };
         }
-        if ui.button("Invert opacities").on_hover_text("What is dense becomes clear").clicked() {
+        let invert = text::transfer::INVERT;
+        if ui.button(invert.name).on_hover_text(invert.tip).clicked() {
             commands.push(Command::InvertTransfer);
         }
     });
@@ -98,30 +97,28 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
     let (mut to, mut wide) = (middle, width);
     let most = function.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
     let mut opacity = most;
-    let label = ui.label("Opacity");
+    let label = ui.label(text::transfer::OPACITY.name);
     let field = DragValue::new(&mut opacity).speed(0.005).range(0.001..=1.0).max_decimals(3);
     // What a file brought stays until somebody changes it.
     let field = field.clamp_existing_to_range(false);
-    ui.add_enabled(most > 0.0, field)
-        .labelled_by(label.id)
-        .on_hover_text("The highest opacity: all others keep their share of it");
+    ui.add_enabled(most > 0.0, field).labelled_by(label.id).on_hover_text(text::transfer::OPACITY.tip);
     if opacity != most && most > 0.0 {
         for point in &mut function.points {
             point.opacity = (point.opacity * opacity / most).min(1.0);
         }
     }
-    let label = ui.label("Level");
+    let label = ui.label(text::transfer::LEVEL.name);
     let level = DragValue::new(&mut to)
         .speed(span / 400.0)
         .range(range.0 - span..=range.1 + span)
         .clamp_existing_to_range(false);
-    ui.add(level).labelled_by(label.id).on_hover_text("Moves all points along the values");
-    let label = ui.label("Window");
+    ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tip);
+    let label = ui.label(text::transfer::WINDOW.name);
     let window = DragValue::new(&mut wide)
         .speed(span / 400.0)
         .range(span / 1000.0..=4.0 * span)
         .clamp_existing_to_range(false);
-    ui.add(window).labelled_by(label.id).on_hover_text("Spreads all points around their middle");
+    ui.add(window).labelled_by(label.id).on_hover_text(text::transfer::WINDOW.tip);
     if to != middle || (wide != width && width > 0.0) {
         let stretch = if width > 0.0 { wide / width } else { 1.0 };
         function.shift_and_stretch(to - middle, stretch);
@@ -135,14 +132,15 @@ pub(super) fn shapes(
     volume: &VolumeFacts,
     shown: ((f64, f64), bool),
 ) {
-    ui.menu_button("Shape", |ui| {
-        if ui.button("Fit").on_hover_text("Spreads the points over the values that occur").clicked() {
+    ui.menu_button(text::transfer::SHAPE, |ui| {
+        let clicked = |ui: &mut Ui, named: Named| ui.button(named.name).on_hover_text(named.tip).clicked();
+        if clicked(ui, text::transfer::FIT) {
             fit(function, volume);
         }
-        if ui.button("Bump").on_hover_text("Adds a smooth bump of opacity: a band of values").clicked() {
+        if clicked(ui, text::transfer::BUMP) {
             add_bump(function, shown);
         }
-        if ui.button("Box").on_hover_text("Adds a band of values with sharp ends").clicked() {
+        if clicked(ui, text::transfer::BOX) {
             add_box(function, shown);
         }
     });

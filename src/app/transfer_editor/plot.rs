@@ -4,6 +4,7 @@ use eframe::egui::{
     self, Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Response, Rgba, Shape, Stroke, Ui, Vec2, pos2,
 };
 
+use super::text;
 use super::theme;
 use crate::data::Histogram;
 use crate::model::{Settings, TransferFunction};
@@ -183,14 +184,14 @@ pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, e
 pub(super) fn labels(painter: &Painter, axes: &Axes) {
     let (font, ink) = (FontId::proportional(11.0), theme::EYE_CURVE.gamma_multiply(0.75));
     let plot = axes.plot;
-    let text = |at: Pos2, align: Align2, text: String| {
+    let write = |at: Pos2, align: Align2, text: String| {
         let shadow = theme::OUTLINE.gamma_multiply(0.9);
         painter.text(at + Vec2::splat(1.0), align, &text, font.clone(), shadow);
         painter.text(at, align, text, font.clone(), ink);
     };
-    text(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.0, axes.range));
-    text(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.1, axes.range));
-    text(plot.left_top(), Align2::LEFT_TOP, "opacity 1".to_owned());
+    write(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.0, axes.range));
+    write(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.1, axes.range));
+    write(plot.left_top(), Align2::LEFT_TOP, text::transfer::OPACITY_ONE.to_owned());
 }
 
 /// A value with as many digits as the range deserves.
@@ -215,13 +216,13 @@ pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Sett
     let line = Stroke::new(1.0, theme::EYE_CURVE.gamma_multiply(0.35));
     painter.vline(at.x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), line);
     let opacity = settings.transfer.opacity_at(value);
-    let text = format!("{} · opacity {opacity:.2}", number(value, axes.range));
+    let words = text::transfer::at_pointer(&number(value, axes.range), opacity);
     let right = at.x < axes.area.center().x;
     let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };
     let place = pos2(at.x + dx, axes.plot.min.y + 14.0);
     let font = FontId::proportional(11.0);
-    painter.text(place + Vec2::splat(1.0), align, &text, font.clone(), theme::OUTLINE);
-    painter.text(place, align, text, font, theme::EYE_CURVE);
+    painter.text(place + Vec2::splat(1.0), align, &words, font.clone(), theme::OUTLINE);
+    painter.text(place, align, words, font, theme::EYE_CURVE);
 }
 
 /// The value that another view marks.

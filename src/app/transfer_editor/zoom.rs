@@ -3,6 +3,7 @@
 use eframe::egui::{PointerButton, Rect, Response, Ui};
 
 use super::super::orbit::wheel_notches;
+use super::super::text;
 
 /// A notch of the wheel shows this much less.
 const ZOOM_PER_NOTCH: f64 = 1.2;
@@ -47,7 +48,8 @@ impl Zoom {
 
     /// Offers to show everything again, while it does not.
     pub(super) fn button(&mut self, ui: &mut Ui) {
-        if self.part.is_some() && ui.button("Show all").on_hover_text("Shows all values again").clicked() {
+        let all = text::transfer::SHOW_ALL;
+        if self.part.is_some() && ui.button(all.name).on_hover_text(all.tip).clicked() {
             self.part = None;
         }
     }

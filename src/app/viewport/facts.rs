@@ -14,7 +14,7 @@ pub(in crate::app) enum Doing {
     /// A coarser picture is on screen; the user is still moving something.
     Preview,
     /// The full-quality picture is on its way: what is done now, and the share that is done.
-    Refining(&'static str, f32),
+    Refining(Stage, f32),
     /// It could not be rendered.
     Failed,
     /// The device is gone.
@@ -89,7 +89,7 @@ impl Viewport {
         } else if self.failed.is_some() && self.failed == self.wanted {
             Doing::Failed
         } else {
-            refining.map_or(Doing::Preview, |(stage, share)| Doing::Refining(stage.label(), share))
+            refining.map_or(Doing::Preview, |(stage, share)| Doing::Refining(stage, share))
         }
     }
 }

@@ -1,0 +1,98 @@
+//! The names of commands, for menus, buttons and the list of keys, and the window that finds them.
+
+pub(crate) const OPEN_DIALOG: &str = "Open…";
+pub(crate) const OPEN_PATH: &str = "Open path…";
+/// Also the menu of what can be opened.
+pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
+pub(crate) const CANCEL_OPENING: &str = "Cancel";
+pub(crate) const GO_ON: &str = "Go on where you left off";
+pub(crate) const SAVE_SETTINGS: &str = "Save settings…";
+pub(crate) const LOAD_SETTINGS: &str = "Load settings…";
+pub(crate) const EXPORT: &str = "Export picture or turntable…";
+pub(crate) const COPY_PICTURE: &str = "Copy picture";
+pub(crate) const KEEP_LOOK: &str = "Keep this look for the next file";
+pub(crate) const QUIT: &str = "Quit";
+
+pub(crate) const UNDO: &str = "Undo";
+pub(crate) const REDO: &str = "Redo";
+pub(crate) const SHOW_PALETTE: &str = "Find a command…";
+
+pub(crate) const RESET_VIEW: &str = "Reset view";
+pub(crate) const FRAME_ALL: &str = "Frame all";
+pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
+pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
+pub(crate) const TOGGLE_SIDE: &str = "Side panel";
+pub(crate) const TOGGLE_HANDLES: &str = "Handles";
+pub(crate) const TOGGLE_MARKS: &str = "Marks over the picture";
+pub(crate) const TOGGLE_PROBE: &str = "Why is this dark? (probe)";
+pub(crate) const TOGGLE_COMPARE: &str = "Compare two looks";
+pub(crate) const COMPARE_WITH_FILE: &str = "Compare with settings…";
+pub(crate) const SHOW_SLICES: &str = "Slices of the data";
+
+pub(crate) const TOGGLE_CROP: &str = "Crop box";
+pub(crate) const TOGGLE_PLANE: &str = "Clip plane";
+pub(crate) const FACE_PLANE: &str = "Clip plane towards the eye";
+pub(crate) const TOGGLE_GROUND: &str = "Floor with shadows";
+
+pub(crate) const ADD_LIGHT: &str = "Add light";
+pub(crate) const USE_LIGHTS: &str = "Use lights";
+pub(crate) const TRY_LIGHTS: &str = "Try lights…";
+pub(crate) const NEXT_LIGHT: &str = "Next light";
+pub(crate) const PREVIOUS_LIGHT: &str = "Previous light";
+pub(crate) const SOLO: &str = "Solo the selected light";
+pub(crate) const MUTE: &str = "Mute the selected light";
+pub(crate) const BRIGHTER: &str = "Brighter light";
+pub(crate) const DIMMER: &str = "Dimmer light";
+pub(crate) const BALANCE: &str = "Balance brightness";
+pub(crate) const SHOW_LIGHT_VOLUME: &str = "Light volume…";
+
+pub(crate) const TRY_PRESETS: &str = "Try presets…";
+pub(crate) const AUTOMATIC_TRANSFER: &str = "Automatic transfer function";
+pub(crate) const INVERT_TRANSFER: &str = "Invert opacities";
+pub(crate) const IMPORT_TRANSFER: &str = "Import transfer function…";
+pub(crate) const EXPORT_TRANSFER: &str = "Export transfer function…";
+
+/// The window in which a command is found, and its field.
+pub(crate) const FIND: &str = "Find a command";
+pub(crate) const FIND_HINT: &str = "What do you want to do?";
+pub(crate) const NOTHING_FOUND: &str = "Nothing is called like that";
+
+/// To look from a side.
+pub(crate) fn look_from(view: &str) -> String {
+    format!("Look: {view}")
+}
+
+/// To take the lights of a rig.
+pub(crate) fn use_rig(rig: &str) -> String {
+    format!("Lights: {rig}")
+}
+
+/// To take a preset.
+pub(crate) fn use_preset(domain: &str, title: &str) -> String {
+    format!("Preset: {domain}, {title}")
+}
+
+/// To take the colours of a map, perhaps from its end to its start.
+pub(crate) fn use_colors(map: &str, reversed: bool) -> String {
+    format!("Colours: {map}{}", if reversed { ", reversed" } else { "" })
+}
+
+/// To keep a view under a digit …
+pub(crate) fn store_view(slot: u8) -> String {
+    format!("Store view {slot}")
+}
+
+/// … and to look that way again.
+pub(crate) fn recall_view(slot: u8) -> String {
+    format!("Recall view {slot}")
+}
+
+/// The keys that keep a view …
+pub(crate) fn store_view_keys(slot: u8) -> String {
+    format!("Ctrl+Shift+{slot}")
+}
+
+/// … and those that look that way again.
+pub(crate) fn recall_view_keys(slot: u8) -> String {
+    format!("Ctrl+{slot}")
+}

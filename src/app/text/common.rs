@@ -1,0 +1,20 @@
+//! What many parts of the window say.
+
+/// What is rarely needed, folded away.
+pub(crate) const ADVANCED: &str = "Advanced";
+
+/// Behind a factor.
+pub(crate) const TIMES: &str = " ×";
+
+/// Behind an angle.
+pub(crate) const DEGREES: &str = "°";
+
+/// What the button that puts a value back is called.
+pub(crate) fn reset(label: &str) -> String {
+    format!("Reset {label}")
+}
+
+/// The same, as its tip.
+pub(crate) fn reset_tip(label: &str) -> String {
+    reset(&label.to_lowercase())
+}

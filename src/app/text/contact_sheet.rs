@@ -1,0 +1,27 @@
+//! The contact sheet.
+
+use std::fmt::Display;
+
+pub(crate) const LIGHTS: &str = "Try lights";
+pub(crate) const PRESETS: &str = "Try presets";
+
+pub(crate) const TRYING: &str = "trying them on your volume";
+pub(crate) const AGAIN: &str = "Again, as it looks now";
+/// Why the pictures are small and coarse.
+pub(crate) const QUALITY: &str = "the picture's own size and quality come with a click";
+pub(crate) const USE_TIP: &str = "Use it";
+
+/// What screen readers call a picture of a look.
+pub(crate) fn use_look(name: &str) -> String {
+    format!("Use {name}")
+}
+
+/// A light at an hour of a clock face.
+pub(crate) fn at_hour(light: &str, hour: u32) -> String {
+    format!("{light} at {hour} o'clock")
+}
+
+/// The system is out of threads.
+pub(crate) fn no_thread(err: impl Display) -> String {
+    format!("no thread for the pictures: {err}")
+}

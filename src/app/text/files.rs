@@ -1,0 +1,95 @@
+//! Asking for files, and what is wrong with one.
+
+use std::fmt::Display;
+use std::path::Path;
+
+/// How the user is asked for a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Question {
+    /// Of the desktop's dialog, and of the window for typing a path.
+    pub title: &'static str,
+    /// What can be typed, in the empty field of that window.
+    pub hint: &'static str,
+    /// Its button.
+    pub verb: &'static str,
+}
+
+pub(crate) const OPEN_VOLUME: Question = Question {
+    title: "Open volume",
+    hint: "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
+    verb: "Open",
+};
+pub(crate) const LOAD_SETTINGS: Question = Question {
+    title: "Load settings",
+    hint: "a .json file, or a .png or .exr picture that was exported",
+    verb: "Load",
+};
+pub(crate) const COMPARE_SETTINGS: Question =
+    Question { title: "Compare with settings", hint: LOAD_SETTINGS.hint, verb: "Compare" };
+pub(crate) const SAVE_SETTINGS: Question =
+    Question { title: "Save settings", hint: "a .json file", verb: "Save" };
+pub(crate) const IMPORT_TRANSFER: Question = Question {
+    title: "Import transfer function",
+    hint: "ParaView, AGAVE .json, Slicer .vp, Inviwo .itf, Voreen .tfi, MRIcroGL .clut, ImageJ .lut",
+    verb: "Import",
+};
+pub(crate) const EXPORT_TRANSFER: Question = Question {
+    title: "Export transfer function",
+    hint: "ParaView .json, Slicer .vp or .vp.json, Inviwo .itf, MRIcroGL .clut, ImageJ .lut, \
+           our own .preset.json",
+    verb: "Write",
+};
+pub(crate) const EXPORT_PICTURE: Question = Question {
+    title: "Export picture",
+    hint: ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turn",
+    verb: "Use",
+};
+pub(crate) const EXPORT_LIGHT: Question = Question {
+    title: "Export light volume",
+    hint: "a .nrrd file for the volume, a .png file for the slice",
+    verb: "Export",
+};
+
+/// Kinds of files, which the desktop's dialog lists.
+pub(crate) const VOLUMES: &str = "Volumes";
+pub(crate) const ALL_FILES: &str = "All files";
+pub(crate) const SETTINGS_AND_PICTURES: &str = "Settings and pictures";
+pub(crate) const SETTINGS: &str = "Settings";
+pub(crate) const TRANSFER_FUNCTIONS: &str = "Transfer functions";
+pub(crate) const PICTURES: &str = "Pictures";
+pub(crate) const LIGHT_VOLUME: &str = "Light volume";
+pub(crate) const SLICE: &str = "Slice";
+
+/// The window for typing a path.
+pub(crate) const PATH: &str = "Path";
+pub(crate) const CANCEL: &str = "Cancel";
+
+/// Bytes that are no UTF-8.
+pub(crate) fn no_text(err: impl Display) -> String {
+    format!("it is no text: {err}")
+}
+
+/// A picture that this program did not export.
+pub(crate) fn no_settings(picture: &Path) -> String {
+    format!("the picture carries no settings ({}); export it from this program", picture.display())
+}
+
+/// A file of settings that cannot be read …
+pub(crate) fn settings_not_read(file: &Path, err: impl Display) -> String {
+    format!("could not read the settings: {err} ({})", file.display())
+}
+
+/// … or says what cannot be.
+pub(crate) fn settings_not_used(file: &Path, err: impl Display) -> String {
+    format!("could not use the settings: {err} ({})", file.display())
+}
+
+/// A file of another program that cannot be read …
+pub(crate) fn transfer_not_read(file: &Path, err: impl Display) -> String {
+    format!("could not read the transfer function: {err} ({})", file.display())
+}
+
+/// … or says what cannot be.
+pub(crate) fn transfer_not_used(file: &Path, err: impl Display) -> String {
+    format!("could not use the transfer function: {err} ({})", file.display())
+}

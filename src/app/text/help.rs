@@ -1,0 +1,57 @@
+//! The windows of help, and the hints over the first picture.
+
+/// The window of keys and mouse, and the command that shows it.
+pub(crate) const KEYS_AND_MOUSE: &str = "Keys and mouse";
+
+/// What the mouse does, in the picture and in the editor.
+pub(crate) const MOUSE: [(&str, &str); 18] = [
+    ("Drag the picture", "orbit"),
+    ("Double click on the volume", "turn about what is there"),
+    ("Hold L and drag", "turn the selected light"),
+    ("Arrow keys, with Shift ten times", "turn it by a degree"),
+    ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "keep a view, look that way again"),
+    ("Shift-drag or middle drag", "pan"),
+    ("Right-drag the picture", "level and window of the curve"),
+    ("Wheel", "nearer to the pointer, or further"),
+    ("Drag a light's handle", "move the light"),
+    ("Wheel on a perspective light's handle", "its distance"),
+    ("Drag the square on a hood's cone", "open or close the hood"),
+    ("Drag the sides of the crop box", "see less, or more again"),
+    ("Drag or wheel on the clip plane's square", "move it; turn it by the arrow"),
+    ("Drag the line between two looks", "see more of one of them"),
+    ("Click in the transfer function", "add a point"),
+    ("Drag around points, or click with Shift", "select several"),
+    ("Drag a point, or arrow keys", "move what is selected"),
+    ("Double click, or Delete", "remove it"),
+];
+
+/// The window that says what this is, and the command that shows it.
+pub(crate) const ABOUT: &str = "About Chiaroscuro";
+pub(crate) const PURPOSE: &str =
+    "See the shape of volume data: true volumetric shadows by sheet-buffer splatting.";
+pub(crate) const AFTER: &str = "After Splatting With Shadows (Nulkar and Mueller, 2001).";
+pub(crate) const SOFTWARE_ADAPTER: &str =
+    "This is a software adapter: previews are coarser, the final picture is the same.";
+
+/// Over the first picture: what can be done, and what comes of it.
+pub(crate) const HINTS: [(&str, &str); 3] = [
+    ("Drag a light's disc", "the shadows follow your hand"),
+    ("Drag the picture, turn the wheel", "to look from elsewhere, and nearer"),
+    ("Drop a file on the window", "Ctrl+O opens one, Ctrl+P finds everything else"),
+];
+pub(crate) const CLOSE_HINTS: &str = "Close the hints";
+
+/// The program and its version.
+pub(crate) fn program(version: &str) -> String {
+    format!("Chiaroscuro {version}")
+}
+
+/// What draws the pictures …
+pub(crate) fn adapter(name: &str) -> String {
+    format!("Graphics adapter {name}")
+}
+
+/// … and by which interface and driver.
+pub(crate) fn interface(driver: &str) -> String {
+    format!("Interface {driver}")
+}

@@ -1,0 +1,41 @@
+//! The menu bar; the names of commands are with the commands.
+
+pub(crate) const FILE: &str = "File";
+pub(crate) const EDIT: &str = "Edit";
+pub(crate) const VIEW: &str = "View";
+pub(crate) const LIGHT: &str = "Light";
+pub(crate) const HELP: &str = "Help";
+
+pub(crate) const OPEN_RECENT: &str = "Open recent";
+pub(crate) const KEEP_LOOK_TIP: &str =
+    "Lights, transfer function and shadows stay when another file is opened";
+
+pub(crate) const LOOK_FROM: &str = "Look from";
+pub(crate) const KEPT_VIEWS: &str = "Kept views";
+pub(crate) const PERSPECTIVE: &str = "Perspective";
+pub(crate) const ORTHOGRAPHIC: &str = "Orthographic";
+
+/// How long a preview may take.
+pub(crate) const WHILE_MOVING: &str = "While something moves";
+pub(crate) const AUTOMATIC: &str = "Automatic";
+pub(crate) const SMOOTH: &str = "Smooth (16 ms)";
+pub(crate) const BALANCED: &str = "Balanced (33 ms)";
+pub(crate) const SHARP: &str = "Sharp (66 ms)";
+pub(crate) const SHARPEST: &str = "Sharpest (200 ms)";
+
+/// The colours of the window.
+pub(crate) const DARK: &str = "Dark";
+pub(crate) const BRIGHT: &str = "Light";
+pub(crate) const AS_SYSTEM: &str = "As the system";
+
+pub(crate) const USE_RIG: &str = "Use other lights";
+
+/// A switch and its key.
+pub(crate) fn with_key(label: &str, key: &str) -> String {
+    format!("{label} ({key})")
+}
+
+/// The open volume, its voxels and their size.
+pub(crate) fn title(name: &str, [nx, ny, nz]: [usize; 3], [sx, sy, sz]: [f64; 3]) -> String {
+    format!("{name} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3} mm")
+}

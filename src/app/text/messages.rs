@@ -1,0 +1,66 @@
+//! What went wrong, or went well, in the status bar.
+
+use std::path::Path;
+
+pub(crate) const DETAILS: &str = "Details";
+pub(crate) const DISMISS: &str = "Dismiss";
+/// The window of details.
+pub(crate) const WHAT_HAPPENED: &str = "What happened";
+
+pub(crate) const NOTHING_TO_GO_ON_WITH: &str = "There is nothing to go on with";
+pub(crate) const OPENING_CANCELLED: &str = "Opening was cancelled";
+pub(crate) const PRESET_NOT_APPLIED: &str = "the preset was not applied";
+pub(crate) const TRANSFER_NOT_IMPORTED: &str = "the transfer function was not imported";
+pub(crate) const TRANSFER_NOT_WRITTEN: &str = "the transfer function was not written";
+
+pub(crate) const NO_PICTURE: &str = "There is no picture to export yet";
+pub(crate) const EXPORT_RUNS: &str = "A picture is being exported";
+pub(crate) const EXPORT_CANCELLED: &str = "Exporting was cancelled";
+pub(crate) const PICTURE_NOT_EXPORTED: &str = "the picture was not exported";
+pub(crate) const PICTURE_COPIED: &str = "The picture is on the clipboard";
+pub(crate) const PICTURE_NOT_COPIED: &str = "the picture was not copied";
+
+pub(crate) const BALANCE_NOT_MEASURED: &str = "the balance could not be measured";
+pub(crate) const LOOKS_NOT_TRIED: &str = "looks could not be tried";
+pub(crate) const LIGHT_VOLUME_NOT_SHOWN: &str = "the light volume could not be shown";
+pub(crate) const LIGHT_VOLUME_NOT_EXPORTED: &str = "the light volume was not exported";
+
+pub(crate) const NOT_RENDERED: &str = "the picture could not be rendered";
+pub(crate) const DEVICE_LOST: &str = "the graphics device was lost; start again to go on";
+/// Why the window cannot start.
+pub(crate) const NO_DEVICE: &str = "the window has no wgpu device";
+
+/// A picture, a light volume or a turntable is in its file.
+pub(crate) fn exported(path: &Path) -> String {
+    format!("Exported {}", path.display())
+}
+
+/// A transfer function is in its file.
+pub(crate) fn wrote(path: &Path) -> String {
+    format!("Wrote {}", path.display())
+}
+
+/// A view is kept under a digit.
+pub(crate) fn view_kept(slot: u8) -> String {
+    format!("View {slot} is kept: Ctrl+{slot} looks that way again")
+}
+
+/// There is no view under a digit.
+pub(crate) fn no_view_kept(slot: u8) -> String {
+    format!("No view is kept as {slot}: Ctrl+Shift+{slot} keeps one")
+}
+
+/// What became of the settings when the device was lost: they are in a file …
+pub(crate) fn rescued(path: &Path) -> String {
+    format!("the settings were saved to {}", path.display())
+}
+
+/// … or they are not.
+pub(crate) fn not_rescued(why: &str) -> String {
+    format!("the settings could not be saved: {why}")
+}
+
+/// Why the device was lost, and what became of the settings.
+pub(crate) fn lost_and_rescued(why: &str, rescue: &str) -> String {
+    format!("{why}; {rescue}")
+}

@@ -1,0 +1,34 @@
+//! "Why is this dark?": what is under the pointer, and what of every light gets there.
+
+pub(crate) const NOTHING: &str = "Nothing is seen here";
+
+/// Why a light does not light a point, or is not weakened on its way; behind the name of the light.
+pub(crate) const OFF: &str = "off";
+pub(crate) const OUTSIDE_HOOD: &str = "outside its hood";
+pub(crate) const FACES_AWAY: &str = "the surface faces away from it";
+pub(crate) const CASTS_NO_SHADOWS: &str = "casts no shadows";
+pub(crate) const IN_ITS_WAY: &str = "nothing arrives: something stands in its way";
+
+/// What is there: value, opacity, voxel, and the place in millimetres.
+pub(crate) fn found(value: f64, opacity: f64, voxel: [f64; 3], mm: [f64; 3]) -> String {
+    let ([i, j, k], [x, y, z]) = (voxel, mm);
+    format!(
+        "Value {value:.4}, opacity {:.0} %\nvoxel {i:.0}, {j:.0}, {k:.0} · {x:.1}, {y:.1}, {z:.1} mm",
+        100.0 * opacity,
+    )
+}
+
+/// A light, and what of it gets there or why nothing does.
+pub(crate) fn of_light(name: &str, reason: &str) -> String {
+    format!("{name}: {reason}")
+}
+
+/// How much of a light gets there, as a share.
+pub(crate) fn arrives(share: f64) -> String {
+    format!("{:.0} % arrives", 100.0 * share)
+}
+
+/// At what angle, in degrees; behind how much.
+pub(crate) fn at_angle(degrees: f64) -> String {
+    format!(", at {degrees:.0}° to the surface")
+}

@@ -1,0 +1,84 @@
+//! The transfer function editor.
+
+use super::{Named, named};
+
+/// What screen readers call the plot.
+pub(crate) const PLOT: &str = "Transfer function";
+
+pub(crate) const EYE: Named = named("Eye", "Edit what the eye sees");
+pub(crate) const LIGHT: Named = named("Light", "Edit what light meets");
+/// Instead of the tip, while light meets what the eye sees.
+pub(crate) const LINKED_TIP: &str = "Light follows the eye's opacity; unlink it in the section Shadows";
+pub(crate) const HINT: &str = "Click adds a point, a drag selects, the wheel zooms";
+
+/// What screen readers call the points of either curve, before their number.
+pub(crate) const EYE_POINT: &str = "Eye point";
+pub(crate) const LIGHT_POINT: &str = "Light point";
+
+pub(crate) const AUTOMATIC: Named = named("Automatic", "Puts the automatic transfer function back");
+pub(crate) const LOG_HISTOGRAM: Named = named("Log histogram", "Raises rare values in the histogram");
+pub(crate) const SHOW_ALL: Named = named("Show all", "Shows all values again");
+
+/// At the upper end of the plot.
+pub(crate) const OPACITY_ONE: &str = "opacity 1";
+
+pub(crate) const PRESETS: &str = "Presets";
+pub(crate) const TRY_PRESETS_TIP: &str = "Shows each on your volume";
+
+pub(crate) const COLORS: &str = "Colours";
+pub(crate) const COLOR_MAP_TIP: &str = "Colours the visible values";
+pub(crate) const REVERSED: &str = "reversed";
+/// Of reading a transfer function from a file and writing it.
+pub(crate) const FILES_TIP: &str =
+    "ParaView, Slicer, Inviwo, MRIcroGL and ImageJ; Voreen and AGAVE can be read";
+pub(crate) const MIX_AS_SEEN: Named = named(
+    "Mix as seen",
+    "Mixes colours between points in Oklab: lightness is even, and blue to yellow has no glare",
+);
+pub(crate) const INVERT: Named = named("Invert opacities", "What is dense becomes clear");
+
+/// Of the whole curve.
+pub(crate) const OPACITY: Named = named("Opacity", "The highest opacity: all others keep their share of it");
+pub(crate) const LEVEL: Named = named("Level", "Moves all points along the values");
+pub(crate) const WINDOW: Named = named("Window", "Spreads all points around their middle");
+
+pub(crate) const SHAPE: &str = "Shape";
+pub(crate) const FIT: Named = named("Fit", "Spreads the points over the values that occur");
+pub(crate) const BUMP: Named = named("Bump", "Adds a smooth bump of opacity: a band of values");
+pub(crate) const BOX: Named = named("Box", "Adds a band of values with sharp ends");
+
+pub(crate) const POINT_VALUE: &str = "Value";
+pub(crate) const POINT_OPACITY: &str = "Opacity";
+pub(crate) const POINT_COLOR: &str = "Colour of the point";
+pub(crate) const REMOVE: &str = "Remove";
+
+pub(crate) const AS_SEEN: Named =
+    named("As seen", "Lightness, chroma and hue: equal steps look equally large");
+pub(crate) const LIGHTNESS: &str = "Lightness";
+pub(crate) const CHROMA: &str = "Chroma";
+pub(crate) const HUE: &str = "Hue";
+
+pub(crate) const WAY_TIP: &str = "The way to the next point";
+pub(crate) const STRAIGHT: &str = "Straight";
+pub(crate) const SMOOTH: &str = "Smooth";
+pub(crate) const STEP: &str = "Step";
+
+/// A point of either curve, by its number from 1.
+pub(crate) fn point(of: &str, number: usize) -> String {
+    format!("{of} {number}")
+}
+
+/// Instead of a value, where several points are selected.
+pub(crate) fn several(count: usize) -> String {
+    format!("{count} points")
+}
+
+/// The tip of the button that colours the values by a map the other way round.
+pub(crate) fn reversed_tip(map: &str) -> String {
+    format!("{map} from the high end")
+}
+
+/// What is under the pointer: a value with its digits, and how opaque that is.
+pub(crate) fn at_pointer(value: &str, opacity: f64) -> String {
+    format!("{value} · opacity {opacity:.2}")
+}

@@ -1,0 +1,143 @@
+//! What the window says is in `src/app/text/`: no other file of the window holds words for people.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// In front of words that people do not see in the window, in the same statement: names of things for the
+/// library of the window, what developers read, and errors, which their types word.
+const NOT_SHOWN: [&str; 10] = [
+    "Id::unique(",
+    "id_salt(",
+    "Grid::new(",
+    "load_texture(",
+    "advanced(ui,",
+    "log::",
+    "#[error(",
+    "reason =",
+    "debug_struct(",
+    "write!(f,",
+];
+
+/// A string and what stands before it in its statement.
+#[derive(Debug, PartialEq)]
+struct Literal {
+    line: usize,
+    before: String,
+    text: String,
+}
+
+/// All strings of a source text that are neither in comments nor in its tests.
+fn literals(source: &str) -> Vec<Literal> {
+    let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let mut found = Vec::new();
+    let mut before = String::new();
+    let mut line = 1;
+    let mut rest = source.chars().peekable();
+    while let Some(c) = rest.next() {
+        line += usize::from(c == '\n');
+        match c {
+            '/' if rest.peek() == Some(&'/') => {
+                while rest.peek().is_some_and(|&c| c != '\n') {
+                    rest.next();
+                }
+            }
+            '\'' if rest.peek() == Some(&'"') => {
+                rest.next();
+            }
+            '"' => {
+                let mut text = String::new();
+                let first_line = line;
+                while let Some(c) = rest.next() {
+                    line += usize::from(c == '\n');
+                    match c {
+                        '"' => break,
+                        '\\' => text.extend(rest.next().filter(|c| *c == '"')),
+                        c => text.push(c),
+                    }
+                }
+                found.push(Literal { line: first_line, before: before.clone(), text });
+            }
+            ';' | '{' | '}' => before.clear(),
+            c => before.push(c),
+        }
+    }
+    found
+}
+
+/// Whether a text has words as sentences and labels have them: two in a row, or one with a capital. What stands
+/// in braces is filled in.
+fn is_for_people(text: &str) -> bool {
+    let mut depth = 0;
+    let shown: String = text
+        .chars()
+        .filter(|c| {
+            depth += i32::from(*c == '{') - i32::from(*c == '}');
+            depth == 0 && *c != '}'
+        })
+        .collect();
+    let letters = |word: &str| word.chars().filter(|c| c.is_alphabetic()).count();
+    let words: Vec<&str> = shown.split_whitespace().filter(|word| letters(word) > 0).collect();
+    // Names of variables have lines in them.
+    let capital =
+        |word: &&str| letters(word) > 1 && word.starts_with(char::is_uppercase) && !word.contains('_');
+    words.len() > 1 || words.iter().any(capital)
+}
+
+fn is_shown(literal: &Literal) -> bool {
+    is_for_people(&literal.text) && !NOT_SHOWN.iter().any(|name| literal.before.contains(name))
+}
+
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    let entries = fs::read_dir(folder).expect("the sources are here");
+    for entry in entries {
+        let path = entry.expect("the sources can be read").path();
+        if path.is_dir() {
+            files(&path, found);
+        } else {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn the_window_takes_its_words_from_one_module() {
+    let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
+    let mut found = Vec::new();
+    files(&app, &mut found);
+    let (texts, others): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|path| path.starts_with(app.join("text")));
+    let words = |path: &PathBuf| literals(&fs::read_to_string(path).unwrap());
+    let count: usize = texts.iter().map(|path| words(path).len()).sum();
+    assert!(count > 300, "only {count} texts were found where all of them should be");
+    let strays: Vec<String> = others
+        .iter()
+        .flat_map(|path| {
+            let strays = words(path).into_iter().filter(is_shown);
+            strays.map(|Literal { line, text, .. }| format!("{}:{line}: {text}", path.display()))
+        })
+        .collect();
+    assert!(strays.is_empty(), "these belong into src/app/text:\n{}", strays.join("\n"));
+}
+
+#[test]
+fn words_that_stray_are_noticed() {
+    let shown = |source: &str| literals(source).iter().filter(|literal| is_shown(literal)).count();
+    for source in [
+        "ui.label(\"Width\");",
+        "ui.label(format!(\"{count} of {total} parts\"));",
+        "log::warn!(\"no window\"); ui.label(\"no window\");",
+        "ui.button(\"Say \\\"yes\\\"\");",
+        "let quote = '\"'; ui.label(\"casts shadows\");",
+    ] {
+        assert_eq!(shown(source), 1, "{source}");
+    }
+    for source in [
+        "let id = Id::unique(\"crop side\");",
+        "// ui.label(\"Width\");",
+        "format!(\"{Name:?}\")",
+        "#[error(\"the window is closed\")]",
+        "#[cfg(test)]\nmod tests { ui.label(\"Width\"); }",
+    ] {
+        assert_eq!(shown(source), 0, "{source}");
+    }
+}
