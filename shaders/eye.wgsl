@@ -67,13 +67,52 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
     return gradient_of_sheets(pixel, depth_of(eye.frame, k), vec3f(across, down, deep), vec3f(0.0));
 }
 
+// The light from the material of slab k where the ray crosses it.
+fn shaded(ray: Ray, pixel: vec2u, k: i32, material: vec3f) -> vec3f {
+    let depth = depth_of(eye.frame, f32(k));
+    let p = ray.origin + ray.direction * depth;
+    let level = select(0.0, stretch_level(eye.frame, depth), STRETCH);
+    var slope: vec3f;
+    if (SHEET_GRADIENTS) {
+        slope = gradient_between_sheets(vec2f(pixel), f32(k));
+    } else {
+        if (GRADIENT_TEXTURE) {
+            let coordinates = (p + 4.5) * grid.pyramid_scale;
+            slope = textureSampleLevel(gradients, clamped, coordinates, level).xyz;
+        } else {
+            slope = index_gradient(p, level);
+        }
+        slope = gradient_to_scene(eye.space, slope);
+    }
+    slope += gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
+    return shade(p, slope, material);
+}
+
+// The next slab, from `first` on, in a cell that may show something; or one beyond the last. Only this is a loop of
+// its own: in one for samples that turn out empty, too, all lanes of a vector would wait for the slowest.
+fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
+    var k = first;
+    loop {
+        if (k > last) {
+            break;
+        }
+        let cell = cell_at(walk, k);
+        let empty = near(distances, cell).x - grid.dilation;
+        if (empty <= 0) {
+            break;
+        }
+        k = leap(walk, k, cell, empty);
+    }
+    return k;
+}
+
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3u,
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_id) local: vec3u,
 ) {
-    let pixel = tile_of(group, groups.y, eye.runs) * 8u + local.xy + vec2u(0u, eye.first_row);
+    let pixel = tile_of(group, groups.y, eye.runs) * 8u + in_tile(local.xy) + vec2u(0u, eye.first_row);
     if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
         return;
     }
@@ -81,62 +120,30 @@ fn main(
     let span = span_within(eye.seen, ray);
     let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
     let walk = walk_along(eye.frame, ray);
-    var k = inside.x;
+    var k = next_seen(walk, inside.x, inside.y);
     var color = vec3f(0.0);
     var t = 1.0;
+    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
+    // there, not from the middle.
     loop {
-        // Find the next slab with material: leap over empty cells, then look at the sheet. These are
-        // loops of their own because software drivers save work only by leaving a loop.
-        var material = vec4f(0.0);
-        loop {
-            loop {
-                if (k > inside.y) {
-                    break;
-                }
-                let cell = cell_at(walk, k);
-                let empty = near(distances, cell).x - grid.dilation;
-                if (empty <= 0) {
-                    break;
-                }
-                k = leap(walk, k, cell, empty);
-            }
-            if (k > inside.y) {
-                break;
-            }
-            material = slab_material(eye.frame, ray, f32(k));
-            material.a *= share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab);
-            if (material.a > 0.0) {
-                break;
-            }
-            k += 1;
-        }
         if (k > inside.y) {
             break;
         }
-        let depth = depth_of(eye.frame, f32(k));
-        let p = ray.origin + ray.direction * depth;
-        let level = select(0.0, stretch_level(eye.frame, depth), STRETCH);
-        var slope: vec3f;
-        if (SHEET_GRADIENTS) {
-            slope = gradient_between_sheets(vec2f(pixel), f32(k));
-        } else {
-            if (GRADIENT_TEXTURE) {
-                let coordinates = (p + 4.5) * grid.pyramid_scale;
-                slope = textureSampleLevel(gradients, clamped, coordinates, level).xyz;
-            } else {
-                slope = index_gradient(p, level);
-            }
-            slope = gradient_to_scene(eye.space, slope);
+        var material = slab_material(eye.frame, ray, f32(k));
+        material.a *= share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab);
+        if (material.a > 0.0) {
+            let rgb = shaded(ray, pixel, k, material.rgb);
+            let passed = exp(-material.a * eye.frame.slab * ray.obliquity);
+            color += t * (1.0 - passed) * rgb;
+            t *= passed;
         }
-        slope += gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
-        let rgb = shade(p, slope, material.rgb);
-        let passed = exp(-material.a * eye.frame.slab * ray.obliquity);
-        color += t * (1.0 - passed) * rgb;
-        t *= passed;
         if (t < eye.dark) {
             break;
         }
-        k += 1;
+        k = next_seen(walk, k + 1, inside.y);
+        if (k > inside.y) {
+            break;
+        }
     }
     textureStore(picture, pixel, vec4f(color, 1.0 - t));
 }

@@ -202,6 +202,39 @@ fn footprint_of(voxel: vec3u) -> Footprint {
     return Footprint(across / spread - view.first_pixel, slab, pixels, slabs, final_slab, is_seen);
 }
 
+// A voxel that the chunk completes, and the cells of its brick that are left to the lane.
+struct Due {
+    is_due: bool,
+    left: vec2u,
+    voxel: vec3u,
+    found: Footprint,
+}
+
+// The lane's voxel in the next of its cells that the chunk completes.
+fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
+    let in_cell = vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u);
+    var next: Due;
+    next.left = cells;
+    loop {
+        let left = next.left;
+        if (all(left == vec2u(0u))) {
+            break;
+        }
+        let low = left.x != 0u;
+        let cell = select(firstTrailingBit(left.y) + 32u, firstTrailingBit(left.x), low);
+        next.left = select(vec2u(left.x, left.y & (left.y - 1u)), vec2u(left.x & (left.x - 1u), left.y), low);
+        let place = vec3u(cell, cell >> 2u, cell >> 4u) & vec3u(3u);
+        next.voxel = unpacked(brick) * 8u + place * 2u + in_cell;
+        let found = footprint_of(next.voxel);
+        next.found = found;
+        next.is_due = found.is_seen && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
+        if (next.is_due) {
+            break;
+        }
+    }
+    return next;
+}
+
 // Eight lanes to a cell of 2³ voxels, and every eighth cell of the brick to the same lanes.
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -210,32 +243,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         return;
     }
     let brick = bricks[listed];
-    var left = brick.yz & vec2u(0x01010101u << (lane / 8u));
-    let in_cell = vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u);
-    var found: Footprint;
-    var voxel: vec3u;
+    var next = next_due(brick.x, lane, brick.yz & vec2u(0x01010101u << (lane / 8u)));
+    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
+    // there, not from the middle.
     loop {
-        // The next listed cell that this chunk completes. A loop of its own because software drivers
-        // save work only by leaving a loop.
-        var is_due = false;
-        loop {
-            if (all(left == vec2u(0u))) {
-                break;
-            }
-            let low = left.x != 0u;
-            let cell = select(firstTrailingBit(left.y) + 32u, firstTrailingBit(left.x), low);
-            left = select(vec2u(left.x, left.y & (left.y - 1u)), vec2u(left.x & (left.x - 1u), left.y), low);
-            let place = vec3u(cell, cell >> 2u, cell >> 4u) & vec3u(3u);
-            voxel = unpacked(brick.x) * 8u + place * 2u + in_cell;
-            found = footprint_of(voxel);
-            is_due = found.is_seen && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
-            if (is_due) {
-                break;
-            }
-        }
-        if (!is_due) {
+        if (!next.is_due) {
             break;
         }
+        let found = next.found;
         var value: f32;
         if (FIRST_TOUCH) {
             let first = clamp(i32(ceil(found.slab - 2.0 * found.slabs)), 0, i32(view.frame.slab_count) - 1);
@@ -245,6 +260,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         } else {
             value = gather_narrow(found.pixel, found.slab);
         }
-        textureStore(attenuation, voxel, vec4f(value));
+        textureStore(attenuation, next.voxel, vec4f(value));
+        next = next_due(brick.x, lane, next.left);
+        if (!next.is_due) {
+            break;
+        }
     }
 }

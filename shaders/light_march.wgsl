@@ -10,15 +10,64 @@
 
 // Distances: r to the nearest cell whose light is looked up, g to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
+// What is to be marched (src/plan/read_tiles.rs): column, row from bit 15, and whether light arrives there for
+// the first time. The list may be longer.
+@group(0) @binding(5) var<storage, read> tiles: array<u32>;
+
+// How far the light has come.
+struct Reached {
+    // The first of four slabs that share a texel of the ring …
+    k: i32,
+    // … the next of them to be passed …
+    slab: i32,
+    // … and what they deposit if nothing attenuates the light from there on.
+    deposits: vec4f,
+}
+
+// The next slab that attenuates light, or the end: leaps over what nobody reads, and passes the light on where
+// it is read. One loop for both, across texels, because all lanes of a vector wait there for the slowest.
+fn next_attenuating(walk: Walk, pixel: vec2u, inside: vec2i, t: f32, start: Reached) -> Reached {
+    var at = start;
+    loop {
+        if (at.k >= i32(march.end)) {
+            break;
+        }
+        let cell = cell_at(walk, at.slab);
+        let found = near(distances, cell);
+        // Whether any of the four is read is found out at the first.
+        let next_read = select(0, leap(walk, at.k, cell, found.x - march.reach), at.slab == at.k);
+        let is_read = next_read < at.k + 4;
+        let shines = t > march.dark && at.slab <= inside.y;
+        if (is_read && shines && at.slab >= inside.x && found.y <= grid.dilation) {
+            break;
+        }
+        let behind = select(at.k + 4, leap(walk, at.slab, cell, found.y - grid.dilation), shines);
+        at.slab = min(behind, at.k + 4);
+        let is_passed = at.slab == at.k + 4;
+        if (is_read && is_passed) {
+            keep(pixel, u32(at.k), at.deposits);
+        }
+        if (!is_read || is_passed) {
+            at.k = select(next_read & ~3, at.k + 4, is_read);
+            at.slab = at.k;
+            at.deposits = vec4f(t);
+        }
+    }
+    return at;
+}
 
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_id) local: vec3u,
 ) {
-    let id = tile_of(group, groups.y, march.runs) * 8u + local.xy + vec2u(0u, march.first_row);
-    if (id.x >= march.frame.size.x || id.y >= march.end_row) {
+    let listed = group.y * 16384u + group.x;
+    if (listed >= march.tiles) {
+        return;
+    }
+    let tile = tiles[listed];
+    let id = vec2u(tile & 32767u, tile >> 15u & 32767u) * 8u + in_tile(local.xy);
+    if (any(id >= march.frame.size)) {
         return;
     }
     let ray = ray_of(march.frame, vec2f(id));
@@ -26,76 +75,32 @@ fn main(
     let inside = slabs_within(march.frame, span, slabs_inside(march.frame, ray));
     let pixel = id.y * march.frame.size.x + id.x;
     let end = i32(march.end);
-    // The first of four slabs that share a texel of the ring.
-    var k = i32(march.begin);
-    var t = select(transmittance[pixel], unattenuated(vec2f(id)), march.begin == 0u);
+    var t = select(transmittance[pixel], unattenuated(vec2f(id)), tile >> 31u == 1u);
     let walk = walk_along(march.frame, ray);
+    let begin = i32(march.begin);
+    var at = next_attenuating(walk, id, inside, t, Reached(begin, begin, vec4f(t)));
+    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
+    // there, not from the middle.
     loop {
-        // Cheap steps in loops of their own: leap over what nobody reads, and pass the light on where
-        // nothing attenuates it. Software drivers save work only by leaving a loop.
-        loop {
-            loop {
-                if (k >= end) {
-                    break;
-                }
-                let cell = cell_at(walk, k);
-                let next = leap(walk, k, cell, near(distances, cell).x - march.reach);
-                if (next < k + 4) {
-                    break;
-                }
-                k = next & ~3;
-            }
-            var attenuates = false;
-            loop {
-                if (k >= end) {
-                    break;
-                }
-                let cell = cell_at(walk, k);
-                let found = near(distances, cell);
-                let is_read = leap(walk, k, cell, found.x - march.reach) < k + 4;
-                attenuates = is_read && t > march.dark && k + 3 >= inside.x && k <= inside.y
-                    && leap(walk, k, cell, found.y - grid.dilation) < k + 4;
-                if (attenuates || !is_read) {
-                    break;
-                }
-                keep(id, u32(k), vec4f(t));
-                k += 4;
-            }
-            if (attenuates || k >= end) {
-                break;
-            }
-        }
-        if (k >= end) {
+        if (at.k >= end) {
             break;
         }
-        let last = min(k + 4, end);
-        var deposits = vec4f(t);
-        var slab = k;
-        loop {
-            loop {
-                if (slab >= last) {
-                    break;
-                }
-                let attenuates = near(distances, cell_at(walk, slab)).y <= grid.dilation;
-                if (attenuates && t > march.dark && slab >= inside.x && slab <= inside.y) {
-                    break;
-                }
-                slab += 1;
-            }
-            if (slab >= last) {
-                break;
-            }
-            let place = ray.origin + ray.direction * depth_of(march.frame, f32(slab));
-            let share = share_that_shades(march.shading_cut, place);
-            let extinction = slab_material(march.frame, ray, f32(slab)).a * share;
-            let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
-            deposits = with_deposit(deposits, u32(slab), deposited(t, tau));
-            t *= exp(-tau);
-            deposits = with_deposits_behind(deposits, u32(slab), t);
-            slab += 1;
+        let place = ray.origin + ray.direction * depth_of(march.frame, f32(at.slab));
+        let share = share_that_shades(march.shading_cut, place);
+        let extinction = slab_material(march.frame, ray, f32(at.slab)).a * share;
+        let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
+        at.deposits = with_deposit(at.deposits, u32(at.slab), deposited(t, tau));
+        t *= exp(-tau);
+        at.deposits = with_deposits_behind(at.deposits, u32(at.slab), t);
+        at.slab += 1;
+        if (at.slab == at.k + 4) {
+            keep(id, u32(at.k), at.deposits);
+            at = Reached(at.slab, at.slab, vec4f(t));
         }
-        keep(id, u32(k), deposits);
-        k += 4;
+        at = next_attenuating(walk, id, inside, t, at);
+        if (at.k >= end) {
+            break;
+        }
     }
     transmittance[pixel] = t;
 }

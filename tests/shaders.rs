@@ -240,17 +240,13 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 begin,
                 end,
                 layers,
-                first_row,
-                end_row,
+                tiles,
                 extinction_scale,
                 hood_inner,
                 hood_outer,
+                reach,
                 hood_axis,
                 dark,
-                reach,
-                runs,
-                pad1,
-                pad2,
                 shading_cut,
             }),
         ),
@@ -592,7 +588,8 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     }
     // Or a whole one, cell by cell.
     let backproject = file("light_backproject.wgsl");
-    for text in [format!("brick.x) * {BRICK_EDGE}u + place * {CELL_EDGE}u"), format!("lane / {BRICK_EDGE}u")]
+    for text in
+        [format!("unpacked(brick) * {BRICK_EDGE}u + place * {CELL_EDGE}u"), format!("lane / {BRICK_EDGE}u")]
     {
         assert!(backproject.contains(&text), "light_backproject.wgsl must have {text}");
     }

@@ -10,23 +10,18 @@ struct March {
     end: u32,
     // Of the ring.
     layers: u32,
-    // Rows of this dispatch: first, and one beyond the last.
-    first_row: u32,
-    end_row: u32,
+    // Tiles of this dispatch.
+    tiles: u32,
     // Multiplies extinctions.
     extinction_scale: f32,
     // The light's hood, as in common/lights.wgsl, its axis along the sheets' axes.
     hood_inner: f32,
     hood_outer: f32,
+    // Cells beyond those whose light is looked up that the reverse kernel reads.
+    reach: i32,
     hood_axis: vec3f,
     // Light is followed until less than this is left of it.
     dark: f32,
-    // Cells beyond those whose light is looked up that the reverse kernel reads.
-    reach: i32,
-    // Runs of rows of tiles (common/tiles.wgsl).
-    runs: u32,
-    pad1: i32,
-    pad2: i32,
     // What attenuates light.
     shading_cut: Cut,
 }

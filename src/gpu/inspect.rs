@@ -9,7 +9,7 @@ use super::scatter_light::LightScatter;
 use super::{GpuError, RenderOptions, Renderer};
 use crate::data::{Bricks, Volume};
 use crate::model::Settings;
-use crate::plan::{FARTHEST, LightKey, Request, light_views};
+use crate::plan::{FARTHEST, LightKey, ReadTiles, Request, light_views};
 
 impl Renderer {
     /// Reads back what is shown now: sRGB bytes, RGBA, row by row from the top left.
@@ -125,7 +125,8 @@ impl Renderer {
                 &mut encoder,
             )?;
         } else {
-            march(gpu, tables, lamp, geometry, &sheets, ((0, count), (0, 1)), &mut encoder)?;
+            let tiles = ReadTiles::all(geometry, sheets.chunk);
+            march(gpu, tables, lamp, geometry, &sheets, ((0, count), tiles.of_chunk(0)), &mut encoder)?;
         }
         self.context.queue.submit([encoder.finish()]);
         // Four slabs to a texel, and room beside the sheets.

@@ -106,7 +106,7 @@ pub(super) struct LightBuild {
     pub reach: u8,
     /// Data bricks whose scattered sheets will be splatted back.
     pub read: Option<BrickSet>,
-    /// Bricks around what is filled, which only previews look up: they are fully lit.
+    /// Bricks around what is filled that are still to be lit fully.
     pub around: Vec<Listed>,
     /// Bricks of the light volume, for rays to fill or sums to be normalised in.
     pub bricks: Vec<Listed>,
@@ -149,7 +149,7 @@ impl LightBuild {
             chunks,
             reach,
             read,
-            around: Vec::new(),
+            around: fresh.dark_around(),
             bricks,
             current: None,
             scatter: None,

@@ -8,23 +8,34 @@ use super::light_march::Sheets;
 use super::light_volume::LightVolume;
 use super::listed_bricks::{self, Listed};
 use super::pass;
-use super::tables::view_entry;
+use super::tables::{EVERYWHERE, view_entry};
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
 use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
 use crate::model::{Quadrature, Shadows};
-use crate::plan::LightView;
+use crate::plan::{LightView, ReadTiles};
 
-/// The bricks of a light volume, by the chunk of slabs that completes them.
+/// What each chunk of slabs has to do.
 #[derive(Debug)]
 pub(super) struct Schedule {
+    /// The bricks of a light volume, by the chunk that completes them.
     chunks: Vec<Vec<Listed>>,
+    /// The tiles of the sheets that are marched.
+    tiles: ReadTiles,
 }
 
 impl Schedule {
-    /// Finds for every brick to be filled the chunks in which any of its voxels gets its last sheet.
-    pub(super) fn new(scene: &SceneSpace, view: &LightView, light: &LightVolume, chunk: u32) -> Self {
+    /// Finds for every brick to be filled the chunks in which any of its voxels gets its last sheet, and the
+    /// tiles in which sheets are read: all of them if `reach` is [`EVERYWHERE`].
+    ///
+    /// `reach`: cells beyond those to be filled that the reverse kernel reads.
+    pub(super) fn new(
+        scene: &SceneSpace,
+        view: &LightView,
+        light: &LightVolume,
+        (chunk, reach): (u32, i32),
+    ) -> Self {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
         for (brick, cells) in light.filled.bricks() {
@@ -33,8 +44,35 @@ impl Schedule {
                 list.push(listed_bricks::listed((brick, cells)));
             }
         }
-        Self { chunks }
+        let tiles = if reach == EVERYWHERE {
+            ReadTiles::all(view, chunk)
+        } else {
+            ReadTiles::behind(view, scene, chunk, read_boxes(light, reach))
+        };
+        Self { chunks, tiles }
     }
+
+    /// The tiles that part `part.0` of `part.1` of a chunk marches.
+    pub(super) fn tiles(&self, chunk: usize, part: (u32, u32)) -> &[u32] {
+        cut(self.tiles.of_chunk(chunk), part)
+    }
+}
+
+/// Part `part.0` of `part.1` of a list.
+fn cut<T>(list: &[T], part: (u32, u32)) -> &[T] {
+    let end_of = |parts: u32| list.len() * parts as usize / part.1 as usize;
+    &list[end_of(part.0)..end_of(part.0 + 1)]
+}
+
+/// Where sheets are read for the bricks of a light volume: around each, in index space.
+fn read_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+    // Cells are pairs of voxels, and samples belong to the cell in which they lie (`common/cells.wgsl`).
+    let beyond = DVec3::splat(2.0 * f64::from(reach));
+    let edge = (BRICK_EDGE * light.divisor) as f64;
+    light.filled.bricks().map(move |(brick, _)| {
+        let low = edge * DVec3::from(brick.map(|at| at as f64));
+        [low - beyond, low + edge + beyond]
+    })
 }
 
 /// The first and the last slab that completes any voxel of a brick.
@@ -90,9 +128,7 @@ pub(super) fn backproject(
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Gpu { shaders, volume, .. } = gpu;
-    let bricks = &schedule.chunks[(slabs.0 / sheets.chunk) as usize];
-    let cut = |at: u32| bricks.len() * at as usize / part.1 as usize;
-    let bricks = &bricks[cut(part.0)..cut(part.0 + 1)];
+    let bricks = cut(&schedule.chunks[(slabs.0 / sheets.chunk) as usize], part);
     if bricks.is_empty() {
         return Ok(());
     }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::job::LightBuild;
 use super::light_collapse::{CollapsedKey, CollapsedLight};
 use super::light_volume::LightVolume;
-use super::listed_bricks::listed;
 use super::tables::Tables;
 use super::volume::{GpuVolume, brick_dims};
 use super::{GpuError, RenderOptions, Renderer};
@@ -158,11 +157,10 @@ impl Renderer {
                 }
                 let filled = needed(&key, reach);
                 let around = needed(&key, reach.max(stretch_reach(WIDEST))).0.without(&filled.0);
-                let fresh = LightVolume::new(&self.context, volume, key.clone(), filled, &mut self.unwanted)?;
-                let mut build = LightBuild::new(volume, request, light, &fresh, self.options.chunk);
-                build.around = around.bricks().map(listed).collect();
+                let fresh =
+                    LightVolume::new(&self.context, volume, key.clone(), filled, around, &mut self.unwanted)?;
+                builds.push(LightBuild::new(volume, request, light, &fresh, self.options.chunk));
                 self.lights.push(fresh);
-                builds.push(build);
             }
             for known in self.lights.iter_mut().filter(|known| known.key == key) {
                 known.last_used = self.clock;

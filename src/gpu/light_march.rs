@@ -1,8 +1,7 @@
 //! Forward half of the light pass: fills sheets with the transmittance that they deposit.
 
-use std::ops::Range;
-
 use super::kernel::{classification_constant, cut_constant, kernel_constants, quadrature_constant};
+use super::listed_bricks::single_workgroups;
 use super::pass;
 use super::recycled::Recycled;
 use super::shader::ring_format;
@@ -16,6 +15,9 @@ use crate::plan::{LightView, sample_reach};
 
 /// Slabs that share a texel of the ring.
 pub(super) const SLABS_PER_TEXEL: u32 = 4;
+
+/// Bytes of a list of tiles: for 1024 × 1024 pixels, so that hardly any light needs a longer one.
+const TILE_ROOM: u64 = 64 << 10;
 
 /// Columns and rows of the ring come in so many, because sheets get larger and smaller as the light moves.
 const ROOM: u32 = 32;
@@ -42,7 +44,7 @@ pub(super) struct Sheets {
     pub ring_view: wgpu::TextureView,
     transmittance: wgpu::Buffer,
     /// Cells beyond those that the transfer functions show whose sheets are read.
-    reach: i32,
+    pub reach: i32,
 }
 
 impl Sheets {
@@ -163,12 +165,6 @@ pub(super) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f
     ]
 }
 
-/// Rows of a view's sheets that part `part.0` of `part.1` marches: whole workgroups.
-fn rows_of(height: u32, part: (u32, u32)) -> Range<u32> {
-    let cut = |at: u32| (height.div_ceil(8) * at / part.1 * 8).min(height);
-    cut(part.0)..cut(part.0 + 1)
-}
-
 /// What the shaders know about the light, what attenuates it and the slabs `slabs.0 .. slabs.1` of a view.
 pub(super) fn march_uniform(
     light: &Light,
@@ -176,7 +172,6 @@ pub(super) fn march_uniform(
     view: &LightView,
     sheets: &Sheets,
     slabs: (u32, u32),
-    rows: Range<u32>,
 ) -> uniforms::March {
     let cone = light.cone();
     uniforms::March {
@@ -184,50 +179,65 @@ pub(super) fn march_uniform(
         begin: slabs.0,
         end: slabs.1,
         layers: sheets.layers,
-        first_row: rows.start,
-        end_row: rows.end,
+        tiles: 0,
         extinction_scale: light.density_scale as f32,
         hood_inner: cone.cos_inner as f32,
         hood_outer: cone.cos_outer as f32,
         hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
         dark: sheets.dark,
         reach: sheets.reach,
-        runs: 1,
-        pad1: 0,
-        pad2: 0,
         shading_cut: uniforms::Cut::new(shading_cut),
     }
 }
 
-/// Marches a part of the pixels through the slabs `begin .. end` of a view.
+/// Marches the listed tiles through the slabs `begin .. end` of a view.
 pub(super) fn march(
     gpu: Gpu<'_>,
     tables: &Tables,
     (light, settings): (&Light, &Settings),
     view: &LightView,
     sheets: &Sheets,
-    (slabs, part): ((u32, u32), (u32, u32)),
+    (slabs, tiles): ((u32, u32), &[u32]),
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, .. } = gpu;
-    let rows = rows_of(view.frame.size[1], part);
-    if rows.is_empty() {
+    if tiles.is_empty() {
         return Ok(());
     }
     let stretch = view.frame.max_stretch_level();
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, stretch > 0.0))?;
-    let tiles = pass::tiles([view.frame.size[0], rows.end - rows.start]);
-    let runs = pass::runs(context, tiles);
     let cut = settings.cuts.shading().region(&volume.scene);
-    let uniform = march_uniform(light, &cut, view, sheets, slabs, rows.clone());
-    let uniform = uniforms::March { runs, ..uniform };
+    let count = tiles.len() as u32;
+    let uniform = uniforms::March { tiles: count, ..march_uniform(light, &cut, view, sheets, slabs) };
     let uniform = gpu.uniform("March::uniform", uniform);
-    let entries = sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances);
+    let list = gpu.list_with_room("March::tiles", &shared_out(tiles, pass::threads(context)), TILE_ROOM);
+    let mut entries =
+        sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances).to_vec();
+    entries.push(entry(5, list.as_entire_binding()));
     let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
     let leaping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
     let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
     let of_volume = gpu.bind_volume(&pipeline, dilation);
-    pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], tiles);
+    pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], single_workgroups(count));
     Ok(())
+}
+
+/// The list in another order: a software driver gives each thread a run of workgroups, and so gets neighbours
+/// for all of them at any time, and for each the same share of what is costly.
+fn shared_out(tiles: &[u32], threads: u32) -> Vec<u32> {
+    let threads = threads as usize;
+    (0..threads).flat_map(|thread| tiles.iter().skip(thread).step_by(threads).copied()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_tile_is_shared_out_once() {
+        assert_eq!(shared_out(&[1, 2, 3, 4, 5], 2), [1, 3, 5, 2, 4]);
+        assert_eq!(shared_out(&[1, 2, 3], 1), [1, 2, 3]);
+        assert_eq!(shared_out(&[1, 2], 3), [1, 2]);
+    }
 }

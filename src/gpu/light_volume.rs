@@ -29,6 +29,10 @@ pub(super) struct LightVolume {
     pub filled: Arc<CellSet>,
     /// Data cells, beyond those that either transfer function shows, for whose lookups they suffice.
     pub reach: u8,
+    /// Cells around what is filled, which only previews look up: they are to be lit fully …
+    around: CellSet,
+    /// … and these are, by this volume or the one that had its texture before.
+    lit: Option<CellSet>,
     /// Whether everything in `filled` is there.
     pub complete: bool,
     /// When the first of its steps was recorded …
@@ -49,6 +53,7 @@ impl LightVolume {
         volume: &GpuVolume,
         key: LightKey,
         (filled, reach): (Arc<CellSet>, u8),
+        around: CellSet,
         unwanted: &mut Vec<Self>,
     ) -> Result<Self, GpuError> {
         let divisor = key.resolution().divisor();
@@ -58,12 +63,14 @@ impl LightVolume {
             Precision::Byte if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
             Precision::Byte | Precision::Half => context.storage_format,
         };
-        let fresh = |texture, view| Self {
+        let fresh = |texture, view, lit: Option<CellSet>| Self {
             key,
             dims,
             divisor,
             texture,
             view,
+            around,
+            lit,
             filled,
             reach,
             complete: false,
@@ -73,8 +80,8 @@ impl LightVolume {
         };
         let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
         if let Some(at) = unwanted.iter().position(fits) {
-            let Self { texture, view, .. } = unwanted.swap_remove(at);
-            return Ok(fresh(texture, view));
+            let Self { texture, view, lit, .. } = unwanted.swap_remove(at);
+            return Ok(fresh(texture, view, lit));
         }
         let texture = context.texture(&texture_3d(
             "LightVolume::attenuation",
@@ -86,7 +93,13 @@ impl LightVolume {
                 | wgpu::TextureUsages::COPY_DST,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(fresh(texture, view))
+        Ok(fresh(texture, view, None))
+    }
+
+    /// What is still to be lit around it: nothing, while a light is dragged.
+    pub(super) fn dark_around(&self) -> Vec<Listed> {
+        let list = |cells: &CellSet| cells.bricks().map(listed_bricks::listed).collect();
+        self.lit.as_ref().map_or_else(|| list(&self.around), |lit| list(&self.around.without(lit)))
     }
 
     /// Lights the listed cells fully.
@@ -121,6 +134,8 @@ impl LightVolume {
     /// The first of its steps is recorded.
     pub(super) fn begin(&mut self) {
         self.started.get_or_insert_with(Instant::now);
+
+        self.lit = Some(self.around.clone());
     }
 
     /// Everything is there.

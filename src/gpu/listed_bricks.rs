@@ -56,7 +56,10 @@ mod tests {
         }
         let shader = include_str!("../../shaders/common/listed_bricks.wgsl");
         assert!(shader.contains(&format!("group.y * {BRICKS_PER_ROW}u")));
-        let shader = include_str!("../../shaders/light_backproject.wgsl");
-        assert!(shader.contains(&format!("group.y * {BRICKS_PER_ROW}u")));
+        let backproject = include_str!("../../shaders/light_backproject.wgsl");
+        let march = include_str!("../../shaders/light_march.wgsl");
+        for shader in [backproject, march] {
+            assert!(shader.contains(&format!("group.y * {BRICKS_PER_ROW}u")));
+        }
     }
 }

@@ -43,8 +43,13 @@ pub(super) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
 /// run of workgroups: there as many as threads, so that all have the same share of what is costly. Graphics
 /// cards hand workgroups out one by one, in their order.
 pub(super) fn runs(context: &Context, [_, rows, _]: [u32; 3]) -> u32 {
+    threads(context).min(rows.max(1))
+}
+
+/// Threads of a software driver; 1 for a graphics card.
+pub(super) fn threads(context: &Context) -> u32 {
     let threads = || std::thread::available_parallelism().map_or(1, |threads| threads.get() as u32);
-    if context.is_software() { threads().clamp(1, rows.max(1)) } else { 1 }
+    if context.is_software() { threads() } else { 1 }
 }
 
 #[cfg(test)]

@@ -93,8 +93,20 @@ impl Recycled {
         contents: &[T],
         usage: wgpu::BufferUsages,
     ) -> wgpu::Buffer {
+        self.buffer_with_room(context, label, contents, usage, SMALLEST_BUFFER)
+    }
+
+    /// The same, of at least `room` bytes.
+    pub(super) fn buffer_with_room<T: bytemuck::NoUninit>(
+        &self,
+        context: &Context,
+        label: &'static str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+        room: u64,
+    ) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(contents);
-        let size = (bytes.len() as u64).next_power_of_two().max(SMALLEST_BUFFER);
+        let size = (bytes.len() as u64).max(room).next_power_of_two();
         let inner = &mut *self.0.borrow_mut();
         let shelf = inner.shelves.entry((label, size, usage.bits())).or_default();
         if shelf.taken == shelf.buffers.len() {

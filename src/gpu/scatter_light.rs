@@ -97,9 +97,8 @@ impl LightScatter {
         let splat = self.scatterer.constants()[4];
         let constants = [cut, deposit, splat, ("DILATION", f64::from(self.dilation))];
         let pipeline = shaders.pipeline("scatter_light.wgsl", &constants)?;
-        let rows = 0..view.frame.size[1];
         let cut = settings.cuts.shading().region(&gpu.volume.scene);
-        let uniform = march_uniform(lamp, &cut, view, sheets, (slabs.start, slabs.end), rows);
+        let uniform = march_uniform(lamp, &cut, view, sheets, (slabs.start, slabs.end));
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
         let mut entries = sheets.march_entries(&uniform, table, &self.distances).to_vec();
         entries.push(entry(5, self.deposits.as_entire_binding()));

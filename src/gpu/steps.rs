@@ -16,6 +16,7 @@ use super::scatter_voxels::ScatterVoxels;
 use super::tables::{EVERYWHERE, Tables};
 use super::volume::Gpu;
 use super::{GpuError, Renderer, gradients, ground, prefilter};
+use crate::plan::reverse_reach;
 
 /// What went away between `begin` and `step`.
 fn out_of_date() -> GpuError {
@@ -118,10 +119,15 @@ impl Renderer {
                 peak += scatter.bytes();
                 build.scatter = Some(scatter);
             }
-            let schedule = Schedule::new(&gpu.volume.scene, geometry, light, sheets.chunk);
+            let scene = &gpu.volume.scene;
+            let beyond = match sheets.reach {
+                EVERYWHERE => EVERYWHERE,
+                _ => i32::from(reverse_reach(&build.views, scene, light.divisor)),
+            };
+            let schedule = Schedule::new(scene, geometry, light, (sheets.chunk, beyond));
             build.current = Some((sheets, schedule));
         }
-        let Some((sheets, _)) = &build.current else { return Ok(()) };
+        let Some((sheets, schedule)) = &build.current else { return Ok(()) };
         let slabs = *begin..(*begin + chunk).min(geometry.frame.slab_count);
         let lamp = (&build.lamp, settings);
         if let Some(scatter) = &build.scatter {
@@ -138,7 +144,8 @@ impl Renderer {
                 encoder,
             )?;
         } else {
-            march(gpu, tables, lamp, geometry, sheets, ((slabs.start, slabs.end), *part), encoder)?;
+            let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, *part);
+            march(gpu, tables, lamp, geometry, sheets, ((slabs.start, slabs.end), tiles), encoder)?;
         }
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
         if *begin == 0 && part.0 == 0 && *view == 0 {

@@ -43,6 +43,16 @@ impl Gpu<'_> {
         self.recycled.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
     }
 
+    /// The same in a buffer of so many bytes at least: lists of any length up to that use one.
+    pub(super) fn list_with_room<T: bytemuck::NoUninit>(
+        &self,
+        label: &'static str,
+        values: &[T],
+        room: u64,
+    ) -> wgpu::Buffer {
+        self.recycled.buffer_with_room(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
+    }
+
     /// Binds resources to a group of a pipeline.
     pub(super) fn bind(
         &self,

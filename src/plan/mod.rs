@@ -12,6 +12,7 @@ mod occupancy;
 mod pixel_window;
 mod probe;
 mod reach;
+mod read_tiles;
 mod sheet_frame;
 mod slice_order;
 #[cfg(test)]
@@ -28,6 +29,7 @@ pub use reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach, slab_reach,
     stretch_reach,
 };
+pub use read_tiles::{ReadTiles, TILE_EDGE};
 pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use slice_order::SliceOrder;
 

@@ -1,5 +1,6 @@
 //! What is kept and what is refilled; and what must not change a single bit.
 
+use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
     Kernel, LightKind, LightStorage, Quadrature, Resolution, Settings, ShadowAlgorithm,
@@ -268,4 +269,44 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     while renderer.step(&mut job).expect("a step") {}
     assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), fresh);
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "the picture looks up what the preview filled");
+}
+
+/// Around what is filled a light volume is fully lit, once: not again while the light moves, but where
+/// another transfer function had it filled before.
+#[test]
+fn what_is_lit_around_a_light_volume_stays_so_until_it_is_filled() {
+    // A block in the faintest haze.
+    let value = |at: usize| {
+        let place = [at % 48, at / 48 % 48, at / 48 / 48];
+        let within = |reach: usize| place.iter().all(|&c| c.abs_diff(24) < reach);
+        if within(5) { 255 } else { u8::from(within(16)) }
+    };
+    let samples = Samples::U8((0..48 * 48 * 48).map(value).collect());
+    let volume = Volume::with_spacing("haze", [48; 3], DVec3::ONE, samples).expect("a valid volume");
+    let (loaded, settings) = (Loaded::new(volume), scenes::look());
+    let preview = |renderer: &mut Renderer, direction: [f64; 3], onset: f64| {
+        let mut settings = settings.clone();
+        settings.lights[0].position = direction;
+        for (point, at) in settings.transfer.points.iter_mut().zip(0..) {
+            (point.value, point.opacity) = (onset + 0.1 * f64::from(at), if at == 0 { 0.0 } else { 0.3 });
+        }
+        // Filled for a fine picture, and looked up by a coarse one.
+        for size in [[256, 192], [16, 12]] {
+            let settings = settings.clone();
+            let volume = loaded.volume.content_id();
+            let request = Request { volume, settings, size, coarse: Some(Resolution::Half) };
+            let options = RenderOptions { preview: true, ..RenderOptions::default() };
+            let mut job = renderer.begin(&loaded.volume, &loaded.bricks, request, &options).expect("a job");
+            while renderer.step(&mut job).expect("a step") {}
+        }
+        renderer.read_light().expect("light")
+    };
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    // The haze is not seen, seen, and not seen again: often enough that textures come around.
+    let onsets = [[1.5; 4], [0.5; 4], [1.5; 4]];
+    for (at, onset) in onsets.into_iter().flatten().enumerate() {
+        let place = [(at as f64).cos(), (at as f64).sin(), 1.5];
+        let fresh = preview(&mut Renderer::new(&context()).expect("a renderer"), place, onset);
+        assert!(fresh == preview(&mut renderer, place, onset), "preview {at} differs from a fresh one");
+    }
 }
