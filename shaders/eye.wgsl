@@ -88,8 +88,7 @@ fn shaded(ray: Ray, pixel: vec2u, k: i32, material: vec3f) -> vec3f {
     return shade(p, slope, material);
 }
 
-// The next slab, from `first` on, in a cell that may show something; or one beyond the last. Only this is a loop of
-// its own: in one for samples that turn out empty, too, all lanes of a vector would wait for the slowest.
+// The next slab, from `first` on, in a cell that may show something; or one beyond the last.
 fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
     var k = first;
     loop {
@@ -106,6 +105,40 @@ fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
     return k;
 }
 
+// What slab k shows where the ray crosses it.
+fn material_of(ray: Ray, span: vec2f, k: i32) -> vec4f {
+    let material = slab_material(eye.frame, ray, f32(k));
+    return vec4f(material.rgb, material.a * share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab));
+}
+
+struct Sample {
+    k: i32,
+    material: vec4f,
+}
+
+// The next slab, from `first` on, that is worth sampling. Stretched kernels are sampled far around the cells
+// that show something, and mostly find nothing: the search goes on until they do, though all lanes of a vector
+// wait for the slowest. Otherwise that would take longer than shading what is not there.
+fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Sample {
+    var at = Sample(next_seen(walk, first, last), vec4f(0.0));
+    if (STRETCH) {
+        loop {
+            if (at.k > last) {
+                break;
+            }
+            at.material = material_of(ray, span, at.k);
+            if (at.material.a > 0.0) {
+                break;
+            }
+            at.k = next_seen(walk, at.k + 1, last);
+            if (at.k > last) {
+                break;
+            }
+        }
+    }
+    return at;
+}
+
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3u,
@@ -120,28 +153,29 @@ fn main(
     let span = span_within(eye.seen, ray);
     let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
     let walk = walk_along(eye.frame, ray);
-    var k = next_seen(walk, inside.x, inside.y);
+    var at = next_sample(ray, walk, span, inside.x, inside.y);
     var color = vec3f(0.0);
     var t = 1.0;
     // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
     // there, not from the middle.
     loop {
-        if (k > inside.y) {
+        if (at.k > inside.y) {
             break;
         }
-        var material = slab_material(eye.frame, ray, f32(k));
-        material.a *= share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab);
-        if (material.a > 0.0) {
-            let rgb = shaded(ray, pixel, k, material.rgb);
-            let passed = exp(-material.a * eye.frame.slab * ray.obliquity);
+        if (!STRETCH) {
+            at.material = material_of(ray, span, at.k);
+        }
+        if (at.material.a > 0.0) {
+            let rgb = shaded(ray, pixel, at.k, at.material.rgb);
+            let passed = exp(-at.material.a * eye.frame.slab * ray.obliquity);
             color += t * (1.0 - passed) * rgb;
             t *= passed;
         }
         if (t < eye.dark) {
             break;
         }
-        k = next_seen(walk, k + 1, inside.y);
-        if (k > inside.y) {
+        at = next_sample(ray, walk, span, at.k + 1, inside.y);
+        if (at.k > inside.y) {
             break;
         }
     }

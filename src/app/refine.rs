@@ -3,7 +3,9 @@
 //! Pure arithmetic. It predicts milliseconds from what earlier batches took and chooses the finest
 //! look that fits the frame budget; the viewport carries it out.
 
+use crate::math::SceneSpace;
 use crate::model::{Engine, Kernel, Resolution, Settings};
+use crate::plan::preview_slab;
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
@@ -40,7 +42,7 @@ impl Look {
     }
 
     /// The settings to be rendered for the wanted ones.
-    pub(super) fn settings(self, wanted: &Settings) -> Settings {
+    pub(super) fn settings(self, wanted: &Settings, scene: &SceneSpace, viewport: [u32; 2]) -> Settings {
         let mut settings = wanted.clone();
         if self != Self::FULL {
             // Nobody waits for every single splat while something moves.
@@ -48,8 +50,8 @@ impl Look {
         }
         if self.quick_eye {
             settings.sampling.kernel = Kernel::Prefiltered;
-            // A preview may show a little wood grain.
-            settings.sampling.slab = settings.sampling.slab.max(1.0);
+            let slab = settings.sampling.slab;
+            settings.sampling.slab = preview_slab(&settings.camera, scene, self.size(viewport), slab);
         }
         if self.quick_light {
             settings.shadows.kernel = Kernel::Prefiltered;

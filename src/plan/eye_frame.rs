@@ -14,6 +14,20 @@ const MAX_SLABS: f64 = 4096.0;
 /// Nearest distance from a perspective eye that is drawn, as a share of the distance to the target.
 const NEAR_SHARE: f64 = 1e-3;
 
+/// Thickest slabs of a preview, in edges of the smallest voxel: its kernel reaches as far to either side.
+const THICKEST_PREVIEW: f64 = 2.0;
+
+/// Thickness of slabs for a preview, in edges of the smallest voxel, where pictures have `slab`.
+///
+/// It is as much as the preview's pixels are wide where they are narrowest: it can show no finer shapes along its
+/// rays than across them. `size`: pixels of the preview.
+pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64) -> f64 {
+    let frame = eye_frame(camera, scene, size, slab);
+    let width = frame.pitch_at(frame.first_depth) / scene.smallest_edge();
+    // One is enough for a preview however large: it may show a little wood grain.
+    slab.max(width.clamp(1.0, THICKEST_PREVIEW))
+}
+
 /// The sheets that a camera sees, `slab` smallest voxel edges thick.
 ///
 /// The anchor plane goes through the middle of the volume when that lies well in front of the eye,
@@ -103,6 +117,19 @@ mod tests {
                 assert!((part.obliquity(3.0, 5.0) - whole.obliquity(23.0, 35.0)).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn previews_have_slabs_as_thick_as_their_pixels_are_wide() {
+        let slab = |size, slab| preview_slab(&Camera::default(), &scene(), size, slab);
+        // Pixels that are finer than voxels, as wide as one and a half, and wider than the kernel.
+        assert_eq!(slab([6400, 4800], 0.5), 1.0);
+        assert_eq!(slab([16, 12], 0.5), 2.0);
+        assert_eq!(slab([16, 12], 3.0), 3.0);
+        let width = slab([36, 27], 0.5);
+        let frame = eye_frame(&Camera::default(), &scene(), [36, 27], width);
+        let narrowest = frame.pitch_at(frame.first_depth) / scene().smallest_edge();
+        assert!((1.0..2.0).contains(&width) && (width / narrowest - 1.0).abs() < 0.05, "{width}");
     }
 
     #[test]

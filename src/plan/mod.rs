@@ -20,7 +20,7 @@ mod tests;
 
 pub use cell_distances::{CellDistances, FARTHEST};
 pub use cell_set::CellSet;
-pub use eye_frame::eye_frame;
+pub use eye_frame::{eye_frame, preview_slab};
 pub use light_frame::{LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views};
 pub use occupancy::BrickSet;
 pub use pixel_window::PixelWindow;

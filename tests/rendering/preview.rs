@@ -4,7 +4,7 @@ use chiaroscuro::data::Histogram;
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::{RenderOptions, Renderer, mean_luminance};
 use chiaroscuro::model::{Kernel, Resolution, Settings, auto};
-use chiaroscuro::plan::Request;
+use chiaroscuro::plan::{Request, preview_slab};
 
 use crate::common::{Loaded, context};
 use crate::thresholds::PREVIEW_BRIGHTNESS;
@@ -23,7 +23,8 @@ fn brightness(
         (settings.clone(), RenderOptions { preview: coarse.is_some(), ..RenderOptions::default() });
     if coarse.is_some() {
         settings.sampling.kernel = Kernel::Prefiltered;
-        settings.sampling.slab = settings.sampling.slab.max(1.0);
+        let slab = settings.sampling.slab;
+        settings.sampling.slab = preview_slab(&settings.camera, &loaded.volume.scene(), size, slab);
         settings.shadows.kernel = Kernel::Prefiltered;
     }
     let request = Request { volume: loaded.volume.content_id(), settings, size, coarse };

@@ -355,7 +355,7 @@ impl Easel {
 fn request_of(scene: &Scene, settings: &Settings, wanted: &Wanted, look: Look) -> Request {
     Request {
         volume: scene.volume.content_id(),
-        settings: look.settings(settings),
+        settings: look.settings(settings, &scene.volume.scene(), wanted.size),
         size: look.size(wanted.size),
         coarse: look.coarse,
     }

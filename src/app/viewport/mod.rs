@@ -87,6 +87,8 @@ pub(super) struct Viewport {
     /// What the painter was last told.
     wanted: Option<Wanted>,
     waiting: Waiting<Wanted>,
+    /// The last picture that was waited for was not there in time.
+    waited_in_vain: bool,
     generation: u64,
     volume: Option<(Arc<Volume>, Arc<Bricks>)>,
     /// The picture, or of a comparison left, right and their difference.
@@ -121,6 +123,7 @@ impl Viewport {
             painter,
             wanted: None,
             waiting: Waiting::default(),
+            waited_in_vain: false,
             generation: 0,
             volume: None,
             textures: [None, None, None],
@@ -213,12 +216,18 @@ impl Viewport {
         if self.wanted.as_ref() != Some(&wanted) {
             patience = if self.context.is_software() { SOFTWARE_PATIENCE } else { PATIENCE };
             self.painter.set_wanted(wanted.clone());
-            self.waiting.ask(wanted.clone(), Instant::now());
-            self.wanted = Some(wanted);
+            if self.wanted.is_some() {
+                self.waiting.ask(wanted.clone(), Instant::now());
+            }
+            self.wanted = Some(wanted.clone());
         }
-        if let Some(frame) =
-            self.painter.take_frame(patience).filter(|frame| frame.wanted.generation == self.generation)
-        {
+        // What was too late for the last frame has been waited for long enough: it comes before what is newer.
+        let newest = (!self.waited_in_vain).then_some(&wanted);
+        let frame = self.painter.take_frame(newest, patience);
+        if patience > Duration::ZERO {
+            self.waited_in_vain = frame.is_none();
+        }
+        if let Some(frame) = frame.filter(|frame| frame.wanted.generation == self.generation) {
             self.show(frame, ctx);
         }
         if let Some(err) = self.painter.take_error() {

@@ -129,13 +129,14 @@ impl Painter {
         self.shared.desk().frame_ms = frame_ms;
     }
 
-    /// The latest finished picture, once; waits for one at most so long.
-    pub(super) fn take_frame(&self, patience: Duration) -> Option<Frame> {
-        let none = |desk: &mut Desk| desk.frame.is_none() && desk.error.is_none();
+    /// The latest finished picture, once; waits at most so long for one, or for that of what is wanted.
+    pub(super) fn take_frame(&self, wanted: Option<&Wanted>, patience: Duration) -> Option<Frame> {
+        let is_it = |frame: &Frame| wanted.is_none_or(|wanted| frame.wanted == *wanted);
+        let is_due = |desk: &mut Desk| desk.error.is_none() && !desk.frame.as_ref().is_some_and(is_it);
         let (mut desk, _) = self
             .shared
             .finished
-            .wait_timeout_while(self.shared.desk(), patience, none)
+            .wait_timeout_while(self.shared.desk(), patience, is_due)
             .unwrap_or_else(PoisonError::into_inner);
         desk.frame.take()
     }
