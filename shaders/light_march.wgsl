@@ -8,7 +8,7 @@
 #import "common/march.wgsl"
 #import "common/tiles.wgsl"
 
-// Distances: r to the nearest cell whose light is looked up, g to the nearest that attenuates light.
+// Distances: r to the nearest cell that either transfer function shows, g to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 // What is to be marched (src/plan/read_tiles.rs): column, row from bit 15, and whether light arrives there for
 // the first time. The list may be longer.

@@ -17,7 +17,7 @@ struct March {
     // The light's hood, as in common/lights.wgsl, its axis along the sheets' axes.
     hood_inner: f32,
     hood_outer: f32,
-    // Cells beyond those whose light is looked up that the reverse kernel reads.
+    // Cells beyond those that either transfer function shows in which light is looked up or read for it.
     reach: i32,
     hood_axis: vec3f,
     // Light is followed until less than this is left of it.

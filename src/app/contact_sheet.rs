@@ -72,7 +72,7 @@ fn with_presets(settings: &Settings, range: (f64, f64)) -> Vec<Candidate> {
         .filter_map(|preset| {
             let settings = preset.apply(settings, range).ok()?;
             let [domain, _] = preset.domain_titles();
-            let name = format!("{domain}: {}", preset.title());
+            let name = text::contact_sheet::preset(domain, &preset.title());
             Some(Candidate { name, settings, command: Command::UsePreset(preset) })
         })
         .collect()

@@ -164,7 +164,7 @@ impl Files {
             });
             ui.horizontal(|ui| {
                 accepted |= ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
-                cancelled = ui.button(text::files::CANCEL).clicked();
+                cancelled = ui.button(text::common::CANCEL).clicked();
             });
         });
         let chosen = (accepted && !typed.text.trim().is_empty())

@@ -29,7 +29,7 @@ pub(super) fn show(
             let is_selected = *selected == at;
             let volume = facts.light_volumes.get(at).copied().flatten();
             let response = chip(ui, &settings.lights[at], is_selected);
-            let response = response.on_hover_text(what_it_costs(&settings.lights[at], volume));
+            let response = response.on_hover_text(chip_tip(&settings.lights[at], volume));
             if response.clicked() {
                 *selected = at;
             }
@@ -95,8 +95,8 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     response
 }
 
-/// What a light's shadows cost.
-fn what_it_costs(light: &Light, volume: Option<super::viewport::LightFigures>) -> String {
+/// The tip of a light's chip: what it is, and what its shadows cost.
+fn chip_tip(light: &Light, volume: Option<super::viewport::LightFigures>) -> String {
     let shadows = match volume {
         _ if !light.casts_shadows => text::lights::NO_SHADOWS.to_owned(),
         None => text::lights::NOT_FILLED.to_owned(),

@@ -99,16 +99,14 @@ fn reason(light: &Light, arrival: &Arrival) -> String {
     {
         return text::probe::FACES_AWAY.to_owned();
     }
-    let angle = facing.map_or_else(String::new, |facing| {
-        text::probe::at_angle(90.0 - facing.clamp(-1.0, 1.0).acos().to_degrees())
-    });
+    let angle_deg = facing.map(|facing| 90.0 - facing.clamp(-1.0, 1.0).acos().to_degrees());
     let arrives = transmittance * hood;
     let through = match arrives {
         _ if !light.casts_shadows => text::probe::CASTS_NO_SHADOWS.to_owned(),
         share if share < 0.005 => text::probe::IN_ITS_WAY.to_owned(),
         share => text::probe::arrives(share),
     };
-    format!("{through}{angle}")
+    text::probe::arrival(&through, angle_deg)
 }
 
 /// Lines from the point to the lights: as strong as what arrives.

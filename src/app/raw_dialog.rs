@@ -70,7 +70,7 @@ impl RawDialog {
             }
             ui.horizontal(|ui| {
                 accepted = ui.add_enabled(fits, egui::Button::new(text::raw::OPEN)).clicked();
-                cancelled = ui.button(text::raw::CANCEL).clicked();
+                cancelled = ui.button(text::common::CANCEL).clicked();
             });
         });
         let described = accepted.then(|| Described {

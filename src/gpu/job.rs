@@ -50,7 +50,7 @@ pub(super) struct LightStep {
     pub view: usize,
     /// First slab of the chunk.
     pub begin: u32,
-    /// Which part of the pixels or bricks, of how many.
+    /// Which part of the tiles or bricks, of how many.
     pub part: (u32, u32),
 }
 

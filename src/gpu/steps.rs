@@ -120,7 +120,9 @@ impl Renderer {
                 build.scatter = Some(scatter);
             }
             let scene = &gpu.volume.scene;
+            // Scattered sheets are not marched in tiles.
             let beyond = match sheets.reach {
+                _ if build.scatters => EVERYWHERE,
                 EVERYWHERE => EVERYWHERE,
                 _ => i32::from(reverse_reach(&build.views, scene, light.divisor)),
             };

@@ -23,7 +23,7 @@ const THICKEST_PREVIEW: f64 = 2.0;
 /// rays than across them. `size`: pixels of the preview.
 pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64) -> f64 {
     let frame = eye_frame(camera, scene, size, slab);
-    let width = frame.pitch_at(frame.first_depth) / scene.smallest_edge();
+    let width = frame.pitch_at(frame.first_depth) / (frame.slab / slab);
     // One is enough for a preview however large: it may show a little wood grain.
     slab.max(width.clamp(1.0, THICKEST_PREVIEW))
 }

@@ -97,13 +97,16 @@ struct Marked {
     /// Slabs of a chunk.
     chunk: u32,
     chunks: Vec<Vec<bool>>,
+    /// Chunks of which every tile is marked.
+    full: Vec<bool>,
 }
 
 impl Marked {
     fn new(view: &LightView, chunk: u32) -> Self {
         let size = view.frame.size.map(|n| n.div_ceil(TILE_EDGE));
         let count = view.frame.slab_count.div_ceil(chunk).max(1) as usize;
-        Self { size, chunk, chunks: vec![vec![false; (size[0] * size[1]) as usize]; count] }
+        let chunks = vec![vec![false; (size[0] * size[1]) as usize]; count];
+        Self { size, chunk, chunks, full: vec![false; count] }
     }
 
     fn mark(&mut self, [low, high]: [DVec2; 2], [first, last]: [f64; 2]) {
@@ -114,7 +117,11 @@ impl Marked {
         else {
             return;
         };
-        for tiles in &mut self.chunks[chunks] {
+        let is_all = columns == (0..=self.size[0] as usize - 1) && rows == (0..=self.size[1] as usize - 1);
+        for (tiles, full) in self.chunks[chunks.clone()].iter_mut().zip(&mut self.full[chunks]) {
+            if std::mem::replace(full, *full || is_all) {
+                continue;
+            }
             for row in rows.clone() {
                 let start = row * self.size[0] as usize;
                 tiles[start + columns.start()..=start + columns.end()].fill(true);

@@ -210,6 +210,15 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
         rays.shadows.algorithm = algorithm;
         looks.push(rays);
     }
+    let mut quartered = scenes::look();
+    quartered.shadows.resolution = Resolution::Quarter;
+    let mut cropped = scenes::look();
+    (cropped.cuts.crop.on, cropped.cuts.crop.low) = (true, [0.3, 0.0, 0.0]);
+    let mut near = scenes::look();
+    near.lights[0] = scenes::light(LightKind::Perspective, [1.9, -1.4, 1.6]);
+    let mut thick = looks[2].clone();
+    (thick.shadows.quadrature, thick.shadows.slab) = (Quadrature::Two, 2.0);
+    looks.extend([quartered, cropped, near, thick]);
     for (at, settings) in looks.iter().enumerate() {
         let picture = |options: &RenderOptions| {
             let mut renderer = Renderer::new(&context()).expect("a renderer");

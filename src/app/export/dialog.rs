@@ -180,7 +180,7 @@ impl Export {
             ui.spinner();
             ui.label(text::export::RENDERING);
         }
-        if ui.button(text::export::CANCEL).clicked() {
+        if ui.button(text::common::CANCEL).clicked() {
             self.progress.cancelled.store(true, Ordering::Relaxed);
         }
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));

@@ -16,20 +16,22 @@ pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, 
         side(ui, text::compared::RIGHT, &mut compare.right);
         switch(ui, text::compared::DIFFERENCE, &mut compare.difference);
     });
-    unlabelled(ui, text::compared::KEEP_ROW_TIP, |ui| {
+    unlabelled(ui, |ui| {
         let keep = text::compared::KEEP;
         if ui.button(keep.name).on_hover_text(keep.tip).clicked() {
             compare.with(settings.clone());
         }
     });
-    unlabelled(ui, text::compared::WITH_FILE.tip, |ui| {
-        if ui.button(text::compared::WITH_FILE.name).clicked() {
+    unlabelled(ui, |ui| {
+        let with_file = text::compared::WITH_FILE;
+        if ui.button(with_file.name).on_hover_text(with_file.tip).clicked() {
             commands.push(Command::CompareWithFile);
         }
     });
     if let Variant::Look(kept) = &compare.right {
-        unlabelled(ui, text::compared::TAKE_RIGHT.tip, |ui| {
-            if ui.button(text::compared::TAKE_RIGHT.name).clicked() {
+        unlabelled(ui, |ui| {
+            let take = text::compared::TAKE_RIGHT;
+            if ui.button(take.name).on_hover_text(take.tip).clicked() {
                 let camera = settings.camera.clone();
                 *settings = Settings { camera, ..Settings::clone(kept) };
             }

@@ -74,9 +74,9 @@ pub(super) fn row<R>(ui: &mut Ui, named: Named, add: impl FnOnce(&mut Ui) -> R) 
     .inner
 }
 
-/// A row whose control says by itself what it is; only a tip is where the label would be.
-pub(super) fn unlabelled<R>(ui: &mut Ui, tip: &'static str, add: impl FnOnce(&mut Ui) -> R) -> R {
-    row(ui, Named { name: "", tip }, add)
+/// A row whose control says by itself what it is.
+pub(super) fn unlabelled<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    row(ui, Named { name: "", tip: "" }, add)
 }
 
 /// The button that puts a value back; it is there only when there is something to put back.
@@ -115,8 +115,8 @@ pub(super) fn choice<T: PartialEq + Copy>(
     row(ui, named, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut changed = false;
-        for (option, named) in options {
-            let response = ui.selectable_label(value == option, named.name).on_hover_text(named.tip);
+        for (option, of_option) in options {
+            let response = ui.selectable_label(value == option, of_option.name).on_hover_text(of_option.tip);
             if response.clicked() && value != option {
                 *value = *option;
                 changed = true;

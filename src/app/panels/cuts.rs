@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
                 cuts.plane.offset = -cuts.plane.offset;
             }
         });
-        unlabelled(ui, text::cuts::FACING.tip, |ui| {
+        unlabelled(ui, |ui| {
             let towards = text::cuts::TOWARDS_EYE;
             if ui.button(towards.name).on_hover_text(towards.tip).clicked() {
                 panels.commands.push(Command::FacePlane);
@@ -81,7 +81,7 @@ fn plane(ui: &mut Ui, plane: &mut ClipPlane, default: f64, volume: &VolumeFacts)
     let mut offset_mm = plane.offset * mm;
     let before_mm = offset_mm;
     let offset = Number::new(text::cuts::OFFSET, -reach * mm..=reach * mm);
-    offset.unit(text::cuts::MILLIMETRES).decimals(1).show(ui, &mut offset_mm, default * mm);
+    offset.unit(text::common::MM).decimals(1).show(ui, &mut offset_mm, default * mm);
     if offset_mm != before_mm {
         plane.offset = offset_mm / mm;
     }

@@ -16,7 +16,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             (ground.height * mm, panels.volume.map_or(1.0, |v| v.scene.support_radius()));
         let before_mm = height_mm;
         let height = Number::new(text::floor::HEIGHT, -reach * mm..=reach * mm);
-        height.unit(text::floor::MILLIMETRES).decimals(1).show(ui, &mut height_mm, defaults.height * mm);
+        height.unit(text::common::MM).decimals(1).show(ui, &mut height_mm, defaults.height * mm);
         if height_mm != before_mm {
             ground.height = height_mm / mm;
         }

@@ -8,7 +8,7 @@ use super::super::text::common::{DEGREES, TIMES};
 use super::super::text::{self, Named};
 use super::super::theme;
 use super::Panels;
-use super::controls::{Number, choice, color, row, switch};
+use super::controls::{Number, choice, color, row, switch, unlabelled};
 use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, Settings};
 
 const KINDS: [(LightKind, Named); 2] =
@@ -81,7 +81,7 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera) -> bool {
     if lock != light.lock {
         light.set_lock(lock, camera);
     }
-    row(ui, text::NOTHING, |ui| {
+    unlabelled(ui, |ui| {
         let headlight = text::lights::HEADLIGHT;
         if ui.button(headlight.name).on_hover_text(headlight.tip).clicked() {
             light.lock = LightLock::Camera;

@@ -46,7 +46,7 @@ pub(super) fn show(
         (Kernel::Prefiltered, text::sampling::PREFILTERED),
     ];
     choice(ui, text::sampling::KERNEL, kernel, &kernels);
-    let voxels = |named, range| Number::new(named, range).unit(text::sampling::VOXELS);
+    let voxels = |named, range| Number::new(named, range).unit(text::common::VOX);
     if let Kernel::Gaussian { sigma } = kernel {
         voxels(text::sampling::SIGMA, 0.4..=0.8).show(ui, sigma, SIGMA);
     }

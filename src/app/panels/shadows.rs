@@ -76,14 +76,14 @@ fn live(ui: &mut Ui, panels: &mut Panels<'_>) {
     offset.show(ui, &mut shadows.ambient_offset, defaults.ambient_offset);
     let gain = Number::new(text::shadows::GAIN, 0.1..=10.0).log();
     gain.show(ui, &mut shadows.gain, defaults.gain);
-    let bias = Number::new(text::shadows::LIGHT_BIAS, 0.0..=2.0).unit(text::shadows::VOXELS);
+    let bias = Number::new(text::shadows::LIGHT_BIAS, 0.0..=2.0).unit(text::common::VOX);
     bias.show(ui, &mut shadows.bias_voxels, defaults.bias_voxels);
 }
 
 fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {
     let balance = Number::new(text::shadows::BALANCE, 0.1..=10.0).unit(TIMES).log();
     balance.show(ui, &mut panels.settings.shadows.balance, panels.defaults.shadows.balance);
-    unlabelled(ui, text::shadows::BALANCE.tip, |ui| {
+    unlabelled(ui, |ui| {
         let idle = !panels.balancing && panels.volume.is_some();
         let measure = text::shadows::MEASURE_BALANCE;
         let button = ui.add_enabled(idle, egui::Button::new(measure.name));

@@ -6,6 +6,14 @@ pub(crate) const ADVANCED: &str = "Advanced";
 /// Behind a factor.
 pub(crate) const TIMES: &str = " ×";
 
+/// Leaves what is being done or asked.
+pub(crate) const CANCEL: &str = "Cancel";
+
+/// Behind a length …
+pub(crate) const MM: &str = " mm";
+/// … and one in voxels.
+pub(crate) const VOX: &str = " vox";
+
 /// Behind an angle.
 pub(crate) const DEGREES: &str = "°";
 

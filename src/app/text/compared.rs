@@ -19,8 +19,6 @@ pub(crate) const KEEP: Named = named(
     "Keep this look on the right",
     "Then change something: the left side follows, the right side stays",
 );
-/// Beside the button that keeps a look.
-pub(crate) const KEEP_ROW_TIP: &str = "Compares later changes with the look as it is now";
 pub(crate) const WITH_FILE: Named =
     named("Compare with a file…", "Settings or a preset, laid over the look as it is now");
 pub(crate) const TAKE_RIGHT: Named = named("Take the right look", "Makes the right look the current one");

@@ -24,8 +24,6 @@ pub(crate) const PLANE: Named = named(
 );
 pub(crate) const OFFSET: Named =
     named("Offset", "From the middle of the volume, in the direction in which the plane looks");
-/// Behind a length in millimetres.
-pub(crate) const MILLIMETRES: &str = " mm";
 pub(crate) const FACING: Named =
     named("Facing", "Where the plane looks; what lies in front of it is cut away");
 pub(crate) const FLIP: Named = named("Flip", "Cuts the other side away");

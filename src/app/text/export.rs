@@ -6,7 +6,6 @@ use super::{Named, named};
 
 pub(crate) const TITLE: &str = "Export picture";
 pub(crate) const EXPORT: &str = "Export";
-pub(crate) const CANCEL: &str = "Cancel";
 
 /// What is made.
 pub(crate) const STILL: Named = named("Picture", "What the window shows, at any size");

@@ -62,7 +62,6 @@ pub(crate) const SLICE: &str = "Slice";
 
 /// The window for typing a path.
 pub(crate) const PATH: &str = "Path";
-pub(crate) const CANCEL: &str = "Cancel";
 
 /// Bytes that are no UTF-8.
 pub(crate) fn no_text(err: impl Display) -> String {

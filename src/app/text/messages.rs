@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use super::commands::{recall_view_keys, store_view_keys};
+
 pub(crate) const DETAILS: &str = "Details";
 pub(crate) const DISMISS: &str = "Dismiss";
 /// The window of details.
@@ -42,12 +44,12 @@ pub(crate) fn wrote(path: &Path) -> String {
 
 /// A view is kept under a digit.
 pub(crate) fn view_kept(slot: u8) -> String {
-    format!("View {slot} is kept: Ctrl+{slot} looks that way again")
+    format!("View {slot} is kept: {} looks that way again", recall_view_keys(slot))
 }
 
 /// There is no view under a digit.
 pub(crate) fn no_view_kept(slot: u8) -> String {
-    format!("No view is kept as {slot}: Ctrl+Shift+{slot} keeps one")
+    format!("No view is kept as {slot}: {} keeps one", store_view_keys(slot))
 }
 
 /// What became of the settings when the device was lost: they are in a file …

@@ -1,8 +1,8 @@
 //! What the window says, in one place: for whoever reads it all at once, corrects or translates it.
 //!
 //! One file per part of the window. Plain texts are constants; texts with figures in them are functions,
-//! because other languages put the figures elsewhere. The look of a text stays where it is shown, and so do
-//! the names of things that files know, too: presets, views, colour maps.
+//! because other languages put the figures elsewhere. The look of a text stays where it is shown. The names of
+//! presets, colour maps, views and sets of lights are with them in `src/model`; errors word themselves.
 
 pub(super) mod camera;
 pub(super) mod commands;
@@ -47,6 +47,3 @@ pub(super) struct Named {
 const fn named(name: &'static str, tip: &'static str) -> Named {
     Named { name, tip }
 }
-
-/// Beside what explains itself.
-pub(super) const NOTHING: Named = named("", "");

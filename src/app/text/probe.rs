@@ -28,7 +28,7 @@ pub(crate) fn arrives(share: f64) -> String {
     format!("{:.0} % arrives", 100.0 * share)
 }
 
-/// At what angle, in degrees; behind how much.
-pub(crate) fn at_angle(degrees: f64) -> String {
-    format!(", at {degrees:.0}° to the surface")
+/// How much of a light gets there, and at what angle.
+pub(crate) fn arrival(through: &str, angle_deg: Option<f64>) -> String {
+    angle_deg.map_or_else(|| through.to_owned(), |angle| format!("{through}, at {angle:.0}° to the surface"))
 }

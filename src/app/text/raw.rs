@@ -4,7 +4,6 @@ use super::{Named, named};
 
 pub(crate) const TITLE: &str = "How is it stored?";
 pub(crate) const OPEN: &str = "Open";
-pub(crate) const CANCEL: &str = "Cancel";
 
 pub(crate) const VOXELS: &str = "Voxels";
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];

@@ -13,8 +13,6 @@ pub(crate) const SIGMA: Named =
     named("Sigma", "Width of the Gaussian; smaller ones are sharper and brighten dark interiors");
 pub(crate) const SLAB: Named =
     named("Slab", "Thickness of a sheet in edges of the smallest voxel; thinner is slower and more exact");
-/// Behind a length in voxels.
-pub(crate) const VOXELS: &str = " vox";
 
 pub(crate) const QUADRATURE: Named = named("Quadrature", "Samples per slab along the ray");
 pub(crate) const ONE_POINT: Named = named("1 point", "The middle of every slab: fast");

@@ -27,8 +27,6 @@ pub(crate) const LIGHT_BIAS: Named = named(
     "Light bias",
     "Looks up the light a little nearer to its source: takes self-shadowing off surfaces",
 );
-/// Behind a length in voxels.
-pub(crate) const VOXELS: &str = " vox";
 
 pub(crate) const BALANCE: Named = named(
     "Balance",

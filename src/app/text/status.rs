@@ -15,7 +15,7 @@ pub(crate) fn opening(phase: &str, source: &str) -> String {
 }
 
 /// What the renderer is doing.
-fn stage(stage: Stage) -> &'static str {
+fn name_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Upload => "uploading the volume",
         Stage::Pyramid => "preparing the volume",
@@ -25,8 +25,8 @@ fn stage(stage: Stage) -> &'static str {
 }
 
 /// The share of the picture at full quality that is done, and what is done now.
-pub(crate) fn refining(share: f32, by: Stage) -> String {
-    format!("refining {:.0} %, {}", share * 100.0, stage(by))
+pub(crate) fn refining(share: f32, stage: Stage) -> String {
+    format!("refining {:.0} %, {}", share * 100.0, name_of(stage))
 }
 
 /// How fast, with how much memory, and on what.

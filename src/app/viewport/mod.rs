@@ -141,7 +141,7 @@ impl Viewport {
         self.generation += 1;
         self.volume = Some((Arc::clone(&volume), Arc::clone(&bricks)));
         self.painter.set_scene(Scene { renderer, volume, bricks });
-        (self.wanted, self.shown, self.failed) = (None, None, None);
+        (self.wanted, self.shown, self.failed, self.waited_in_vain) = (None, None, None, false);
         self.waiting.clear();
     }
 
@@ -225,7 +225,8 @@ impl Viewport {
         let newest = (!self.waited_in_vain).then_some(&wanted);
         let frame = self.painter.take_frame(newest, patience);
         if patience > Duration::ZERO {
-            self.waited_in_vain = frame.is_none();
+            let is_late = |frame: &Frame| newest.is_some_and(|newest| frame.wanted != *newest);
+            self.waited_in_vain = frame.as_ref().is_none_or(is_late);
         }
         if let Some(frame) = frame.filter(|frame| frame.wanted.generation == self.generation) {
             self.show(frame, ctx);
