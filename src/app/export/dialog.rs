@@ -166,6 +166,10 @@ impl Export {
     }
 
     fn progress_ui(&self, ui: &mut Ui) {
+        // First, so that it stays where it is when there is something to count.
+        if ui.button(text::common::CANCEL).clicked() {
+            self.progress.cancelled.store(true, Ordering::Relaxed);
+        }
         let (done, total) =
             (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
         if total > 1 {
@@ -179,9 +183,6 @@ impl Export {
         } else {
             ui.spinner();
             ui.label(text::export::RENDERING);
-        }
-        if ui.button(text::common::CANCEL).clicked() {
-            self.progress.cancelled.store(true, Ordering::Relaxed);
         }
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     }
