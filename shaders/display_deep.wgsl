@@ -14,6 +14,7 @@ fn linear_light(pixel: vec2u) -> vec4f {
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    display = bound_display;
     if (any(id.xy >= textureDimensions(shown))) {
         return;
     }

@@ -71,7 +71,7 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
 fn shaded(ray: Ray, pixel: vec2u, k: i32, material: vec3f) -> vec3f {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
-    let level = select(0.0, stretch_level(eye.frame, depth), STRETCH);
+    let level = kernel_level(eye.frame, depth);
     var slope: vec3f;
     if (SHEET_GRADIENTS) {
         slope = gradient_between_sheets(vec2f(pixel), f32(k));
@@ -145,6 +145,8 @@ fn main(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_id) local: vec3u,
 ) {
+    eye = bound_eye;
+    grid = bound_grid;
     let pixel = tile_of(group, groups.y, eye.runs) * 8u + in_tile(local.xy) + vec2u(0u, eye.first_row);
     if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
         return;

@@ -10,6 +10,7 @@ fn value(texel: vec3i) -> f32 {
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    resample = bound_resample;
     let texel = texel_of(group, local);
     if (any(texel >= textureDimensions(gradients))) {
         return;

@@ -34,7 +34,8 @@ struct Ground {
     lights: array<Light, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> ground: Ground;
+@group(0) @binding(0) var<uniform> bound_ground: Ground;
+var<private> ground: Ground;
 // g: distance to the nearest cell that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var picture: texture_2d<f32>;
@@ -82,6 +83,8 @@ fn main(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_id) local: vec3u,
 ) {
+    grid = bound_grid;
+    ground = bound_ground;
     let pixel = tile_of(group, groups.y, ground.runs) * 8u + local.xy + vec2u(0u, ground.first_row);
     if (pixel.x >= ground.frame.size.x || pixel.y >= ground.end_row) {
         return;

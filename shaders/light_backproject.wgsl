@@ -35,7 +35,8 @@ struct Backprojection {
     pad1: f32,
 }
 
-@group(0) @binding(0) var<uniform> view: Backprojection;
+@group(0) @binding(0) var<uniform> bound_view: Backprojection;
+var<private> view: Backprojection;
 @group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
 // Four slabs to a texel.
 @group(0) @binding(2) var ring: texture_2d_array<f32>;
@@ -238,6 +239,7 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
 // Eight lanes to a cell of 2³ voxels, and every eighth cell of the brick to the same lanes.
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    view = bound_view;
     let listed = group.y * 16384u + group.x;
     if (listed >= view.bricks) {
         return;

@@ -17,12 +17,16 @@ struct Collapse {
     pad2: f32,
 }
 
-@group(0) @binding(1) var<uniform> collapse: Collapse;
+@group(0) @binding(1) var<uniform> bound_collapse: Collapse;
+var<private> collapse: Collapse;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var collapsed: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    collapse = bound_collapse;
+    eye = bound_eye;
+    grid = bound_grid;
     let listed = listed_brick(group);
     if (listed >= collapse.bricks) {
         return;

@@ -61,6 +61,8 @@ fn main(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_id) local: vec3u,
 ) {
+    grid = bound_grid;
+    march = bound_march;
     let listed = group.y * 16384u + group.x;
     if (listed >= march.tiles) {
         return;
@@ -87,7 +89,7 @@ fn main(
         }
         let place = ray.origin + ray.direction * depth_of(march.frame, f32(at.slab));
         let share = share_that_shades(march.shading_cut, place);
-        let extinction = slab_material(march.frame, ray, f32(at.slab)).a * share;
+        let extinction = slab_extinction(march.frame, ray, f32(at.slab)) * share;
         let tau = extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
         at.deposits = with_deposit(at.deposits, u32(at.slab), deposited(t, tau));
         t *= exp(-tau);

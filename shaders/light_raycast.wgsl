@@ -22,7 +22,8 @@ struct Raycast {
     shading_cut: Cut,
 }
 
-@group(0) @binding(0) var<uniform> raycast: Raycast;
+@group(0) @binding(0) var<uniform> bound_raycast: Raycast;
+var<private> raycast: Raycast;
 // g: distance to the nearest cell that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
@@ -38,6 +39,8 @@ fn light_distance(cell: vec3f) -> i32 {
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    grid = bound_grid;
+    raycast = bound_raycast;
     let listed = listed_brick(group);
     if (listed >= raycast.bricks) {
         return;

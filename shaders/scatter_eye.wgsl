@@ -49,6 +49,8 @@ fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    eye = bound_eye;
+    scatter = bound_scatter;
     if (any(id.xy >= eye.frame.size)) {
         return;
     }

@@ -32,7 +32,8 @@ struct Phase {
 // Colour and opacity so far.
 @group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
 @group(1) @binding(4) var clamped: sampler;
-@group(3) @binding(0) var<uniform> phase: Phase;
+@group(3) @binding(0) var<uniform> bound_phase: Phase;
+var<private> phase: Phase;
 
 fn density_of(voxel: vec3i) -> f32 {
     if (any(voxel < vec3i(0)) || any(vec3f(voxel) >= scatter.dims)) {
@@ -57,6 +58,9 @@ fn gradient_of(voxel: vec3i) -> vec3f {
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    eye = bound_eye;
+    phase = bound_phase;
+    scatter = bound_scatter;
     if (id.x >= scatter.count) {
         return;
     }

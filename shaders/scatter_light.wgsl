@@ -15,6 +15,8 @@ override DILATION: i32 = 0;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    march = bound_march;
+    scatter = bound_scatter;
     if (any(id.xy >= march.frame.size)) {
         return;
     }

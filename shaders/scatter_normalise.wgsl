@@ -10,6 +10,7 @@
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    scatter = bound_scatter;
     let listed = listed_brick(group);
     if (listed >= scatter.count) {
         return;

@@ -6,6 +6,7 @@
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    scatter = bound_scatter;
     if (all(id.xy < scatter.frame.size)) {
         textureStore(picture, id.xy, rays[id.y * scatter.frame.size.x + id.x]);
     }

@@ -12,6 +12,7 @@
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    scatter = bound_scatter;
     if (any(id.xy >= scatter.frame.size)) {
         return;
     }

@@ -52,10 +52,18 @@ fn slab_material(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
     }
     let depth = depth_of(frame, k);
     let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
-    var sum = material_at(ray.origin + ray.direction * (depth - offset), stretch_level(frame, depth - offset));
+    var sum = material_at(ray.origin + ray.direction * (depth - offset), kernel_level(frame, depth - offset));
     if (QUADRATURE == 2u) {
-        sum += material_at(ray.origin + ray.direction * (depth + offset), stretch_level(frame, depth + offset));
+        sum += material_at(ray.origin + ray.direction * (depth + offset), kernel_level(frame, depth + offset));
         sum *= 0.5;
     }
     return vec4f(sum.rgb / max(sum.a, 1e-20), sum.a);
+}
+
+// Its extinction alone.
+fn slab_extinction(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+    if (!PRECLASSIFY) {
+        return classified_extinction(slab_density(frame, ray, k));
+    }
+    return slab_material(frame, ray, k).a;
 }

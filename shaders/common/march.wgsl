@@ -26,7 +26,8 @@ struct March {
     shading_cut: Cut,
 }
 
-@group(0) @binding(0) var<uniform> march: March;
+@group(0) @binding(0) var<uniform> bound_march: March;
+var<private> march: March;
 // Transmittance in front of the next slab, per pixel.
 @group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;
 // Four slabs to a texel: a quarter of the stores here, and of the fetches behind.

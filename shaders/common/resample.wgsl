@@ -14,7 +14,8 @@ struct Resample {
 @group(0) @binding(0) var source: texture_3d<f32>;
 @group(0) @binding(1) var clamped: sampler;
 @group(0) @binding(2) var level: texture_storage_3d<STORAGE_FORMAT, write>;
-@group(0) @binding(3) var<uniform> resample: Resample;
+@group(0) @binding(3) var<uniform> bound_resample: Resample;
+var<private> resample: Resample;
 @group(0) @binding(5) var<storage, read> bricks: array<u32>;
 
 // The texel that an invocation fills; beyond every level if there is none.

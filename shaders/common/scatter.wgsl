@@ -61,7 +61,8 @@ const ORDER_EVERY_FOOTPRINT = 2u;
 
 override ORDER: u32 = 0u;
 
-@group(1) @binding(0) var<uniform> scatter: Scatter;
+@group(1) @binding(0) var<uniform> bound_scatter: Scatter;
+var<private> scatter: Scatter;
 // Sums of density × footprint in units of 2⁻²⁴: integers, so that their order does not matter.
 @group(1) @binding(1) var<storage, read_write> sheets: array<atomic<i32>>;
 

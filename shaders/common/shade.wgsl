@@ -37,7 +37,8 @@ struct Eye {
     lights: array<Light, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> eye: Eye;
+@group(0) @binding(0) var<uniform> bound_eye: Eye;
+var<private> eye: Eye;
 @group(2) @binding(0) var attenuation_0: texture_3d<f32>;
 @group(2) @binding(1) var attenuation_1: texture_3d<f32>;
 @group(2) @binding(2) var attenuation_2: texture_3d<f32>;

@@ -17,7 +17,8 @@ struct Display {
     pad2: u32,
 }
 
-@group(0) @binding(0) var<uniform> display: Display;
+@group(0) @binding(0) var<uniform> bound_display: Display;
+var<private> display: Display;
 @group(0) @binding(1) var picture: texture_2d<f32>;
 // Under it, premultiplied, too.
 @group(0) @binding(3) var floor_light: texture_2d<f32>;

@@ -19,3 +19,9 @@ fn classify(density: f32) -> vec4f {
     let at = table_entry(density);
     return mix(table[at.low], table[at.low + 1u], at.fraction);
 }
+
+// The same without colour.
+fn classified_extinction(density: f32) -> f32 {
+    let at = table_entry(density);
+    return mix(table[at.low].a, table[at.low + 1u].a, at.fraction);
+}

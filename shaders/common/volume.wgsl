@@ -18,7 +18,10 @@ struct Grid {
     pad2: f32,
 }
 
-@group(1) @binding(0) var<uniform> grid: Grid;
+// Uniforms are copied before anything branches: behind a branch Mesa's software driver reads them lane by
+// lane, with some thirty instructions for each number.
+@group(1) @binding(0) var<uniform> bound_grid: Grid;
+var<private> grid: Grid;
 @group(1) @binding(1) var density_texture: texture_3d<f32>;
 @group(1) @binding(2) var pyramid_texture: texture_3d<f32>;
 @group(1) @binding(3) var clamped: sampler;
@@ -62,6 +65,14 @@ fn density_by_kernel(p: vec3f) -> f32 {
     return low.z * (low.y * near + high.y * near_up) + high.z * (low.y * far + high.y * far_up);
 }
 
+// The kernel's stretch at a depth, as a level of the pyramid.
+fn kernel_level(frame: SheetFrame, depth: f32) -> f32 {
+    if (!STRETCH) {
+        return 0.0;
+    }
+    return stretch_level(frame, depth);
+}
+
 // Density at a point, with the kernel stretched to pyramid level `level`.
 fn density(p: vec3f, level: f32) -> f32 {
     if (KERNEL == KERNEL_PREFILTERED) {
@@ -70,10 +81,11 @@ fn density(p: vec3f, level: f32) -> f32 {
     if (!STRETCH) {
         return density_by_kernel(p);
     }
+    let blurred = pyramid(p, max(level, 1.0));
     if (level >= 1.0) {
-        return pyramid(p, level);
+        return blurred;
     }
-    return mix(density_by_kernel(p), pyramid(p, 1.0), level);
+    return mix(density_by_kernel(p), blurred, level);
 }
 
 // The sheet's value: density averaged over slab k where the ray crosses it.
@@ -82,10 +94,10 @@ fn slab_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
     if (QUADRATURE == 2u) {
         let near = depth - TWO_POINT_OFFSET * frame.slab;
         let far = depth + TWO_POINT_OFFSET * frame.slab;
-        return 0.5 * (density(ray.origin + ray.direction * near, stretch_level(frame, near))
-            + density(ray.origin + ray.direction * far, stretch_level(frame, far)));
+        return 0.5 * (density(ray.origin + ray.direction * near, kernel_level(frame, near))
+            + density(ray.origin + ray.direction * far, kernel_level(frame, far)));
     }
-    return density(ray.origin + ray.direction * depth, stretch_level(frame, depth));
+    return density(ray.origin + ray.direction * depth, kernel_level(frame, depth));
 }
 
 // First and last slab whose middle can lie where material is: the grid and two voxels around it.

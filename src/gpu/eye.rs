@@ -7,7 +7,7 @@ use super::pass;
 use super::scatter_eye::scatter_dilation;
 use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
-use super::volume::{Gpu, entry};
+use super::volume::{Gpu, Levels, entry};
 use super::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{
@@ -25,6 +25,8 @@ pub(super) struct EyePass {
     dilation: i32,
     /// Whether normals may come from the texture of gradients.
     takes_gradients: bool,
+    /// What kernels reach of the pyramid.
+    levels: Levels,
     constants: Vec<(&'static str, f64)>,
 }
 
@@ -98,7 +100,8 @@ impl EyePass {
         let dilation = if options.leaping { i32::from(seen) } else { EVERYWHERE };
         // Between levels of the pyramid differences and interpolation do not commute exactly.
         let takes_gradients = stretch_level <= 0.0 || options.preview;
-        Self { frame, uniform, dilation, takes_gradients, constants }
+        let levels = Levels::of(stretch_level > 0.0);
+        Self { frame, uniform, dilation, takes_gradients, levels, constants }
     }
 
     /// Slabs of the stack.
@@ -143,7 +146,7 @@ impl EyePass {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, volume, .. } = gpu;
-        let gradients = volume.gradients_view.as_ref().filter(|_| self.takes_gradients);
+        let gradients = volume.gradients_views.as_ref().filter(|_| self.takes_gradients);
         let mut constants = self.constants.clone();
         constants.push(gradient_constant(gradients.is_some()));
         let pipeline = shaders.pipeline("eye.wgsl", &constants)?;
@@ -162,10 +165,10 @@ impl EyePass {
                 view_entry(3, picture),
                 entry(4, tables.lighting.buffer.as_entire_binding()),
                 view_entry(5, &tables.light_distances),
-                view_entry(6, gradients.unwrap_or(gpu.nothing)),
+                view_entry(6, gradients.map_or(gpu.nothing, |views| self.levels.choose(views))),
             ],
         );
-        let of_volume = gpu.bind_volume(&pipeline, self.dilation);
+        let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels);
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
         Ok(())

@@ -5,7 +5,7 @@ use super::light_raycast;
 use super::pass;
 use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
-use super::volume::{Gpu, entry};
+use super::volume::{Gpu, Levels, entry};
 use super::{GpuError, RenderOptions};
 use crate::model::{Ground, Light, MAX_LIGHTS, Settings, linear_from_srgb};
 use crate::plan::ray_reach;
@@ -60,7 +60,7 @@ pub(super) fn draw(
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
     let dilation = if options.leaping { seen } else { EVERYWHERE };
-    let of_volume = gpu.bind_volume(&pipeline, dilation);
+    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
     pass::dispatch(encoder, "Ground::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
 }

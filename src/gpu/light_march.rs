@@ -7,7 +7,7 @@ use super::recycled::Recycled;
 use super::shader::ring_format;
 use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
-use super::volume::{Gpu, entry};
+use super::volume::{Gpu, Levels, entry};
 use super::{Context, GpuError, RenderOptions};
 use crate::math::Region;
 use crate::model::{Deposit, Light, Settings};
@@ -204,8 +204,9 @@ pub(super) fn march(
     if tiles.is_empty() {
         return Ok(());
     }
-    let stretch = view.frame.max_stretch_level();
-    let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, stretch > 0.0))?;
+    // Pixels before the anchor plane are no wider than voxels, in perspective, too.
+    let is_stretched = view.frame.max_stretch_level_of(slabs.0..slabs.1) > 0.0;
+    let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, is_stretched))?;
     let cut = settings.cuts.shading().region(&volume.scene);
     let count = tiles.len() as u32;
     let uniform = uniforms::March { tiles: count, ..march_uniform(light, &cut, view, sheets, slabs) };
@@ -218,7 +219,7 @@ pub(super) fn march(
     let leaping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
     let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
-    let of_volume = gpu.bind_volume(&pipeline, dilation);
+    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::of(is_stretched));
     pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], single_workgroups(count));
     Ok(())
 }

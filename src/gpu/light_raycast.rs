@@ -7,7 +7,7 @@ use super::listed_bricks::{self, Listed};
 use super::pass;
 use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
-use super::volume::{Gpu, entry};
+use super::volume::{Gpu, Levels, entry};
 use super::{GpuError, RenderOptions};
 use crate::model::{Deposit, Light, Settings};
 use crate::plan::ray_reach;
@@ -73,7 +73,7 @@ pub(super) fn raycast(
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
     let dilation = if options.leaping { seen } else { EVERYWHERE };
-    let of_volume = gpu.bind_volume(&pipeline, dilation);
+    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
     pass::dispatch(
         encoder,
         "Raycast::pass",

@@ -74,14 +74,19 @@ impl Gpu<'_> {
             1,
             &[
                 entry(0, grid.as_entire_binding()),
-                entry(2, wgpu::BindingResource::TextureView(&volume.pyramid_view)),
+                entry(2, wgpu::BindingResource::TextureView(&volume.pyramid_views.all)),
                 entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
             ],
         )
     }
 
     /// Bind group 1 of the passes that sample density.
-    pub(super) fn bind_volume(&self, pipeline: &wgpu::ComputePipeline, dilation: i32) -> wgpu::BindGroup {
+    pub(super) fn bind_volume(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        dilation: i32,
+        levels: Levels,
+    ) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(dilation));
         self.bind(
@@ -91,11 +96,53 @@ impl Gpu<'_> {
             &[
                 entry(0, grid.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(&volume.density_view)),
-                entry(2, wgpu::BindingResource::TextureView(&volume.pyramid_view)),
+                entry(2, wgpu::BindingResource::TextureView(levels.choose(&volume.pyramid_views))),
                 entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
                 entry(4, wgpu::BindingResource::Sampler(&volume.nearest)),
             ],
         )
+    }
+}
+
+/// The levels of the pyramid that a pass may read.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Levels {
+    /// No kernel is stretched.
+    Finest,
+    /// Kernels are stretched.
+    All,
+}
+
+impl Levels {
+    /// What kernels need that are stretched or not.
+    pub(super) fn of(is_stretched: bool) -> Self {
+        if is_stretched { Self::All } else { Self::Finest }
+    }
+
+    /// The view that has these levels.
+    pub(super) fn choose(self, views: &LevelViews) -> &wgpu::TextureView {
+        match self {
+            Self::Finest => &views.finest,
+            Self::All => &views.all,
+        }
+    }
+}
+
+/// A texture of the pyramid as a whole, and its finest level alone: a software driver works out the sizes of
+/// levels for each lane and fetch where there are several.
+#[derive(Debug)]
+pub(super) struct LevelViews {
+    /// Every level.
+    pub all: wgpu::TextureView,
+    /// Level 0.
+    finest: wgpu::TextureView,
+}
+
+impl LevelViews {
+    fn new(texture: &wgpu::Texture) -> Self {
+        let all = wgpu::TextureViewDescriptor::default();
+        let finest = wgpu::TextureViewDescriptor { mip_level_count: Some(1), ..all.clone() };
+        Self { all: texture.create_view(&all), finest: texture.create_view(&finest) }
     }
 }
 
@@ -111,13 +158,13 @@ pub(super) struct GpuVolume {
     density: wgpu::Texture,
     pub density_view: wgpu::TextureView,
     pub pyramid: wgpu::Texture,
-    pub pyramid_view: wgpu::TextureView,
+    pub pyramid_views: LevelViews,
     /// The bricks of its levels that hold anything.
     pub filled_levels: Vec<Vec<u32>>,
     /// Its gradients, while memory allows.
     pub gradients: Option<wgpu::Texture>,
     /// The same.
-    pub gradients_view: Option<wgpu::TextureView>,
+    pub gradients_views: Option<LevelViews>,
     pub clamped: wgpu::Sampler,
     nearest: wgpu::Sampler,
     unorm: bool,
@@ -174,7 +221,6 @@ impl GpuVolume {
             pad2: 0.0,
         };
         let gradients = gradients::texture(context, &pyramid);
-        let whole = wgpu::TextureViewDescriptor::default();
         Ok(Self {
             volume: Arc::clone(volume),
             bricks: Arc::clone(bricks),
@@ -182,9 +228,9 @@ impl GpuVolume {
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
             filled_levels: prefilter::filled_levels(bricks, &pyramid),
-            gradients_view: gradients.as_ref().map(|texture| texture.create_view(&whole)),
+            gradients_views: gradients.as_ref().map(LevelViews::new),
             gradients,
-            pyramid_view: pyramid.create_view(&wgpu::TextureViewDescriptor::default()),
+            pyramid_views: LevelViews::new(&pyramid),
             pyramid,
             clamped: context.sampler("Volume::clamped"),
             nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {

@@ -6,6 +6,8 @@
 //! `origin(i, j) + z · direction(i, j)`; both are linear in i and j. A parallel projection is the
 //! one whose `inverse_distance` is zero.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::math::SceneSpace;
@@ -160,7 +162,12 @@ impl SheetFrame {
 
     /// The largest [`Self::stretch_level`] of any slab.
     pub fn max_stretch_level(&self) -> f64 {
-        let last = self.first_depth + f64::from(self.slab_count) * self.slab;
-        self.stretch_level(self.first_depth).max(self.stretch_level(last))
+        self.max_stretch_level_of(0..self.slab_count)
+    }
+
+    /// The largest [`Self::stretch_level`] of some slabs, from their fronts to their backs.
+    pub fn max_stretch_level_of(&self, slabs: Range<u32>) -> f64 {
+        let depth = |slab: u32| self.first_depth + f64::from(slab) * self.slab;
+        self.stretch_level(depth(slabs.start)).max(self.stretch_level(depth(slabs.end)))
     }
 }
