@@ -45,7 +45,7 @@ var<private> view: Backprojection;
 
 // The first sheet that touches a voxel alone decides (the paper's mode without weight volume).
 override FIRST_TOUCH: bool = false;
-// Whether the kernel is anywhere wider than a pixel or a slab.
+// Whether the kernel is anywhere wider than a pixel or a slab, or the light inside of a cube of views.
 override WIDE: bool = false;
 // Points per slab at which the kernel is evaluated, as in common/volume.wgsl: with two it is the
 // paper's h̄, the kernel averaged over the slab.
@@ -57,13 +57,7 @@ const MAX_KERNEL_PIXELS = 4.0;
 
 // What the four slabs 4·layer … 4·layer + 3 deposit.
 fn four_sheets(pixel: vec2f, layer: i32) -> vec4f {
-    return textureSampleLevel(ring, ring_sampler, (pixel + 0.5) * view.ring_scale, in_ring(layer), 0.0);
-}
-
-// Modulo without a division of integers.
-fn in_ring(layer: i32) -> i32 {
-    let layers = f32(view.layers);
-    return i32(f32(layer) - layers * floor((f32(layer) + 0.5) / layers));
+    return textureSampleLevel(ring, ring_sampler, (pixel + 0.5) * view.ring_scale, in_ring(layer, view.layers), 0.0);
 }
 
 // Weights of four slabs from some place of a texel on: those in the texel, and those in the next.
@@ -189,8 +183,9 @@ fn footprint_of(voxel: vec3u) -> Footprint {
     let spread = 1.0 + depth * view.frame.inverse_distance;
     let limit = spread / max(view.frame.inverse_distance * view.frame.pitch, 1e-20);
     let owned = (spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001))) | (view.cube_face == 0u);
-    if ((owned & !(spread > 1e-3) & (view.begin == 0u)) && all(voxel < view.dims)) {
-        // In the plane of the light, and of this view: at the light itself.
+    // No variant asks in vain: all lanes wait for the store.
+    if (WIDE && (owned & !(spread > 1e-3) & (view.begin == 0u)) && all(voxel < view.dims)) {
+        // In the plane of the light, and of this view: at the light itself, which is inside of a cube.
         textureStore(attenuation, voxel, vec4f(1.0));
     }
     let pitch = view.frame.pitch * spread;

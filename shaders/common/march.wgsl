@@ -56,7 +56,7 @@ fn deposited(t: f32, tau: f32) -> f32 {
 
 // Keeps what four slabs deposit, of which slab k is one.
 fn keep(pixel: vec2u, k: u32, deposits: vec4f) {
-    textureStore(ring, pixel, (k / 4u) % march.layers, deposits);
+    textureStore(ring, pixel, in_ring(i32(k / 4u), march.layers), deposits);
 }
 
 // Deposits with that of slab k replaced.

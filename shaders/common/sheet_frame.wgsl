@@ -50,3 +50,10 @@ fn stretch_level(frame: SheetFrame, depth: f32) -> f32 {
     let stretch = frame.pitch * (1.0 + depth * frame.inverse_distance) / frame.voxel_edge;
     return clamp(log2(max(stretch, 1e-9)), 0.0, MAX_STRETCH_LEVEL);
 }
+
+// Where a layer of four slabs lies in a ring of so many: modulo without a division of integers, which software
+// drivers make lane by lane.
+fn in_ring(layer: i32, layers: u32) -> i32 {
+    let count = f32(layers);
+    return i32(f32(layer) - count * floor((f32(layer) + 0.5) / count));
+}

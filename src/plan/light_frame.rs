@@ -95,9 +95,11 @@ impl LightView {
         self.kernel_edge / self.frame.slab
     }
 
-    /// Whether the reverse kernel is a pixel wide at every depth, and a slab deep.
+    /// Whether the reverse kernel is a pixel wide at every depth, and a slab deep; never said of a cube's face,
+    /// whose pixels are as small as they get, at the light.
     pub fn kernel_is_narrow(&self) -> bool {
-        self.kernel_pixels(self.frame.pitch_at(self.frame.first_depth)) < 1.0 + 1e-9
+        !self.cube_face
+            && self.kernel_pixels(self.frame.pitch_at(self.frame.first_depth)) < 1.0 + 1e-9
             && (self.kernel_slabs() - 1.0).abs() < 1e-9
     }
 }
