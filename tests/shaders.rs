@@ -92,6 +92,46 @@ fn broken_shaders_are_reported() {
     }
 }
 
+/// Uniforms that are not copied by the first statements of a shader's entry, or read from elsewhere.
+fn uniforms_read_late(source: &str) -> Vec<String> {
+    let code = code_of(source);
+    let entry = code.split("@compute").nth(1).and_then(|rest| rest.split_once(") {\n"));
+    let body = entry.map(|(_, body)| body).unwrap_or_default();
+    let copies: BTreeSet<_> =
+        body.lines().map(str::trim).take_while(|line| line.contains(" = bound_")).collect();
+    let declared = code.split("var<uniform> ").skip(1).filter_map(|rest| rest.split(':').next());
+    let is_late = |name: &&str| {
+        let copy = name.strip_prefix("bound_").map(|own| format!("{own} = {name};"));
+        !copy.is_some_and(|copy| copies.contains(copy.as_str())) || code.matches(*name).count() != 2
+    };
+    declared.filter(is_late).map(str::to_owned).collect()
+}
+
+/// A software driver reads them lane by lane behind a branch (common/volume.wgsl).
+#[test]
+fn uniforms_are_copied_before_anything_branches() {
+    let late: Vec<_> = entry_shaders()
+        .into_iter()
+        .map(|name| (name, uniforms_read_late(&joined(name))))
+        .filter(|(_, late)| !late.is_empty())
+        .collect();
+    assert!(late.is_empty(), "{late:?}");
+}
+
+#[test]
+fn uniforms_read_late_are_noticed() {
+    let source = joined("eye.wgsl");
+    for (from, to, name) in [
+        ("    grid = bound_grid;\n", "", "bound_grid"),
+        ("grid = bound_grid;", "if (true) {}\n    grid = bound_grid;", "bound_grid"),
+        ("let s = eye.shading;", "let s = bound_eye.shading;", "bound_eye"),
+        ("var<uniform> bound_eye", "var<uniform> given_eye", "given_eye"),
+    ] {
+        assert!(source.contains(from), "{from}");
+        assert_eq!(uniforms_read_late(&source.replace(from, to)), [name], "{from}");
+    }
+}
+
 #[test]
 fn every_shader_file_is_embedded_and_used() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
