@@ -231,8 +231,11 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
     return next;
 }
 
-// Eight lanes to a cell of 2³ voxels, and every eighth cell of the brick to the same lanes.
-@compute @workgroup_size(64)
+// Lanes that share a brick, a power of two from 8 to 64 (src/gpu/light_backproject.rs).
+override LANES: u32 = 64u;
+
+// Eight lanes to a cell of 2³ voxels, and to the same lanes every cell of the brick so many cells on.
+@compute @workgroup_size(LANES)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     view = bound_view;
     let listed = group.y * 16384u + group.x;
@@ -240,7 +243,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         return;
     }
     let brick = bricks[listed];
-    var next = next_due(brick.x, lane, brick.yz & vec2u(0x01010101u << (lane / 8u)));
+    // One bit in as many as there are eights of lanes.
+    let every = 0xffffffffu / ((1u << (LANES / 8u)) - 1u);
+    var next = next_due(brick.x, lane, brick.yz & vec2u(every << (lane / 8u)));
     // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
     // there, not from the middle.
     loop {

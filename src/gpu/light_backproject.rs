@@ -2,7 +2,6 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::GpuError;
 use super::kernel::{kernel_constants, quadrature_constant};
 use super::light_march::Sheets;
 use super::light_volume::LightVolume;
@@ -11,6 +10,7 @@ use super::pass;
 use super::tables::{EVERYWHERE, view_entry};
 use super::uniforms::{self, rows};
 use super::volume::{Gpu, entry};
+use super::{Context, GpuError};
 use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
 use crate::model::{Quadrature, Shadows};
@@ -104,7 +104,7 @@ fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
 }
 
 /// The variant of the shader for a kernel, anywhere wider than a pixel or a slab or not.
-pub(super) fn constants(shadows: &Shadows, wide: bool) -> [(&'static str, f64); 5] {
+pub(super) fn constants(context: &Context, shadows: &Shadows, wide: bool) -> [(&'static str, f64); 6] {
     let [kernel, sigma] = kernel_constants(shadows.kernel);
     let flag = |on: bool| f64::from(u8::from(on));
     [
@@ -113,6 +113,8 @@ pub(super) fn constants(shadows: &Shadows, wide: bool) -> [(&'static str, f64); 
         quadrature_constant(shadows.quadrature),
         ("FIRST_TOUCH", flag(shadows.first_touch)),
         ("WIDE", flag(wide)),
+        // A software driver's vector does a whole brick, and what comes before its first voxel once.
+        ("LANES", if context.is_software() { 8.0 } else { 64.0 }),
     ]
 }
 
@@ -127,7 +129,7 @@ pub(super) fn backproject(
     (slabs, part): ((u32, u32), (u32, u32)),
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let Gpu { shaders, volume, .. } = gpu;
+    let Gpu { context, shaders, volume, .. } = gpu;
     let bricks = cut(&schedule.chunks[(slabs.0 / sheets.chunk) as usize], part);
     if bricks.is_empty() {
         return Ok(());
@@ -135,7 +137,7 @@ pub(super) fn backproject(
     let is_wide = !view.kernel_is_narrow() || shadows.quadrature == Quadrature::Two;
     let pipeline = shaders.pipeline_into(
         "light_backproject.wgsl",
-        &constants(shadows, is_wide),
+        &constants(context, shadows, is_wide),
         light.texture.format(),
     )?;
     let [x, y, z] = rows(&light_from_index(&volume.scene, view));

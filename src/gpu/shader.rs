@@ -63,7 +63,7 @@ pub(super) fn ring_format(format: wgpu::TextureFormat) -> wgpu::TextureFormat {
 /// Joins sources and makes pipelines, each once.
 #[derive(Debug, Clone)]
 pub struct ShaderLibrary {
-    context: Context,
+    pub(super) context: Context,
     /// Replacements in the joined source; see [`Self::with_mutation`].
     mutation: Option<(String, String)>,
     pipelines: Arc<Mutex<HashMap<String, wgpu::ComputePipeline>>>,

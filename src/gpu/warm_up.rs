@@ -55,7 +55,11 @@ impl ShaderLibrary {
                 constants.push(eye::gradient_constant(!flag || kernel == Kernel::Prefiltered));
                 self.warm("eye.wgsl", &constants, stop)?;
                 let shadows = Shadows { kernel, ..Shadows::default() };
-                self.warm("light_backproject.wgsl", &light_backproject::constants(&shadows, flag), stop)?;
+                self.warm(
+                    "light_backproject.wgsl",
+                    &light_backproject::constants(&self.context, &shadows, flag),
+                    stop,
+                )?;
                 let settings = Settings { shadows, cuts: cuts.clone(), ..Settings::default() };
                 self.warm("light_march.wgsl", &light_march::constants(&settings, flag), stop)?;
             }
