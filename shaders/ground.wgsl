@@ -103,7 +103,8 @@ fn main(
         var light = vec3f(0.0);
         var bare = vec3f(0.0);
         for (var i = 0u; i < LIGHTS; i += 1u) {
-            let one = fallen(ground.lights[i], p, place, i < SHADOWED);
+            // Not from the copy: an index that varies would keep that as an array in memory.
+            let one = fallen(bound_ground.lights[i], p, place, i < SHADOWED);
             light += one.light;
             bare += one.bare;
         }

@@ -117,7 +117,8 @@ fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
         lit = lit_through_material(surface);
     }
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
-        let light = eye.lights[i];
+        // Not from the copy: an index that varies would keep that as an array in memory.
+        let light = bound_eye.lights[i];
         lit = add(lit, reflect_light(s, light, surface, to_light(light, surface.position).direction, 1.0));
     }
     return material * (s.emission + s.ambient + s.diffuse * lit.diffuse) + s.specular * lit.specular;
