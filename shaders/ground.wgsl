@@ -49,7 +49,7 @@ override SHADOWED: u32 = 1u;
 const LEAST = 0.0005;
 
 fn light_extinction(density: f32) -> f32 {
-    return classify(density).a;
+    return classified_extinction(density);
 }
 
 fn light_distance(cell: vec3f) -> i32 {

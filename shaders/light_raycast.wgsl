@@ -30,7 +30,7 @@ var<private> raycast: Raycast;
 @group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
 fn light_extinction(density: f32) -> f32 {
-    return classify(density).a;
+    return classified_extinction(density);
 }
 
 fn light_distance(cell: vec3f) -> i32 {

@@ -204,7 +204,7 @@ pub(super) fn march(
     if tiles.is_empty() {
         return Ok(());
     }
-    // Pixels before the anchor plane are no wider than voxels, in perspective, too.
+    // Slabs near a perspective light have narrower pixels than those behind.
     let is_stretched = view.frame.max_stretch_level_of(slabs.0..slabs.1) > 0.0;
     let pipeline = shaders.pipeline("light_march.wgsl", &constants(settings, is_stretched))?;
     let cut = settings.cuts.shading().region(&volume.scene);
