@@ -29,6 +29,10 @@ struct Reached {
 fn next_attenuating(walk: Walk, pixel: vec2u, inside: vec2i, t: f32, start: Reached) -> Reached {
     var at = start;
     loop {
+        if (at.slab == at.k + 4) {
+            keep(pixel, u32(at.k), at.deposits);
+            at = Reached(at.slab, at.slab, vec4f(t));
+        }
         if (at.k >= i32(march.end)) {
             break;
         }
@@ -42,16 +46,8 @@ fn next_attenuating(walk: Walk, pixel: vec2u, inside: vec2i, t: f32, start: Reac
             break;
         }
         let behind = select(at.k + 4, leap(walk, at.slab, cell, found.y - grid.dilation), shines);
-        at.slab = min(behind, at.k + 4);
-        let is_passed = at.slab == at.k + 4;
-        if (is_read && is_passed) {
-            keep(pixel, u32(at.k), at.deposits);
-        }
-        if (!is_read || is_passed) {
-            at.k = select(next_read & ~3, at.k + 4, is_read);
-            at.slab = at.k;
-            at.deposits = vec4f(t);
-        }
+        at.k = select(next_read & ~3, at.k, is_read);
+        at.slab = select(at.k, min(behind, at.k + 4), is_read);
     }
     return at;
 }
@@ -95,10 +91,6 @@ fn main(
         t *= exp(-tau);
         at.deposits = with_deposits_behind(at.deposits, u32(at.slab), t);
         at.slab += 1;
-        if (at.slab == at.k + 4) {
-            keep(id, u32(at.k), at.deposits);
-            at = Reached(at.slab, at.slab, vec4f(t));
-        }
         at = next_attenuating(walk, id, inside, t, at);
         if (at.k >= end) {
             break;
