@@ -567,6 +567,38 @@ fn a_picture_and_its_report_are_written() {
 }
 
 #[test]
+fn blocks_of_voxels_are_averaged_when_that_is_asked_for() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:sphere:48 --reduce 2 -o out.png --size 64x48 --report r.json");
+    assert_shows_something(&folder.path("out.png"), [64, 48]);
+    let report = folder.json("r.json");
+    assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
+    assert_eq!(report["volume_file_dims"], serde_json::json!([48, 48, 48]));
+    let replayed = folder.run("replay out.png --check");
+    assert_eq!(replayed.code, Some(3), "it is of other voxels: {replayed:?}");
+    folder.succeed("replay out.png --check --reduce 2");
+    folder.fail("render builtin:sphere:48 --reduce 0 -o none.png", 2);
+}
+
+#[test]
+fn volumes_beyond_the_adapter_are_shown_with_fewer_voxels() {
+    let folder = Folder::new();
+    // Longer than any adapter's axes.
+    folder.write("long_20000x3x3_uint8.raw", vec![200; 20000 * 9]);
+    let outcome = folder.run("render long_20000x3x3_uint8.raw -o out.png --size 64x48 --report r.json");
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(outcome.stderr.contains("20000 × 3 × 3 voxels were averaged to"), "{outcome:?}");
+    let report = folder.json("r.json");
+    assert_eq!(report["volume_file_dims"], serde_json::json!([20000, 3, 3]));
+    assert!(report["volume_dims"][0].as_u64().is_some_and(|n| n < 20000), "{}", report["volume_dims"]);
+    assert_eq!(report["volume_dims"][1], 3, "the other axes are short enough");
+    // Nobody mistakes it for the whole.
+    let bench = "bench --volume long_20000x3x3_uint8.raw --only orbit --frames 1 --size 16x16";
+    let said = folder.fail(bench, 2);
+    assert!(said.contains("full resolution"), "{said}");
+}
+
+#[test]
 fn the_same_command_gives_the_same_bytes() {
     let folder = Folder::new();
     for name in ["a", "b"] {

@@ -11,7 +11,7 @@ use super::text;
 use super::work::Work;
 use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
 use crate::data::{Bricks, Histogram, Volume};
-use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look};
+use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look, fitted};
 use crate::model::Settings;
 
 /// Bins of the histogram that the transfer function editor shows.
@@ -22,8 +22,10 @@ const HISTOGRAM_BINS: usize = 1024;
 pub(super) struct Opened {
     /// What was asked for: a path or the name of a built-in volume.
     pub source: String,
-    /// The voxels.
+    /// The voxels: with as few averaged as the adapter needs.
     pub volume: Arc<Volume>,
+    /// How many there were along x, y and z, if the adapter could not hold them.
+    pub too_many: Option<[usize; 3]>,
     /// Their bricks.
     pub bricks: Arc<Bricks>,
     /// Their histogram.
@@ -105,8 +107,13 @@ impl Drop for WarmUp {
 }
 
 /// What the user is told, by phase.
-const PHASES: [&str; 4] =
-    [text::opening::READING, text::opening::COUNTING, text::opening::UPLOADING, text::opening::FIRST_LOOK];
+const PHASES: [&str; 5] = [
+    text::opening::READING,
+    text::opening::FITTING,
+    text::opening::COUNTING,
+    text::opening::UPLOADING,
+    text::opening::FIRST_LOOK,
+];
 
 impl Loader {
     /// A loader for volumes that a device will show. Begins to make its pipelines.
@@ -204,7 +211,7 @@ fn open(
     phase: &AtomicU8,
 ) -> Outcome {
     let volume = match load::open(&source, options, control) {
-        Ok(volume) => Arc::new(volume),
+        Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
         Err(err) => {
             if let Some(asked) = not_described(&source, &err) {
@@ -216,14 +223,28 @@ fn open(
         }
     };
     phase.store(1, Ordering::Relaxed);
+    let not_shown = |err: &GpuError| Outcome::Failed {
+        short: text::opening::not_shown(&source),
+        details: err.to_string(),
+    };
+    let dims = volume.dims();
+    let volume = match fitted(context, volume) {
+        Ok(volume) => Arc::new(volume),
+        Err(err) => return not_shown(&err),
+    };
+    let too_many = (volume.dims() != dims).then_some(dims);
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    phase.store(2, Ordering::Relaxed);
     let bricks = Arc::new(Bricks::of(&volume));
     let histogram = Histogram::of(&volume, HISTOGRAM_BINS);
     if control.is_cancelled() {
         return Outcome::Cancelled;
     }
-    phase.store(2, Ordering::Relaxed);
+    phase.store(3, Ordering::Relaxed);
     let look = Renderer::with_shaders(context, shaders).and_then(|mut renderer| {
-        phase.store(3, Ordering::Relaxed);
+        phase.store(4, Ordering::Relaxed);
         let settings = first_look(&mut renderer, &volume, &bricks, &histogram)?;
         Ok((renderer, settings))
     });
@@ -232,8 +253,9 @@ fn open(
     }
     match look {
         Ok((renderer, settings)) => {
-            Outcome::Opened(Box::new(Opened { source, volume, bricks, histogram, renderer, settings }))
+            let opened = Opened { source, volume, too_many, bricks, histogram, renderer, settings };
+            Outcome::Opened(Box::new(opened))
         }
-        Err(err) => Outcome::Failed { short: text::opening::not_shown(&source), details: err.to_string() },
+        Err(err) => not_shown(&err),
     }
 }

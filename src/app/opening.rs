@@ -152,8 +152,11 @@ impl App {
 
     /// A volume is ready: it replaces the one before.
     pub(super) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
-        let Opened { source, volume, bricks, histogram, renderer, settings } = opened;
+        let Opened { source, volume, too_many, bricks, histogram, renderer, settings } = opened;
         self.messages.clear();
+        if let Some(before) = too_many {
+            self.messages.note(text::opening::averaged(before, volume.dims()));
+        }
         self.defaults = settings.clone();
         if self.keeps_look && self.volume.is_some() {
             // As it was, but for where the object is: that is another one.

@@ -12,6 +12,8 @@ pub(super) struct VolumeFacts {
     pub source: String,
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
+    /// The same before voxels were averaged, if they were.
+    pub file_dims: [usize; 3],
     /// `uint8` …
     pub voxel_type: &'static str,
     /// Between voxel centres.
@@ -42,6 +44,7 @@ impl VolumeFacts {
             name: volume.name().to_owned(),
             source,
             dims: volume.dims(),
+            file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
             spacing_mm: volume.spacing_mm().into(),
             range: volume.value_range(),

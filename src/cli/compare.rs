@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line};
 use crate::export::export_png;
-use crate::gpu::{Context, Distance, Picture, RenderOptions, Renderer};
+use crate::gpu::{Distance, Picture, RenderOptions, Renderer};
 use crate::model::Variant;
 
 /// Pixels between two pictures.
@@ -37,9 +37,9 @@ pub(super) struct CompareArgs {
 
 /// Renders the looks, writes them in one row and says how far each is from the first.
 pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
-    let loaded = args.scene.load()?;
+    let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
-    let mut renderer = Renderer::new(&Context::headless()?)?;
+    let mut renderer = Renderer::new(&context)?;
     let settings = look.settings(&mut renderer, &loaded)?;
     let mut pictures: Vec<Picture> = Vec::new();
     for name in &args.looks {

@@ -3,7 +3,7 @@
 use clap::Args;
 use serde_json::json;
 
-use super::scene::{Loaded, RawArgs};
+use super::scene::{LoadArgs, Loaded};
 use super::{CliError, print_line};
 use crate::data::load::{LoadControl, open};
 
@@ -19,12 +19,12 @@ pub(super) struct InfoArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    raw: RawArgs,
+    load: LoadArgs,
 }
 
 /// Prints what is known about a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
-    let loaded = Loaded::new(open(&args.file, &args.raw.load_options()?, &LoadControl::new())?);
+    let loaded = Loaded::new(open(&args.file, &args.load.load_options()?, &LoadControl::new())?);
     let volume = &loaded.volume;
     let (min, max) = volume.value_range();
     let percentile = |p: u32| volume.value_of(loaded.histogram.percentile(f64::from(p) / 100.0));

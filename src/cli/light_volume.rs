@@ -7,7 +7,7 @@ use clap::Args;
 use super::scene::SceneArgs;
 use super::{CliError, print_line};
 use crate::export::write_atomically;
-use crate::gpu::{Context, RenderOptions, Renderer, export_slice, light_volume_nrrd};
+use crate::gpu::{RenderOptions, Renderer, export_slice, light_volume_nrrd};
 use crate::model::LightStorage;
 use crate::plan::Request;
 
@@ -40,9 +40,9 @@ fn parse_slice(text: &str) -> Result<(usize, usize), String> {
 
 /// Fills and writes one attenuation volume.
 pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
-    let loaded = args.scene.load()?;
+    let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
-    let mut renderer = Renderer::new(&Context::headless()?)?;
+    let mut renderer = Renderer::new(&context)?;
     let mut settings = look.settings(&mut renderer, &loaded)?;
     // Collapsed with others, it would be gone.
     settings.shadows.storage = LightStorage::PerLight;

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 pub use error::CliError;
-use scene::RawArgs;
+use scene::LoadArgs;
 
 /// See the shape of volume data, with true volumetric shadows.
 #[derive(Debug, Parser)]
@@ -33,7 +33,7 @@ struct Args {
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
     #[command(flatten)]
-    raw: RawArgs,
+    load: LoadArgs,
 }
 
 #[derive(Debug, Subcommand)]
@@ -85,7 +85,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         None => args
-            .raw
+            .load
             .load_options()
             .and_then(|load| open_window(ViewerRequest { source: args.file, load, session: args.session })),
     };

@@ -9,7 +9,7 @@ use super::scene::SceneArgs;
 use super::shot::ShotArgs;
 use super::{CliError, print_line, warn_line};
 use crate::export::{check_picture, check_writable, write_atomically, write_picture};
-use crate::gpu::{Context, RenderOptions, Renderer, dark_share, mean_luminance};
+use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
 use crate::model::{PictureRecord, Record, VolumeRecord};
 
 /// Arguments of `render`.
@@ -38,9 +38,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         }
     };
     say("loading the volume");
-    let loaded = args.scene.load()?;
+    let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
-    let context = Context::headless()?;
     let mut renderer = Renderer::new(&context)?;
     say("finding the look");
     let settings = look.settings(&mut renderer, &loaded)?;
@@ -62,6 +61,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             "driver": format!("{} {}", context.info.driver, context.info.driver_info),
             "image_size": shot.size,
             "volume_dims": loaded.volume.dims(),
+            "volume_file_dims": loaded.volume.file_dims(),
             "stages_ms": {
                 "upload": took.upload_ms,
                 "bricks": took.bricks_ms,

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::scene::{Loaded, RawArgs};
+use super::scene::{LoadArgs, Loaded};
 use super::{CliError, print_line, warn_line};
-use crate::data::load::{LoadControl, open};
 use crate::export::{Rows, check_picture, read_picture, read_record, write_picture};
-use crate::gpu::{Context, Distance, Renderer};
+use crate::gpu::{Distance, Renderer};
 use crate::model::{PresetError, Record, Settings};
 
 /// Arguments of `replay`.
@@ -26,7 +25,7 @@ pub(super) struct ReplayArgs {
     #[arg(long)]
     check: bool,
     #[command(flatten)]
-    raw: RawArgs,
+    load: LoadArgs,
 }
 
 /// Renders the picture again and says how far the two are apart.
@@ -41,7 +40,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let stated = record.volume.as_ref();
     let source = args.volume.clone().or_else(|| stated.map(|of| of.source_from(args.picture.parent())));
     let source = source.ok_or_else(|| unusable("it does not say of which volume".to_owned()))?;
-    let volume = open(&source, &args.raw.load_options()?, &LoadControl::new())?;
+    let (volume, context) = args.load.open(&source)?;
     if stated.is_some_and(|of| !of.is_of(volume.content_id())) {
         return Err(unusable(format!("{source} is another volume than the one that it shows")));
     }
@@ -50,7 +49,6 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         warn_line(&format!("warning: {warning} ({path})"));
     }
     let loaded = Loaded::new(volume);
-    let context = Context::headless()?;
     if how.adapter != context.description() {
         warn_line(&format!("made on {}, again on {}", how.adapter, context.description()));
     }

@@ -10,12 +10,15 @@ use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
 use crate::data::{Bricks, Histogram, Volume, VoxelType, read_small};
 use crate::export::{PictureFormat, read_record};
-use crate::gpu::{Renderer, balance};
+use crate::gpu::{Context, Renderer, balance, fitted};
 use crate::model::{Engine, MAX_EDGE, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
 
-/// How a RAW file is stored.
+/// How a volume is read.
 #[derive(Debug, Clone, Args)]
-pub(super) struct RawArgs {
+pub(super) struct LoadArgs {
+    /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=64))]
+    reduce: u16,
     /// RAW input: voxels along x, y, z
     #[arg(long, value_name = "WxHxD", global = false)]
     dims: Option<String>,
@@ -39,7 +42,7 @@ enum EndianArg {
     Big,
 }
 
-impl RawArgs {
+impl LoadArgs {
     /// The options for the reader.
     pub(super) fn load_options(&self) -> Result<LoadOptions, CliError> {
         let usage = |field: &str, text: &str, expected: &str| {
@@ -71,8 +74,33 @@ impl RawArgs {
             EndianArg::Big => Endian::Big,
         });
         let raw = RawFormat { dims, voxel_type, spacing_mm, endian, offset: self.offset };
-        Ok(LoadOptions { raw, ..LoadOptions::default() })
+        Ok(LoadOptions { raw, reduce: usize::from(self.reduce), ..LoadOptions::default() })
     }
+}
+
+impl LoadArgs {
+    /// Loads a volume, and opens the adapter.
+    pub(super) fn open(&self, source: &str) -> Result<(Volume, Context), CliError> {
+        // What is wrong with a file is said first.
+        let whole = open(source, &self.load_options()?, &LoadControl::new())?;
+        let context = Context::headless()?;
+        Ok((fitted_for(source, whole, &context)?, context))
+    }
+}
+
+/// The volume as the adapter can hold it.
+fn fitted_for(source: &str, whole: Volume, context: &Context) -> Result<Volume, CliError> {
+    let before = whole.dims();
+    let volume = fitted(context, whole)?;
+    if volume.dims() != before {
+        let ([x, y, z], [a, b, c]) = (before, volume.dims());
+        warn_line(&format!(
+            "warning: {x} × {y} × {z} voxels were averaged to {a} × {b} × {c}: {} cannot hold more ({source}); a \
+             crop of it can be shown with all of its voxels",
+            context.info.name
+        ));
+    }
+    Ok(volume)
 }
 
 /// `1x2x3`.
@@ -131,7 +159,7 @@ pub(super) struct LookArgs {
     #[arg(long, value_enum)]
     engine: Option<EngineArg>,
     #[command(flatten)]
-    raw: RawArgs,
+    load: LoadArgs,
 }
 
 /// What is rendered, and how it looks.
@@ -157,12 +185,24 @@ impl Loaded {
         let histogram = Histogram::of(&volume, auto::BINS);
         Self { volume: Arc::new(volume), bricks, histogram }
     }
+
+    /// The same, and says what is odd about the values.
+    fn checked(volume: Volume) -> Self {
+        if volume.odd_voxels() > 0 {
+            warn_line(&format!(
+                "warning: {} voxels are not finite and count as nothing",
+                volume.odd_voxels()
+            ));
+        }
+        Self::new(volume)
+    }
 }
 
 impl SceneArgs {
-    /// Loads the volume.
-    pub(super) fn load(&self) -> Result<Loaded, CliError> {
-        self.look.load(&self.file)
+    /// Loads the volume, and opens the adapter that shows it.
+    pub(super) fn load(&self) -> Result<(Loaded, Context), CliError> {
+        let (volume, context) = self.look.load.open(&self.file)?;
+        Ok((Loaded::checked(volume), context))
     }
 
     /// What is to be loaded.
@@ -177,16 +217,10 @@ impl SceneArgs {
 }
 
 impl LookArgs {
-    /// Loads a volume.
-    pub(super) fn load(&self, source: &str) -> Result<Loaded, CliError> {
-        let volume = open(source, &self.raw.load_options()?, &LoadControl::new())?;
-        if volume.odd_voxels() > 0 {
-            warn_line(&format!(
-                "warning: {} voxels are not finite and count as nothing",
-                volume.odd_voxels()
-            ));
-        }
-        Ok(Loaded::new(volume))
+    /// Loads a volume for an adapter that is open.
+    pub(super) fn load(&self, source: &str, context: &Context) -> Result<Loaded, CliError> {
+        let whole = open(source, &self.load.load_options()?, &LoadControl::new())?;
+        Ok(Loaded::checked(fitted_for(source, whole, context)?))
     }
 
     /// The automatic look, with preset and session laid over it, and the single settings to come.

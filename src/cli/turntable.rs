@@ -7,7 +7,7 @@ use clap::Args;
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line, warn_line};
 use crate::export::{Animation, AnimationFormat, Reel};
-use crate::gpu::{Context, RenderOptions, Renderer};
+use crate::gpu::{RenderOptions, Renderer};
 use crate::model::{PictureRecord, Record, Shot, VolumeRecord};
 
 /// Arguments of `turntable`.
@@ -40,9 +40,8 @@ pub(super) struct TurntableArgs {
 
 /// Renders one turn.
 pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
-    let loaded = args.scene.load()?;
+    let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
-    let context = Context::headless()?;
     let mut renderer = Renderer::new(&context)?;
     let settings = look.settings(&mut renderer, &loaded)?;
     let light = args.light.map(|number| number.wrapping_sub(1));

@@ -164,6 +164,7 @@ pub enum VolumeError {
 pub struct Volume {
     name: String,
     dims: [usize; 3],
+    file_dims: [usize; 3],
     world_from_index: DAffine3,
     samples: Samples,
     min_value: f64,
@@ -209,6 +210,7 @@ impl Volume {
         Ok(Self {
             name: name.into(),
             dims,
+            file_dims: dims,
             world_from_index,
             samples,
             min_value,
@@ -243,6 +245,17 @@ impl Volume {
         self.is_anatomical
     }
 
+    /// States what else is known of the volume whose blocks this one's voxels are.
+    #[must_use]
+    pub(super) fn standing_for(self, whole: &Self) -> Self {
+        Self {
+            file_dims: whole.file_dims,
+            unit_mm: whole.unit_mm,
+            is_anatomical: whole.is_anatomical,
+            ..self
+        }
+    }
+
     /// An axis-aligned volume: `spacing_mm` between voxel centres along x, y, z.
     ///
     /// # Errors
@@ -265,6 +278,11 @@ impl Volume {
     /// Voxels along x, y, z.
     pub fn dims(&self) -> [usize; 3] {
         self.dims
+    }
+
+    /// The same before blocks of voxels were averaged ([`Self::reduced`]), if they were.
+    pub fn file_dims(&self) -> [usize; 3] {
+        self.file_dims
     }
 
     /// Number of voxels.

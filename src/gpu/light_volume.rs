@@ -83,15 +83,7 @@ impl LightVolume {
             let Self { texture, view, lit, .. } = unwanted.swap_remove(at);
             return Ok(fresh(texture, view, lit));
         }
-        let texture = context.texture(&texture_3d(
-            "LightVolume::attenuation",
-            dims,
-            format,
-            wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::COPY_DST,
-        ))?;
+        let texture = attenuation_texture(context, dims, format)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(fresh(texture, view, None))
     }
@@ -149,6 +141,26 @@ impl LightVolume {
         let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
         texel * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
+}
+
+/// The texture of a light volume.
+///
+/// # Errors
+/// When memory is out.
+pub(super) fn attenuation_texture(
+    context: &Context,
+    dims: [usize; 3],
+    format: wgpu::TextureFormat,
+) -> Result<wgpu::Texture, GpuError> {
+    context.texture(&texture_3d(
+        "LightVolume::attenuation",
+        dims,
+        format,
+        wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+    ))
 }
 
 /// Bind group 2 of the passes that shade: the light volumes, in the order of their lights.

@@ -182,33 +182,8 @@ impl GpuVolume {
         bricks: &Arc<Bricks>,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
-            return Err(GpuError::OverLimit {
-                what: "the volume".to_owned(),
-                size: size as u64,
-                limit: MAX_VOXELS as u64,
-                help: "a part of it, or fewer voxels, helps",
-            });
-        }
-        let unorm = density_is_unorm(context, volume);
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let density = context.texture(&texture_3d(
-            "Volume::density",
-            dims.map(|n| n + 2),
-            if unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float },
-            usage,
-        ))?;
-        // Whole texels on every level, so that a level's texel is exactly 2³ of the finer one's.
-        let padded = dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8));
-        let pyramid = context.texture(&wgpu::TextureDescriptor {
-            mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
-            ..texture_3d(
-                "Volume::pyramid",
-                padded,
-                context.storage_format,
-                wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
-            )
-        })?;
+        let (density, pyramid) = textures(context, volume, dims)?;
+        let padded = padded(dims);
         let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
         let grid = Grid {
             dims: dims.map(|n| n as f32),
@@ -237,7 +212,7 @@ impl GpuVolume {
                 label: Some("Volume::nearest"),
                 ..Default::default()
             }),
-            unorm,
+            unorm: density_is_unorm(context, volume),
             grid,
         })
     }
@@ -295,6 +270,47 @@ impl GpuVolume {
         let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
         2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + gradients
     }
+}
+
+/// Density and pyramid of a volume, if it had these dimensions.
+///
+/// # Errors
+/// When the adapter cannot hold them.
+pub(super) fn textures(
+    context: &Context,
+    volume: &Volume,
+    dims: [usize; 3],
+) -> Result<(wgpu::Texture, wgpu::Texture), GpuError> {
+    if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
+        return Err(GpuError::OverLimit {
+            what: "the volume".to_owned(),
+            size: size as u64,
+            limit: MAX_VOXELS as u64,
+            help: "a part of it, or fewer voxels, helps",
+        });
+    }
+    let unorm = density_is_unorm(context, volume);
+    let density = context.texture(&texture_3d(
+        "Volume::density",
+        dims.map(|n| n + 2),
+        if unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float },
+        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+    ))?;
+    let pyramid = context.texture(&wgpu::TextureDescriptor {
+        mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
+        ..texture_3d(
+            "Volume::pyramid",
+            padded(dims),
+            context.storage_format,
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        )
+    })?;
+    Ok((density, pyramid))
+}
+
+/// Texels of the pyramid: whole ones on every level, so that a level's texel is exactly 2³ of the finer one's.
+fn padded(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
 }
 
 /// One entry of a bind group.

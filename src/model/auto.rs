@@ -23,7 +23,7 @@ const TOWARDS_SPLIT: f64 = 0.65;
 pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
     let mut settings = Settings {
         transfer: transfer(volume, histogram),
-        opacity_unit: volume.unit_mm().map_or(Length::Voxels(1.0), Length::Mm),
+        opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
         // Half a voxel: with thicker slabs steep surfaces show the slabs as wood grain.
         sampling: Sampling { slab: 0.5, ..Sampling::default() },
@@ -32,6 +32,12 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
     frame_object(&mut settings, volume);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
     settings
+}
+
+/// The edge of a voxel of the file, in voxels: averaged voxels look like those that they stand for.
+fn voxels_of_file(volume: &Volume) -> f64 {
+    let count = |dims: [usize; 3]| dims.iter().map(|&n| n as f64).product::<f64>();
+    (count(volume.dims()) / count(volume.file_dims())).cbrt()
 }
 
 /// A transfer function that shows the object and hides what is around it.

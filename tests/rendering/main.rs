@@ -15,6 +15,7 @@ mod gpu_vs_reference;
 mod ground;
 mod mutations;
 mod preview;
+mod reduced;
 mod scatter;
 mod scenes;
 mod stretch;

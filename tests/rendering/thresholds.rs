@@ -118,3 +118,8 @@ pub(crate) const FLOOR_SHADOW: f64 = 2e-3;
 /// A picture drawn in parts, or the mean of its samples, against the whole: an eighth of an 8-bit step. Origins
 /// of rays are rounded to 32 bits, the floor's light to 16, and sRGB is 13 times as steep near black.
 pub(crate) const PARTS: f64 = 1.0 / 255.0 / 8.0;
+
+/// Half as many voxels along each axis against all of them, RMSE: edges are a voxel softer.
+pub(crate) const AVERAGED: f64 = 4.0 / 255.0;
+/// And of the mean, relative: what is thinner than a voxel gets thinner still.
+pub(crate) const AVERAGED_MEAN: f64 = 0.02;

@@ -29,6 +29,9 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
         (text::data::VALUES, text::data::values(&short(low), &short(high))),
         (text::data::MEMORY, text::data::memory(volume.bytes as f64 / f64::from(1 << 20))),
     ];
+    if volume.file_dims != volume.dims {
+        rows.insert(3, (text::data::AVERAGED, text::data::dimensions(volume.file_dims)));
+    }
     if volume.odd_voxels > 0 {
         rows.push((text::data::NOT_FINITE, text::data::not_finite(volume.odd_voxels)));
     }

@@ -8,6 +8,8 @@ pub(crate) const NOTHING_OPEN: &str = "No volume is open";
 pub(crate) const NAME: &str = "Name";
 pub(crate) const SOURCE: &str = "Source";
 pub(crate) const DIMENSIONS: &str = "Voxels";
+/// The voxels of the file, of which blocks were averaged.
+pub(crate) const AVERAGED: &str = "Averaged from";
 pub(crate) const VOXEL_TYPE: &str = "Type";
 pub(crate) const SPACING: &str = "Spacing";
 pub(crate) const VALUES: &str = "Values";

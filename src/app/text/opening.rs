@@ -8,6 +8,7 @@ pub(crate) const PROGRAM: &str = "Chiaroscuro";
 
 /// What is being done with a volume, in this order.
 pub(crate) const READING: &str = "reading";
+pub(crate) const FITTING: &str = "trying what the graphics adapter can hold";
 pub(crate) const COUNTING: &str = "counting values";
 pub(crate) const UPLOADING: &str = "uploading";
 pub(crate) const FIRST_LOOK: &str = "finding a first look";
@@ -46,6 +47,12 @@ pub(crate) fn stopped(panic: &str) -> String {
 /// A volume that was read and is beyond the graphics card.
 pub(crate) fn not_shown(source: &str) -> String {
     format!("cannot show {source}")
+}
+
+/// The graphics adapter cannot hold all voxels of a volume.
+pub(crate) fn averaged(before: [usize; 3], after: [usize; 3]) -> String {
+    let [before, after] = [before, after].map(super::data::dimensions);
+    format!("{before} voxels are shown as {after}: the graphics adapter cannot hold more")
 }
 
 /// The system is out of threads.

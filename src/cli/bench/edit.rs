@@ -46,7 +46,7 @@ impl Bench<'_> {
         for frame in 0..=usize::from(self.args.frames).min(3) {
             let settings = &self.settings;
             let load = || {
-                let loaded: Loaded = self.args.look.load(name)?;
+                let loaded: Loaded = self.args.look.load(name, context)?;
                 let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
                 renderer.draw(&loaded.volume, &loaded.bricks, settings, self.args.size, &options)?;
                 let report = renderer.report().clone();

@@ -65,7 +65,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let context = Context::headless()?;
     let mut orbits = Vec::new();
     for volume in args.volumes.iter().filter(|_| args.only.as_deref() != Some("growth")) {
-        let loaded = args.look.load(volume)?;
+        let loaded = args.look.load(volume, &context)?;
         let mut renderer = Renderer::new(&context)?;
         let settings = args.look.look(&loaded)?.settings(&mut renderer, &loaded)?;
         let mut bench = Bench { args, loaded: &loaded, renderer, settings };
@@ -219,8 +219,11 @@ fn describe(
             "light_kernel": settings.shadows.kernel,
             "light_slab": settings.shadows.slab,
             "light_resolution": settings.shadows.resolution,
+            "file_dims": loaded.volume.file_dims(),
         },
-        "full_quality": is_full_quality(settings) && samples.were_whole(size),
+        "full_quality": is_full_quality(settings)
+            && samples.were_whole(size)
+            && loaded.volume.dims() == loaded.volume.file_dims(),
     });
     if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
         case.extend(timings);

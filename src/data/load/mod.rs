@@ -22,6 +22,7 @@ pub use control::LoadControl;
 pub(crate) use error::Attempt;
 pub use error::{Explanation, LoadError, LoadErrorKind};
 pub(crate) use limits::Extent;
+pub(crate) use limits::default_budget_bytes as memory_budget_bytes;
 pub use raw::RawFormat;
 pub use raw_layout::{RawGuess, RawLayout};
 
@@ -43,15 +44,17 @@ pub enum Endian {
 pub struct LoadOptions {
     /// How RAW files are stored; other formats say it themselves.
     pub raw: RawFormat,
+    /// Blocks of so many voxels along each axis are averaged into one.
+    pub reduce: usize,
     /// The largest volume that is loaded, in bytes of its voxels.
     pub memory_budget_bytes: u64,
 }
 
 impl Default for LoadOptions {
-    /// Nothing said about RAW files; a budget of three quarters of the memory that is free now
+    /// Nothing said about RAW files, every voxel kept; a budget of three quarters of the memory that is free now
     /// (`MemAvailable` in `/proc/meminfo`), or 4 GiB where that is not known.
     fn default() -> Self {
-        Self { raw: RawFormat::default(), memory_budget_bytes: limits::default_budget_bytes() }
+        Self { raw: RawFormat::default(), reduce: 1, memory_budget_bytes: limits::default_budget_bytes() }
     }
 }
 
@@ -64,6 +67,15 @@ const BUILTIN: &str = "builtin:";
 /// # Errors
 /// As [`load`] and [`synthetic::builtin`].
 pub fn open(source: &str, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let volume = open_whole(source, options, control)?;
+    let attempt = Attempt { what: "average the voxels", path: Path::new(source) };
+    // What was a volume stays one: nothing else can go wrong.
+    volume
+        .reduced([options.reduce; 3])
+        .map_err(|err| attempt.bad_input("voxels", err.to_string(), "load them all"))
+}
+
+fn open_whole(source: &str, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let Some(builtin) = source.strip_prefix(BUILTIN) else {
         return load(Path::new(source), options, control);
     };

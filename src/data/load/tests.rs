@@ -25,7 +25,7 @@ fn write(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
 }
 
 fn options(raw: RawFormat) -> LoadOptions {
-    LoadOptions { raw, memory_budget_bytes: 1 << 20 }
+    LoadOptions { raw, memory_budget_bytes: 1 << 20, ..LoadOptions::default() }
 }
 
 fn load_as(path: &Path, raw: RawFormat) -> Result<Volume, LoadError> {

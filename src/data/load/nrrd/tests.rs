@@ -11,7 +11,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use tempfile::TempDir;
 
-use crate::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, RawFormat, load};
+use crate::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
 use crate::data::{Samples, Volume};
 
 /// A header of a 2 x 2 x 2 volume of bytes, without its data.
@@ -32,7 +32,7 @@ fn write(folder: &TempDir, name: &str, header: &str, data: &[u8]) -> PathBuf {
 }
 
 fn load_path(path: &Path) -> Result<Volume, LoadError> {
-    let options = LoadOptions { raw: RawFormat::default(), memory_budget_bytes: 1 << 20 };
+    let options = LoadOptions { memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
     load(path, &options, &LoadControl::new())
 }
 

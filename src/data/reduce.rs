@@ -1,0 +1,108 @@
+//! Volumes with fewer voxels, for adapters that cannot hold them all.
+
+use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::{Samples, Volume, VolumeError};
+
+impl Volume {
+    /// The volume with blocks of so many voxels along x, y and z averaged into one each: same place in the world,
+    /// same number type (means are rounded), at least one voxel along each axis. The last block of an axis may
+    /// have fewer voxels; values that are not finite are left out of means.
+    ///
+    /// # Errors
+    /// As [`Volume::new`].
+    pub fn reduced(self, block: [usize; 3]) -> Result<Self, VolumeError> {
+        let dims = self.dims();
+        let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
+        if block == [1; 3] {
+            return Ok(self);
+        }
+        let samples = match self.samples() {
+            Samples::U8(values) => Samples::U8(means(values, dims, block, |mean| mean.round() as u8)),
+            Samples::I8(values) => Samples::I8(means(values, dims, block, |mean| mean.round() as i8)),
+            Samples::U16(values) => Samples::U16(means(values, dims, block, |mean| mean.round() as u16)),
+            Samples::I16(values) => Samples::I16(means(values, dims, block, |mean| mean.round() as i16)),
+            Samples::U32(values) => Samples::U32(means(values, dims, block, |mean| mean.round() as u32)),
+            Samples::I32(values) => Samples::I32(means(values, dims, block, |mean| mean.round() as i32)),
+            Samples::F32(values) => Samples::F32(means(values, dims, block, |mean| mean as f32)),
+            Samples::F64(values) => Samples::F64(means(values, dims, block, |mean| mean)),
+        };
+        // A block's centre is that of its voxels: voxel 0 of two voxels lies at index 0.5.
+        let edges = DVec3::from(block.map(|n| n as f64));
+        let index_from_block =
+            DAffine3 { matrix3: DMat3::from_diagonal(edges), translation: 0.5 * (edges - 1.0) };
+        let geometry = self.world_from_index() * index_from_block;
+        Ok(Self::new(self.name(), reduced_dims(dims, block), geometry, samples)?.standing_for(&self))
+    }
+}
+
+/// Blocks along each axis.
+pub fn reduced_dims(dims: [usize; 3], block: [usize; 3]) -> [usize; 3] {
+    [0, 1, 2].map(|axis| dims[axis].div_ceil(block[axis]))
+}
+
+/// The mean of every block.
+fn means<T: Copy + Into<f64> + Sync, R: Send>(
+    values: &[T],
+    dims: [usize; 3],
+    block: [usize; 3],
+    round: impl Fn(f64) -> R + Sync,
+) -> Vec<R> {
+    let [nx, ny, nz] = dims;
+    let [width, height, depth] = reduced_dims(dims, block);
+    let slice = |k: usize| {
+        let (mut sums, mut counts) = (vec![0.0; width * height], vec![0u32; width * height]);
+        for z in k * block[2]..nz.min((k + 1) * block[2]) {
+            for y in 0..ny {
+                let row = &values[(z * ny + y) * nx..][..nx];
+                let first = y / block[1] * width;
+                let blocks = sums[first..].iter_mut().zip(&mut counts[first..]);
+                for (voxels, (sum, count)) in row.chunks(block[0]).zip(blocks) {
+                    for value in voxels.iter().map(|&value| value.into()).filter(|value| value.is_finite()) {
+                        *sum += value;
+                        *count += 1;
+                    }
+                }
+            }
+        }
+        // 0 / 0: of nothing finite, nothing finite.
+        sums.into_iter().zip(counts).map(|(sum, count)| round(sum / f64::from(count))).collect::<Vec<_>>()
+    };
+    (0..depth).into_par_iter().flat_map_iter(slice).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_become_their_means_where_they_were() {
+        let values = (0..4 * 3 * 2).map(|value| value as u8).collect();
+        let volume =
+            Volume::with_spacing("t", [4, 3, 2], DVec3::new(1.0, 2.0, 3.0), Samples::U8(values)).unwrap();
+        let half = volume.clone().reduced([2, 2, 2]).unwrap();
+        assert_eq!((half.dims(), half.file_dims()), ([2, 2, 1], [4, 3, 2]));
+        // 0, 1, 4, 5 and twelve more: 8.5; the second row of blocks has one row of voxels.
+        let Samples::U8(means) = half.samples() else { panic!("the type changed") };
+        assert_eq!(means, &[9, 11, 15, 17]);
+        assert_eq!(half.spacing_mm(), DVec3::new(2.0, 4.0, 6.0));
+        let corner = half.world_from_index().transform_point3(DVec3::ZERO);
+        assert_eq!(corner, volume.world_from_index().transform_point3(DVec3::splat(0.5)));
+        // Again, and along one axis alone.
+        let quarter = half.reduced([2, 1, 1]).unwrap();
+        assert_eq!((quarter.dims(), quarter.file_dims()), ([1, 2, 1], [4, 3, 2]));
+        assert_eq!(volume.clone().reduced([1; 3]).unwrap().content_id(), volume.content_id());
+    }
+
+    #[test]
+    fn what_is_not_finite_stays_out_of_means() {
+        let values = vec![1.0, f32::NAN, f32::INFINITY, f32::NAN, 4.0, 5.0];
+        let volume = Volume::with_spacing("t", [6, 1, 1], DVec3::ONE, Samples::F32(values)).unwrap();
+        let half = volume.reduced([2; 3]).unwrap();
+        assert_eq!(half.dims(), [3, 1, 1]);
+        assert_eq!((half.value(0, 0, 0), half.value(2, 0, 0)), (1.0, 4.5));
+        assert!(half.value(1, 0, 0).is_nan());
+        assert_eq!(half.odd_voxels(), 1);
+    }
+}
