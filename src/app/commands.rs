@@ -16,6 +16,8 @@ pub(super) enum Command {
     OpenPath,
     /// Open a file or a built-in volume.
     Open(String),
+    /// Read the open volume again, so many voxels along each axis averaged into one.
+    Average(usize),
     /// Stop opening.
     CancelOpening,
     /// The volume and the look with which the run before ended.
@@ -223,6 +225,7 @@ pub(super) fn listed() -> Vec<Command> {
         Command::ShowAbout,
         Command::Quit,
     ];
+    all.extend([1, 2, 4].map(Command::Average));
     all.extend(StandardView::ALL.map(Command::LookFrom));
     all.extend(Rig::ALL.map(Command::UseRig));
     all.extend(PRESETS.map(Command::UsePreset));
@@ -245,6 +248,7 @@ impl Command {
                 let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
                 return text::commands::use_colors(name, *back).into();
             }
+            Self::Average(block) => return text::commands::average(*block).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
             Self::InvertTransfer => text::commands::INVERT_TRANSFER,

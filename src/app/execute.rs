@@ -22,6 +22,7 @@ impl App {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
             Command::Open(source) => self.open(&source, ctx),
+            Command::Average(reduce) => self.average(reduce, ctx),
             Command::GoOn => match self.memory.before().map(Path::to_owned) {
                 Some(path) => self.open_record(&path, ctx),
                 None => self.messages.note(text::messages::NOTHING_TO_GO_ON_WITH),

@@ -17,11 +17,22 @@ use crate::model::Settings;
 /// Bins of the histogram that the transfer function editor shows.
 const HISTOGRAM_BINS: usize = 1024;
 
+/// How a volume is read, where the user has said it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Reading {
+    /// How a file of bare voxels is stored.
+    pub raw: Option<RawFormat>,
+    /// Blocks of so many voxels along each axis are averaged into one.
+    pub reduce: Option<usize>,
+}
+
 /// A volume that is ready to be shown.
 #[derive(Debug)]
 pub(super) struct Opened {
     /// What was asked for: a path or the name of a built-in volume.
     pub source: String,
+    /// How it was read.
+    pub reading: Reading,
     /// The voxels: with as few averaged as the adapter needs.
     pub volume: Arc<Volume>,
     /// How many there were along x, y and z, if the adapter could not hold them.
@@ -141,22 +152,19 @@ impl Loader {
     }
 
     /// Starts to open a file or a built-in volume.
-    /// `raw` says how it is stored, if it is a file of bare voxels.
-    pub(super) fn open(
-        &mut self,
-        source: &str,
-        raw: Option<RawFormat>,
-        ctx: &egui::Context,
-    ) -> Result<(), String> {
+    pub(super) fn open(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> Result<(), String> {
         self.cancel();
         let control = Arc::new(LoadControl::new());
         let phase = Arc::new(AtomicU8::new(0));
         let task = {
             let (context, shaders) = (self.context.clone(), self.shaders.clone());
             let mut options = self.options.clone();
-            options.raw = raw.unwrap_or(options.raw);
+            options.raw = reading.raw.clone().unwrap_or(options.raw);
+            let reduce = reading.reduce.unwrap_or(options.reduce);
+            options.reduce = reduce;
+            let reading = Reading { reduce: Some(reduce), ..reading };
             let (control, phase, source) = (Arc::clone(&control), Arc::clone(&phase), source.to_owned());
-            move || open(source, (&context, shaders), &options, &control, &phase)
+            move || open((source, reading), (&context, shaders), &options, &control, &phase)
         };
         let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
         self.running = Some(Running { source: source.to_owned(), control, phase, work });
@@ -204,7 +212,7 @@ fn not_described(source: &str, err: &LoadError) -> Option<Outcome> {
 }
 
 fn open(
-    source: String,
+    (source, reading): (String, Reading),
     (context, shaders): (&Context, ShaderLibrary),
     options: &LoadOptions,
     control: &LoadControl,
@@ -253,7 +261,7 @@ fn open(
     }
     match look {
         Ok((renderer, settings)) => {
-            let opened = Opened { source, volume, too_many, bricks, histogram, renderer, settings };
+            let opened = Opened { source, reading, volume, too_many, bricks, histogram, renderer, settings };
             Outcome::Opened(Box::new(opened))
         }
         Err(err) => not_shown(&err),

@@ -5,12 +5,11 @@ use std::path::Path;
 use eframe::egui;
 
 use super::history::History;
-use super::loader::Opened;
+use super::loader::{Opened, Reading};
 use super::raw_dialog::Described;
 use super::volume_facts::VolumeFacts;
 use super::{App, files, text};
-use crate::data::load::RawFormat;
-use crate::model::{Record, Settings, VolumeRecord};
+use crate::model::{Length, Record, Settings, VolumeRecord};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -31,7 +30,7 @@ impl App {
     pub fn open(&mut self, source: &str, ctx: &egui::Context) {
         if files::is_record(Path::new(source)) {
             self.open_record(Path::new(source), ctx);
-        } else if self.start_loading(source, None, ctx) {
+        } else if self.start_loading(source, Reading::default(), ctx) {
             self.pending = None;
         }
     }
@@ -42,7 +41,7 @@ impl App {
             self.open(source, ctx);
         }
         if self.loader.progress().is_none() {
-            self.start_loading(DEFAULT_SOURCE, None, ctx);
+            self.start_loading(DEFAULT_SOURCE, Reading::default(), ctx);
         }
     }
 
@@ -55,18 +54,35 @@ impl App {
             let content = layout.header(&data_file, *is_gzip);
             match crate::export::write_atomically(header, content.as_bytes()) {
                 Ok(()) => {
-                    self.start_loading(&header.display().to_string(), None, ctx);
+                    self.start_loading(&header.display().to_string(), Reading::default(), ctx);
                     return;
                 }
                 // It is shown all the same.
                 Err(err) => self.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
             }
         }
-        self.start_loading(&path.display().to_string(), Some(layout.format()), ctx);
+        let reading = Reading { raw: Some(layout.format()), ..Reading::default() };
+        self.start_loading(&path.display().to_string(), reading, ctx);
     }
 
-    fn start_loading(&mut self, source: &str, raw: Option<RawFormat>, ctx: &egui::Context) -> bool {
-        let started = self.loader.open(source, raw, ctx);
+    /// Reads the open volume again with other blocks of voxels averaged; the look stays.
+    pub(super) fn average(&mut self, reduce: usize, ctx: &egui::Context) {
+        let Some(volume) = &self.volume else { return };
+        let mut settings = self.settings.clone();
+        // Opacities refer to the same thickness, however many voxels that has.
+        let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
+        settings.opacity_unit = Length::Mm(unit);
+        let (source, reading) =
+            (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading.clone() });
+        match Record::read(&Record::text(&settings, None, None)) {
+            Ok(record) if self.start_loading(&source, reading, ctx) => self.pending = Some(record),
+            Ok(_) => {}
+            Err(err) => self.messages.error(text::opening::NOT_OPENED, err.to_string()),
+        }
+    }
+
+    fn start_loading(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> bool {
+        let started = self.loader.open(source, reading, ctx);
         if let Err(err) = &started {
             self.messages.error(text::opening::NOT_OPENED, err.clone());
         }
@@ -88,7 +104,7 @@ impl App {
             None if open.is_none() => DEFAULT_SOURCE.to_owned(),
             _ => return self.apply_record(&record, self.value_range()),
         };
-        if self.start_loading(&source, None, ctx) {
+        if self.start_loading(&source, Reading::default(), ctx) {
             self.pending = Some(record);
         }
     }
@@ -152,7 +168,7 @@ impl App {
 
     /// A volume is ready: it replaces the one before.
     pub(super) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
-        let Opened { source, volume, too_many, bricks, histogram, renderer, settings } = opened;
+        let Opened { source, reading, volume, too_many, bricks, histogram, renderer, settings } = opened;
         self.messages.clear();
         if let Some(before) = too_many {
             self.messages.note(text::opening::averaged(before, volume.dims()));
@@ -187,7 +203,7 @@ impl App {
             self.settings = adjust(std::mem::take(&mut self.settings));
             self.settings.sanitise();
         }
-        self.volume = Some(VolumeFacts::of(source, &volume, histogram));
+        self.volume = Some(VolumeFacts::of((source, reading), &volume, histogram));
         self.viewport.set_scene(renderer, volume, bricks);
         self.history = History::default();
         self.selected_light = 0;

@@ -1,5 +1,6 @@
 //! What the panels and the transfer function editor know of the open volume.
 
+use super::loader::Reading;
 use crate::data::{Histogram, Volume, VoxelType};
 use crate::math::SceneSpace;
 
@@ -8,8 +9,10 @@ use crate::math::SceneSpace;
 pub(super) struct VolumeFacts {
     /// What the user calls it.
     pub name: String,
-    /// What was opened.
+    /// What was opened …
     pub source: String,
+    /// … and how it was read.
+    pub reading: Reading,
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
     /// The same before voxels were averaged, if they were.
@@ -36,13 +39,14 @@ pub(super) struct VolumeFacts {
 
 impl VolumeFacts {
     /// Collects them.
-    pub(super) fn of(source: String, volume: &Volume, histogram: Histogram) -> Self {
+    pub(super) fn of((source, reading): (String, Reading), volume: &Volume, histogram: Histogram) -> Self {
         let voxel_type = volume.samples().voxel_type();
         let (low, high) = volume.value_range();
         let whole = !matches!(voxel_type, VoxelType::F32 | VoxelType::F64);
         Self {
             name: volume.name().to_owned(),
             source,
+            reading,
             dims: volume.dims(),
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),

@@ -562,6 +562,32 @@ fn the_next_file_can_have_the_look_of_this_one() {
 }
 
 #[test]
+fn voxels_are_averaged_and_the_look_stays() {
+    // So tall that the whole section can be seen.
+    let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
+    let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
+    harness.key_press(egui::Key::CloseBracket);
+    click(&mut harness, "Data");
+    let before = harness.state().settings().clone();
+    let choose = |harness: &mut Harness<'_, App>, block: &str, voxels: &'static str| {
+        click(harness, block);
+        wait_until(harness, "never read again", App::is_idle);
+        harness.run_steps(3);
+        assert_eq!(harness.query_all_by_label_contains(voxels).count(), 1, "the title says {voxels}");
+        assert_eq!(harness.state().errors(), [""; 0]);
+    };
+    choose(&mut harness, "2 × 2 × 2", "16×16×16");
+    let after = harness.state().settings().clone();
+    assert_eq!((&after.camera, &after.transfer), (&before.camera, &before.transfer));
+    assert_eq!(after.lights, before.lights);
+    // The chair has a unit in millimetres already.
+    assert!((after.opacity_unit.number() - before.opacity_unit.number()).abs() < 1e-9);
+    harness.get_by_label("Averaged from");
+    choose(&mut harness, "None", "32×32×32");
+    assert!(harness.query_by_label("Averaged from").is_none());
+}
+
+#[test]
 fn the_first_run_has_hints_and_the_next_remembers() {
     let folder = tempfile::tempdir().unwrap();
     let start = |source: Option<&str>| {

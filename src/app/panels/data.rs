@@ -2,10 +2,11 @@
 
 use eframe::egui::{self, Ui};
 
+use super::super::commands::Command;
 use super::super::text::{self, Named};
 use super::super::volume_facts::VolumeFacts;
 use super::Panels;
-use super::controls::row;
+use super::controls::{choice, row};
 use crate::model::{Length, Settings};
 
 /// Shows the section.
@@ -15,6 +16,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         return;
     };
     facts(ui, volume);
+    averaging(ui, volume, panels.commands);
     opacity_unit(ui, panels.settings, panels.defaults, volume);
 }
 
@@ -37,6 +39,15 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     }
     for (name, fact) in rows {
         row(ui, Named { name, tip: "" }, |ui| ui.add(egui::Label::new(fact).truncate()));
+    }
+}
+
+/// Fewer voxels, for quicker pictures: the volume is read again.
+fn averaging(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
+    let options = [(1, text::data::ALL_VOXELS), (2, text::data::EIGHTHS), (4, text::data::SIXTY_FOURTHS)];
+    let mut reduce = volume.reading.reduce.unwrap_or(1);
+    if choice(ui, text::data::AVERAGING, &mut reduce, &options) {
+        commands.push(Command::Average(reduce));
     }
 }
 

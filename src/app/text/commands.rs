@@ -57,6 +57,14 @@ pub(crate) const FIND: &str = "Find a command";
 pub(crate) const FIND_HINT: &str = "What do you want to do?";
 pub(crate) const NOTHING_FOUND: &str = "Nothing is called like that";
 
+/// To show all voxels of the file, or means of blocks.
+pub(crate) fn average(block: usize) -> String {
+    match block {
+        1 => "Voxels: all of the file".to_owned(),
+        _ => format!("Voxels: means of {block} × {block} × {block}"),
+    }
+}
+
 /// To look from a side.
 pub(crate) fn look_from(view: &str) -> String {
     format!("Look: {view}")

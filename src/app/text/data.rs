@@ -16,6 +16,15 @@ pub(crate) const VALUES: &str = "Values";
 pub(crate) const MEMORY: &str = "Memory";
 pub(crate) const NOT_FINITE: &str = "Not finite";
 
+pub(crate) const AVERAGING: Named = named(
+    "Averaging",
+    "Shows fewer voxels, each the mean of a block: quicker pictures and less memory, without the finest details. \
+     The volume is read again, the look stays",
+);
+pub(crate) const ALL_VOXELS: Named = named("None", "All voxels of the file");
+pub(crate) const EIGHTHS: Named = named("2 × 2 × 2", "An eighth of the voxels");
+pub(crate) const SIXTY_FOURTHS: Named = named("4 × 4 × 4", "A sixty-fourth of the voxels");
+
 pub(crate) const OPACITY_UNIT: Named = named(
     "Opacity unit",
     "The thickness of material to which the opacities of the transfer function refer: larger makes \
