@@ -18,7 +18,7 @@ use crate::model::Settings;
 const HISTOGRAM_BINS: usize = 1024;
 
 /// How a volume is read, where the user has said it.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Reading {
     /// How a file of bare voxels is stored.
     pub raw: Option<RawFormat>,
@@ -159,7 +159,7 @@ impl Loader {
         let task = {
             let (context, shaders) = (self.context.clone(), self.shaders.clone());
             let mut options = self.options.clone();
-            options.raw = reading.raw.clone().unwrap_or(options.raw);
+            options.raw = reading.raw.unwrap_or(options.raw);
             let reduce = reading.reduce.unwrap_or(options.reduce);
             options.reduce = reduce;
             let reading = Reading { reduce: Some(reduce), ..reading };
