@@ -36,7 +36,7 @@ fn light_distance(cell: vec3f) -> i32 {
 }
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
-    let p = biased(surface, towards);
+    let p = biased(light, surface, towards);
     if (!DIRECT) {
         return looked_up(light, volume, p);
     }

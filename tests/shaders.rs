@@ -258,15 +258,13 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         place,
         perspective,
         color,
-        shadowed,
+        extinction_scale,
         lookup,
         hood_inner,
         hood_axis,
         hood_outer,
-        extinction_scale,
+        place_in_index,
         pad0,
-        pad1,
-        pad2,
     });
     vec![
         ("eye.wgsl", frame.clone()),

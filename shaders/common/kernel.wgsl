@@ -16,7 +16,8 @@ fn kernel_weights(f: f32) -> vec4f {
     }
     // Cubic B-spline: (1−f)³/6, 2/3 − f²(2−f)/2, the mirror image of both.
     let g = 1.0 - f;
-    return vec4f(g * g * g, 4.0 - 3.0 * f * f * (2.0 - f), 4.0 - 3.0 * g * g * (2.0 - g), f * f * f) / 6.0;
+    let sixths = vec4f(g * g * g, 4.0 - 3.0 * f * f * (2.0 - f), 4.0 - 3.0 * g * g * (2.0 - g), f * f * f);
+    return sixths * (1.0 / 6.0);
 }
 
 // Kernel radius in units of its width.

@@ -8,8 +8,8 @@ struct Light {
     perspective: f32,
     // Linear colour × intensity.
     color: vec3f,
-    // 1 when material attenuates it.
-    shadowed: f32,
+    // Multiplies the extinction that this light meets.
+    extinction_scale: f32,
     // Index space to texture coordinates of that volume: (p + ½) × lookup.
     lookup: vec3f,
     // Of the hood: cosines of the angles up to which it shines fully, and from which it does not.
@@ -17,11 +17,9 @@ struct Light {
     // From the light to what it shines at; a unit vector.
     hood_axis: vec3f,
     hood_outer: f32,
-    // Multiplies the extinction that this light meets.
-    extinction_scale: f32,
+    // The place in index space: a direction, as long as it is there, or a position.
+    place_in_index: vec3f,
     pad0: f32,
-    pad1: f32,
-    pad2: f32,
 }
 
 struct Towards {
@@ -29,12 +27,15 @@ struct Towards {
     direction: vec3f,
     // To the light; of a parallel one, beyond all material.
     distance: f32,
+    // One over the length of the light's place as seen from there.
+    per_length: f32,
 }
 
 fn to_light(light: Light, position: vec3f) -> Towards {
     let away = light.place - position * light.perspective;
     let distance = length(away);
-    return Towards(away / max(distance, 1e-9), select(1e6, distance, light.perspective > 0.5));
+    let per_length = 1.0 / max(distance, 1e-9);
+    return Towards(away * per_length, select(1e6, distance, light.perspective > 0.5), per_length);
 }
 
 // What a hood leaves of the light in a direction: 3t² − 2t³ across the rim.
@@ -85,17 +86,15 @@ fn received(shading: Shading, attenuation: f32) -> f32 {
     return 1.0 - shading.strength * (1.0 - light);
 }
 
-// What one light of a given attenuation adds.
-fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, attenuation: f32) -> Lit {
-    let bare = hood_share(light, to_light);
-    let arriving = light.color * select(bare, received(shading, attenuation), light.shadowed > 0.5);
+// What one light adds of which a given share arrives.
+fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, share: f32) -> Lit {
+    let arriving = light.color * share;
     let facing = dot(surface.normal, to_light);
     // Two-sided diffuse; even from all sides where there is no surface.
     let diffuse = mix(1.0, abs(facing), surface.surfaceness);
-    let sum = to_light + surface.to_eye;
-    let half_vector = sum / max(length(sum), 1e-6);
+    let half_vector = to_light + surface.to_eye;
     // One-sided specular. pow(0, x) is spared: some drivers make it NaN.
-    let aligned = max(dot(surface.normal, half_vector), 1e-6);
+    let aligned = max(dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);
     let highlight = select(0.0, pow(aligned, shading.shininess), facing > 0.0) * surface.surfaceness;
     return Lit(arriving * diffuse, arriving * highlight);
 }

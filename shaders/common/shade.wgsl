@@ -56,8 +56,9 @@ override SHADOWED: u32 = 1u;
 override COLLAPSED: bool = false;
 
 // Where the light of a sample is looked up: the bias nearer to the source.
-fn biased(surface: Surface, towards: Towards) -> vec3f {
-    return surface.point + to_index(eye.space, towards.direction) * eye.shading.bias;
+fn biased(light: Light, surface: Surface, towards: Towards) -> vec3f {
+    let away = light.place_in_index - surface.point * light.perspective;
+    return surface.point + away * (towards.per_length * eye.shading.bias);
 }
 
 // What its light volume says of a light at an index-space point.
@@ -68,8 +69,8 @@ fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> f32 {
 fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
     let towards = to_light(light, surface.position);
-    let attenuation = attenuation_at(light, volume, surface, towards);
-    return reflect_light(eye.shading, light, surface, towards.direction, attenuation);
+    let share = received(eye.shading, attenuation_at(light, volume, surface, towards));
+    return reflect_light(eye.shading, light, surface, towards.direction, share);
 }
 
 fn add(a: Lit, b: Lit) -> Lit {
@@ -86,9 +87,9 @@ fn surface_at(p: vec3f, slope: vec3f) -> Surface {
     return Surface(
         position,
         p,
-        -slope / max(steepness, 1e-9),
+        slope * (-1.0 / max(steepness, 1e-9)),
         steep2 / (steep2 + s.surface_gradient * s.surface_gradient),
-        away / max(length(away), 1e-9),
+        away * (1.0 / max(length(away), 1e-9)),
     );
 }
 
@@ -119,7 +120,8 @@ fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
         // Not from the copy: an index that varies would keep that as an array in memory.
         let light = bound_eye.lights[i];
-        lit = add(lit, reflect_light(s, light, surface, to_light(light, surface.position).direction, 1.0));
+        let direction = to_light(light, surface.position).direction;
+        lit = add(lit, reflect_light(s, light, surface, direction, hood_share(light, direction)));
     }
     return material * (s.emission + s.ambient + s.diffuse * lit.diffuse) + s.specular * lit.specular;
 }

@@ -58,7 +58,7 @@ impl EyePass {
         let shadowed = on.iter().filter(|(light, volume)| is_shadowed(light, *volume)).count();
         let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
         for (slot, (light, volume)) in packed.iter_mut().zip(&on) {
-            *slot = pack_light(light, *volume, is_shadowed(light, *volume), settings);
+            *slot = pack_light(light, *volume, scene, settings);
         }
         let stretch_level = frame.max_stretch_level();
         let mut constants =
@@ -206,30 +206,32 @@ pub(super) fn gradient_constant(takes_gradients: bool) -> (&'static str, f64) {
 pub(super) fn pack_light(
     light: &Light,
     volume: Option<&LightVolume>,
-    shadowed: bool,
+    scene: &SceneSpace,
     settings: &Settings,
 ) -> uniforms::Light {
     // Balance makes up for the light that shadows take away; without shadows there is none.
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
     let cone = light.cone();
     let linear = |c: f32| crate::model::linear_from_srgb(f64::from(c));
-    let (place, perspective) = match light.kind {
-        LightKind::Parallel => (light.direction(), 0.0),
-        LightKind::Perspective => (light.position.into(), 1.0),
+    let to_index = &scene.index_from_scene;
+    let (place, place_in_index, perspective) = match light.kind {
+        LightKind::Parallel => (light.direction(), to_index.transform_vector3(light.direction()), 0.0),
+        LightKind::Perspective => {
+            let position = light.position.into();
+            (position, to_index.transform_point3(position), 1.0)
+        }
     };
     uniforms::Light {
         place: place.as_vec3().into(),
         perspective,
         color: light.color.map(|c| (linear(c) * light.intensity * balance) as f32),
-        shadowed: f32::from(u8::from(shadowed)),
+        extinction_scale: light.density_scale as f32,
         lookup: volume.map_or([0.0; 3], |volume| volume.dims.map(|n| 1.0 / (n * volume.divisor) as f32)),
         hood_inner: cone.cos_inner as f32,
         hood_axis: cone.axis.as_vec3().into(),
         hood_outer: cone.cos_outer as f32,
-        extinction_scale: light.density_scale as f32,
+        place_in_index: place_in_index.as_vec3().into(),
         pad0: 0.0,
-        pad1: 0.0,
-        pad2: 0.0,
     }
 }
 

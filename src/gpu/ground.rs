@@ -7,6 +7,7 @@ use super::tables::{EVERYWHERE, Tables, view_entry};
 use super::uniforms;
 use super::volume::{Gpu, Levels, entry};
 use super::{GpuError, RenderOptions};
+use crate::math::SceneSpace;
 use crate::model::{Ground, Light, MAX_LIGHTS, Settings, linear_from_srgb};
 use crate::plan::ray_reach;
 
@@ -43,7 +44,7 @@ pub(super) fn draw(
         first_row: rows.start,
         end_row: rows.end,
         runs,
-        ..uniform(eye, settings, &lights)
+        ..uniform(eye, &volume.scene, settings, &lights)
     };
     let uniform = gpu.uniform("Ground::uniform", uniform);
     let own = gpu.bind(
@@ -74,7 +75,7 @@ pub(super) fn constants(settings: &Settings, (lights, shadowed): (usize, usize))
 }
 
 /// What the shader knows of the eye, the floor and the lights; no rows yet.
-fn uniform(eye: &EyePass, settings: &Settings, lights: &[Light]) -> uniforms::Ground {
+fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lights: &[Light]) -> uniforms::Ground {
     let uniforms::Eye { frame, shading, space, shading_cut, .. } = eye.uniform();
     let Ground { on: _, height, radius, color, opacity, shadow_only } = settings.ground;
     // z of a scene point is this row of the map from index space.
@@ -82,7 +83,7 @@ fn uniform(eye: &EyePass, settings: &Settings, lights: &[Light]) -> uniforms::Gr
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
     let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
     for (slot, light) in packed.iter_mut().zip(lights) {
-        *slot = pack_light(light, None, true, settings);
+        *slot = pack_light(light, None, scene, settings);
     }
     uniforms::Ground {
         frame,

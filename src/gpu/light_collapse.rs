@@ -46,7 +46,7 @@ impl CollapsedKey {
         };
         let mut bytes = bytemuck::bytes_of(&shading).to_vec();
         for light in settings.lights.iter().filter(|light| light.needs_volume()) {
-            let packed = pack_light(&light.in_world(&settings.camera), None, true, settings);
+            let packed = pack_light(&light.in_world(&settings.camera), None, scene, settings);
             bytes.extend_from_slice(bytemuck::bytes_of(&packed));
         }
         Self { lights, shading: bytes, seen: settings.cuts.seen() }

@@ -47,7 +47,7 @@ pub(super) fn raycast(
     let pipeline =
         shaders.pipeline_into("light_raycast.wgsl", &constants(settings), target.texture.format())?;
     let uniform = uniforms::Raycast {
-        light: pack_light(light, Some(target), true, settings),
+        light: pack_light(light, Some(target), &volume.scene, settings),
         space: uniforms::Space::new(&volume.scene),
         dims: target.dims.map(|n| n as u32),
         bricks: bricks.len() as u32,

@@ -272,15 +272,13 @@ pub struct Light {
     pub place: [f32; 3],
     pub perspective: f32,
     pub color: [f32; 3],
-    pub shadowed: f32,
+    pub extinction_scale: f32,
     pub lookup: [f32; 3],
     pub hood_inner: f32,
     pub hood_axis: [f32; 3],
     pub hood_outer: f32,
-    pub extinction_scale: f32,
+    pub place_in_index: [f32; 3],
     pub pad0: f32,
-    pub pad1: f32,
-    pub pad2: f32,
 }
 
 /// `common/lights.wgsl`.

@@ -97,8 +97,8 @@ gpu_mutation!(
 gpu_mutation!(
     gpu_normals_flipped,
     "eye.wgsl",
-    "-slope / max(steepness, 1e-9)",
-    "slope / max(steepness, 1e-9)"
+    "slope * (-1.0 / max(steepness, 1e-9))",
+    "slope * (1.0 / max(steepness, 1e-9))"
 );
 gpu_mutation!(
     gpu_kernel_shifted_by_half_a_voxel,
