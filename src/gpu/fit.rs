@@ -71,11 +71,12 @@ fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuEr
     if context.is_software() && bytes > memory_budget_bytes() {
         return Err(GpuError::OutOfMemory { what: "the volume".to_owned(), mebibytes: bytes >> 20 });
     }
-    let textures = volume::textures(context, like, dims)?;
-    let light = attenuation_texture(context, dims, context.storage_format)?;
-    drop((textures, light));
-    // What was dropped is given back when the device is looked after.
-    context.wait()
+    let made = volume::textures(context, like, dims)
+        .and_then(|textures| Ok((textures, attenuation_texture(context, dims, context.storage_format)?)));
+    let held = made.map(drop);
+    // What was dropped, of a failed attempt too, is given back when the device is looked after.
+    let waited = context.wait();
+    held.and(waited)
 }
 
 #[cfg(test)]
