@@ -70,8 +70,10 @@ impl App {
         let Some(volume) = &self.volume else { return };
         let mut settings = self.settings.clone();
         // Opacities refer to the same thickness, however many voxels that has.
-        let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
-        settings.opacity_unit = Length::Mm(unit);
+        if let Length::Voxels(_) = settings.opacity_unit {
+            let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
+            settings.opacity_unit = Length::Mm(unit);
+        }
         let (source, reading) = (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading });
         match Record::read(&Record::text(&settings, None, None)) {
             Ok(record) if self.start_loading(&source, reading, ctx) => self.pending = Some(record),
