@@ -76,9 +76,7 @@ impl LoadArgs {
         let raw = RawFormat { dims, voxel_type, spacing_mm, endian, offset: self.offset };
         Ok(LoadOptions { raw, reduce: usize::from(self.reduce), ..LoadOptions::default() })
     }
-}
 
-impl LoadArgs {
     /// Loads a volume, and opens the adapter.
     pub(super) fn open(&self, source: &str) -> Result<(Volume, Context), CliError> {
         // What is wrong with a file is said first.
