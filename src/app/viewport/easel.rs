@@ -76,6 +76,8 @@ pub(super) struct Easel {
     scene: Option<Scene>,
     wanted: Option<Wanted>,
     changed: Instant,
+    /// A picture was left on the desk, and the window had not taken it when the desk was looked at last.
+    handed: bool,
     running: Option<Running>,
     /// What is on screen, or on its way there.
     shown: Option<(Wanted, Look)>,
@@ -102,6 +104,7 @@ impl Easel {
             scene: None,
             wanted: None,
             changed: now,
+            handed: false,
             running: None,
             shown: None,
             settled: None,
@@ -149,6 +152,12 @@ impl Easel {
             if let Some(wanted) = desk.wanted.take() {
                 self.changed = Instant::now();
                 self.wanted = Some(wanted);
+            }
+            // Until the window takes a picture nobody knows what it wants next. Refining would only keep it from
+            // saying so where it is drawn by the same processors.
+            if self.handed {
+                self.changed = Instant::now();
+                self.handed = desk.frame.is_some();
             }
             if self.running.is_some() || self.due().is_some() {
                 return true;
@@ -339,6 +348,7 @@ impl Easel {
         desk.figures.refining = None;
         desk.frame = Some(Frame { wanted, look, image, other });
         drop(desk);
+        self.handed = true;
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
         Ok(())

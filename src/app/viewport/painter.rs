@@ -61,7 +61,7 @@ pub(super) struct Desk {
 #[derive(Default)]
 pub(super) struct Shared {
     desk: Mutex<Desk>,
-    /// The window has put something on the desk.
+    /// The window has put something on the desk, or taken it away.
     pub(super) changed: Condvar,
     /// The painter has.
     pub(super) finished: Condvar,
@@ -138,7 +138,11 @@ impl Painter {
             .finished
             .wait_timeout_while(self.shared.desk(), patience, is_due)
             .unwrap_or_else(PoisonError::into_inner);
-        desk.frame.take()
+        let frame = desk.frame.take();
+        if frame.is_some() {
+            self.shared.changed.notify_one();
+        }
+        frame
     }
 
     /// What went wrong, once.
