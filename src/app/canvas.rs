@@ -94,8 +94,10 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
-    // Where no picture is, the window's clear colour is seen: filling costs a software driver 15 ms.
-    let Some((scene, is_anatomical)) = scene else { return (canvas, Ok(())) };
+    let Some((scene, is_anatomical)) = scene else {
+        ui.painter().rect_filled(canvas.rect, 0.0, theme::STAGE);
+        return (canvas, Ok(()));
+    };
     orbit::navigate(
         ui,
         &response,
@@ -118,7 +120,7 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
         slices.point_at(found.index, volume.dims());
     }
     // Painted first, filled in when the lights have been moved: no frame of delay.
-    let picture = ui.painter().add(Shape::Noop);
+    let places = [(); 2].map(|()| ui.painter().add(Shape::Noop));
     let moving =
         ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
     marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
@@ -145,7 +147,9 @@ pub(super) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     hints.show(ui, canvas.rect, &response);
     let pictures = viewport.pictures();
     compare.ui(ui, canvas.rect, &pictures);
-    ui.painter().set(picture, compare.shapes(canvas.rect, &pictures));
+    for (place, (part, shape)) in places.into_iter().zip(compare.shapes(canvas.rect, &pictures)) {
+        ui.painter_at(part).set(place, shape);
+    }
     (canvas, result)
 }
 

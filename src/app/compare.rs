@@ -1,13 +1,11 @@
 //! Two looks in one picture: left and right of a divider, or what lies between them.
 
-use eframe::egui::{
-    self, Align2, Color32, CursorIcon, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2,
-};
+use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Stroke, Ui};
 use eframe::egui::{WidgetInfo, pos2, vec2};
 
 use super::text;
 use super::theme;
-use super::viewport::Pictures;
+use super::viewport::{Pictures, plate};
 use crate::gpu::Distance;
 use crate::model::{Settings, Variant};
 
@@ -50,27 +48,23 @@ impl Compare {
         if self.on { (self.left.of(&settings), Some(self.right.of(&settings))) } else { (settings, None) }
     }
 
-    /// The picture, or two of them.
-    pub(super) fn shapes(&self, rect: Rect, pictures: &Pictures) -> Shape {
-        let whole = Rect::from_min_size(Pos2::ZERO, Vec2::splat(1.0));
-        let tinted = |texture, part: Rect, tint: Color32| {
-            let place = |uv: Pos2| rect.min + uv.to_vec2() * rect.size();
-            let mut mesh = Mesh::with_texture(texture);
-            mesh.add_rect_with_uv(Rect::from_min_max(place(part.min), place(part.max)), part, tint);
-            Shape::from(mesh)
+    /// The picture, or two of them, and the part of the rectangle in which each is seen.
+    pub(super) fn shapes(&self, rect: Rect, pictures: &Pictures) -> [(Rect, Shape); 2] {
+        let nothing = || (rect, Shape::Noop);
+        let opaque = |picture| plate::picture(rect, picture, u8::MAX);
+        let Some(left) = &pictures.left else {
+            return [(rect, Shape::rect_filled(rect, 0.0, theme::STAGE)), nothing()];
         };
-        let part = |texture, part| tinted(texture, part, Color32::WHITE);
-        let Some(left) = pictures.left else { return Shape::Noop };
-        let Some(other) = pictures.other.filter(|_| self.on) else {
-            let faded =
-                pictures.fading.map(|(before, left)| tinted(before, whole, Color32::from_white_alpha(left)));
-            return Shape::Vec([part(left, whole)].into_iter().chain(faded).collect());
+        let Some(other) = pictures.other.as_ref().filter(|_| self.on) else {
+            let fading = pictures.fading.as_ref();
+            let faded = fading.map(|(before, left)| (rect, plate::picture(rect, before, *left)));
+            return [(rect, opaque(left)), faded.unwrap_or_else(nothing)];
         };
         if self.difference {
-            return part(other.difference, whole);
+            return [(rect, opaque(&other.difference)), nothing()];
         }
-        let (left_part, right_part) = whole.split_left_right_at_fraction(self.divider);
-        Shape::Vec(vec![part(left, left_part), part(other.right, right_part)])
+        let (left_part, right_part) = rect.split_left_right_at_fraction(self.divider);
+        [(left_part, opaque(left)), (right_part, opaque(&other.right))]
     }
 
     /// The divider and what is known of the difference, over the picture.
@@ -91,7 +85,7 @@ impl Compare {
             label(pos2(rect.left() + 8.0, top), Align2::LEFT_TOP, left);
             label(pos2(rect.right() - 8.0, top), Align2::RIGHT_TOP, right);
         }
-        if let Some(other) = pictures.other {
+        if let Some(other) = &pictures.other {
             let Distance { rmse, largest } = other.distance;
             let words = text::picture::distance(rmse, largest);
             label(pos2(rect.center().x, rect.bottom() - 8.0), Align2::CENTER_BOTTOM, &words);

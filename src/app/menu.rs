@@ -4,6 +4,7 @@ use eframe::egui::{self, Button, ThemePreference};
 
 use super::commands::{Command, VIEW_SLOTS};
 use super::text;
+use super::theme;
 use crate::data::synthetic;
 use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
 
@@ -46,7 +47,7 @@ pub(super) struct Shown {
 
 /// Shows the bar.
 pub(super) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
-    egui::Panel::top("menu").resizable(false).show(ui, |ui| {
+    egui::Panel::top("menu").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button(text::menu::FILE, |ui| file(ui, menu));
             ui.menu_button(text::menu::EDIT, |ui| {

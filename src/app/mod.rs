@@ -71,10 +71,10 @@ use self::raw_dialog::RawDialog;
 use self::slices::Slices;
 use self::status_file::StatusFile;
 use self::transfer_editor::TransferEditor;
-use self::viewport::{Facts, Viewport};
+use self::viewport::{Facts, Viewport, plate};
 use self::volume_facts::VolumeFacts;
 use self::work::Work;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{Context, GpuError, WindowPainter};
 use crate::model::{Record, Settings};
 
 /// A frame that keeps the window's thread longer is felt.
@@ -87,6 +87,8 @@ pub struct App {
     defaults: Settings,
     volume: Option<VolumeFacts>,
     viewport: Viewport,
+    /// Fills the window's background.
+    window: WindowPainter,
     canvas: Option<Canvas>,
     loader: Loader,
     memory: Memory,
@@ -141,6 +143,7 @@ impl App {
         let no_wgpu = || GpuError::Refused(text::messages::NO_DEVICE.to_owned());
         let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
         // The window's own device draws the window alone: pictures are made beside it.
+        let window = WindowPainter::new(&paint.device, &paint.queue, paint.target_format)?;
         let context = Context::new(&paint.adapter, paint.device, paint.queue)?.sibling()?;
         theme::apply(&cc.egui_ctx);
         let Options { source, load, session, adjust, storage } = options;
@@ -152,7 +155,7 @@ impl App {
             settings: Settings::default(),
             defaults: Settings::default(),
             volume: None,
-            viewport: Viewport::new(context.clone(), &cc.egui_ctx)?,
+            viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, pipelines.as_deref())?,
             memory,
@@ -175,7 +178,8 @@ impl App {
             slices: Slices::default(),
             raw_dialog: RawDialog::default(),
             contact_sheet: ContactSheet::default(),
-            editor: TransferEditor::default(),
+            editor: TransferEditor::new(window.clone()),
+            window,
             selected_light: 0,
             side_open: true,
             help: Help::default(),
@@ -268,11 +272,13 @@ impl App {
         status::show(ui, facts, self.loader.progress(), &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
+            let panel = panel.frame(theme::panel(ui));
             panel.size_range(90.0..=420.0).show(ui, |ui| {
                 self.editor.ui(ui, &mut self.settings, volume, self.probe.value(), commands);
             });
         }
         let panel = egui::Panel::right("side").resizable(false).exact_size(theme::SIDE_WIDTH);
+        let panel = panel.frame(theme::panel(ui));
         panel.show_collapsible(ui, &mut self.side_open, |ui| {
             panels::show(
                 ui,
@@ -325,6 +331,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let start = std::time::Instant::now();
+        ui.painter().add(plate::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
         let mut commands = Vec::new();
         if let Some(path) = files::dropped(&ctx) {
             commands.push(Command::Open(path.display().to_string()));
@@ -375,7 +382,7 @@ impl eframe::App for App {
         self.export.abandon();
     }
 
-    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::STAGE.to_normalized_gamma_f32()
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn show(
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
-    egui::Panel::bottom("status").resizable(false).show(ui, |ui| {
+    egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
             if let Some((source, phase, fraction)) = opening {
                 let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);

@@ -48,6 +48,11 @@ pub(super) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
 /// Behind the picture while there is none.
 pub(super) const STAGE: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
 
+/// The frame of a panel, through which the background of the window is seen: that is filled at once and cheaply.
+pub(super) fn panel(ui: &egui::Ui) -> egui::Frame {
+    egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
+}
+
 /// What is selected or active, as text on a panel: 4.5:1 on light ones, too.
 pub(super) fn accent(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { ACCENT } else { Color32::from_rgb(0x85, 0x52, 0x00) }

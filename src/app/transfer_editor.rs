@@ -3,6 +3,7 @@
 //! Both curves share one plot: the eye's, filled with its colours, and the lighting one as a single
 //! amber line, dashed while it follows the eye's.
 
+mod backdrop;
 mod fields;
 mod menus;
 mod plot;
@@ -11,6 +12,7 @@ mod zoom;
 
 use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 
+use self::backdrop::{Backdrop, Bars};
 use self::plot::Axes;
 use self::selection::Selection;
 use self::zoom::Zoom;
@@ -18,6 +20,7 @@ use super::commands::Command;
 use super::text;
 use super::theme;
 use super::volume_facts::VolumeFacts;
+use crate::gpu::WindowPainter;
 use crate::model::{Settings, TransferFunction};
 
 /// Which curve is edited.
@@ -41,11 +44,14 @@ pub(super) struct TransferEditor {
     log_histogram: bool,
     /// Values that are shown, if not all.
     zoom: Zoom,
+    backdrop: Backdrop,
 }
 
-impl Default for TransferEditor {
-    fn default() -> Self {
+impl TransferEditor {
+    /// The editor of a window.
+    pub(super) fn new(window: WindowPainter) -> Self {
         Self {
+            backdrop: Backdrop::new(window),
             curve: Curve::Eye,
             selection: Selection::default(),
             left: TransferFunction::default(),
@@ -170,12 +176,12 @@ impl TransferEditor {
         }
     }
 
-    fn paint(&self, ui: &Ui, axes: &Axes, settings: &Settings, volume: &VolumeFacts) {
+    fn paint(&mut self, ui: &Ui, axes: &Axes, settings: &Settings, volume: &VolumeFacts) {
         let painter = ui.painter_at(axes.area);
-        plot::checkerboard(&painter, axes.area);
-        let bars =
+        let counts =
             plot::bars(&volume.histogram, volume.levels, axes.width() * self.zoom.factor(volume.range));
-        plot::histogram(&painter, axes, volume.range, &bars, self.log_histogram);
+        let bars = Bars { range: volume.range, counts, log: self.log_histogram };
+        painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &settings.transfer));
         plot::eye_curve(&painter, axes, &settings.transfer, self.curve == Curve::Eye);
         plot::light_curve(&painter, axes, settings, self.curve == Curve::Light);
         plot::labels(&painter, axes);

@@ -46,6 +46,7 @@ mod tables;
 pub mod uniforms;
 mod volume;
 mod warm_up;
+mod window;
 
 pub use bands::Bands;
 pub use context::{Context, device_descriptor};
@@ -61,3 +62,4 @@ pub use readback::Attenuation;
 pub use renderer::Renderer;
 pub use shader::{SHADERS, ShaderLibrary};
 pub use volume::stored_density;
+pub use window::{WindowPainter, WindowPicture};

@@ -9,7 +9,7 @@ use super::{Context, GpuError};
 use crate::export::ExportError;
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 40] = [
+pub const SHADERS: [(&str, &str); 41] = [
     ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/cut.wgsl", include_str!("../../shaders/common/cut.wgsl")),
@@ -50,6 +50,7 @@ pub const SHADERS: [(&str, &str); 40] = [
     ("scatter_resolve.wgsl", include_str!("../../shaders/scatter_resolve.wgsl")),
     ("scatter_reverse.wgsl", include_str!("../../shaders/scatter_reverse.wgsl")),
     ("scatter_splat.wgsl", include_str!("../../shaders/scatter_splat.wgsl")),
+    ("window.wgsl", include_str!("../../shaders/window.wgsl")),
 ];
 
 /// The format of the ring of sheets where single channels are stored in `format`.

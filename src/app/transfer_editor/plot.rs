@@ -1,7 +1,7 @@
 //! What the transfer function editor paints.
 
 use eframe::egui::{
-    self, Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Response, Rgba, Shape, Stroke, Ui, Vec2, pos2,
+    self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2, pos2,
 };
 
 use super::text;
@@ -13,11 +13,9 @@ use crate::model::{Settings, TransferFunction};
 const SAMPLE_STEP: f32 = 2.0;
 /// Room around the plot, so that points at its borders can be grabbed.
 const MARGIN: Vec2 = Vec2::new(8.0, 7.0);
-/// Even where nearly nothing is opaque the colour can be told.
-const LEAST_FILL: f32 = 0.25;
 
 /// Value and opacity as places in the window.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Axes {
     /// The whole area, with its margin.
     pub area: Rect,
@@ -59,6 +57,11 @@ impl Axes {
         (self.range.0 - slack..=self.range.1 + slack).contains(&value) || self.is_whole
     }
 
+    /// Whether a place across the window is over the plot.
+    pub(super) fn is_within(&self, x: f32) -> bool {
+        self.plot.x_range().contains(x)
+    }
+
     /// Where a value is along the plot, also beyond it.
     fn x(&self, value: f64) -> f32 {
         self.plot.min.x + ((value - self.range.0) / (self.range.1 - self.range.0)) as f32 * self.plot.width()
@@ -84,24 +87,6 @@ impl Axes {
     }
 }
 
-/// Two greys behind everything, so that transparency can be seen.
-pub(super) fn checkerboard(painter: &Painter, area: Rect) {
-    painter.rect_filled(area, 3.0, theme::CHECKER[0]);
-    let mut mesh = Mesh::default();
-    let edge = theme::CHECKER_EDGE;
-    let (columns, rows) = ((area.width() / edge) as usize, (area.height() / edge) as usize);
-    for row in 0..=rows {
-        for column in (row % 2..=columns).step_by(2) {
-            let min = area.min + Vec2::new(column as f32, row as f32) * edge;
-            mesh.add_colored_rect(
-                Rect::from_min_size(min, Vec2::splat(edge)).intersect(area),
-                theme::CHECKER[1],
-            );
-        }
-    }
-    painter.add(Shape::mesh(mesh));
-}
-
 /// Voxels per bar: at most one bar per point of width, and one per value where those are fewer.
 pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> Vec<u64> {
     let bins = histogram.counts.len();
@@ -115,51 +100,9 @@ pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> 
     (0..columns).map(|column| histogram.counts[first(column)..first(column + 1)].iter().sum()).collect()
 }
 
-/// Bars of the histogram of a range of values.
-pub(super) fn histogram(painter: &Painter, axes: &Axes, range: (f64, f64), counts: &[u64], log: bool) {
-    let columns = counts.len();
-    let height = |count: u64| if log { (count as f64).ln_1p() } else { count as f64 };
-    // The background would dwarf everything else on a linear scale.
-    let mut sorted = counts.to_vec();
-    sorted.sort_unstable();
-    let top = if log { sorted[columns - 1] } else { sorted[(columns * 99 / 100).min(columns - 1)] };
-    let full = height(top).max(1e-9);
-    let mut mesh = Mesh::default();
-    let edge = |column: usize| {
-        let span = if range.1 > range.0 { range.1 - range.0 } else { 1.0 };
-        axes.x(range.0 + span * column as f64 / columns as f64)
-    };
-    for (column, &count) in counts.iter().enumerate().filter(|bar| *bar.1 > 0) {
-        let tall = (height(count) / full).min(1.0) as f32 * axes.plot.height();
-        let (left, right) = (edge(column).max(axes.plot.min.x), edge(column + 1).min(axes.plot.max.x));
-        if left < right {
-            let bar = Rect::from_min_max(pos2(left, axes.plot.max.y - tall), pos2(right, axes.plot.max.y));
-            mesh.add_colored_rect(bar, theme::HISTOGRAM);
-        }
-    }
-    painter.add(Shape::mesh(mesh));
-}
-
-/// The eye's curve, filled with its colours.
+/// The eye's curve.
 pub(super) fn eye_curve(painter: &Painter, axes: &Axes, function: &TransferFunction, edited: bool) {
-    let mut mesh = Mesh::default();
-    let mut line = Vec::new();
-    for (x, value) in axes.samples() {
-        let opacity = function.opacity_at(value);
-        let [r, g, b] = function.at(value).0.map(|c| c as f32);
-        let fill = LEAST_FILL + (1.0 - LEAST_FILL) * opacity as f32;
-        let color = Color32::from(Rgba::from_rgb(r, g, b)).gamma_multiply(fill);
-        let y = axes.y(opacity);
-        line.push(pos2(x, y));
-        mesh.colored_vertex(pos2(x, y), color);
-        mesh.colored_vertex(pos2(x, axes.plot.max.y), color);
-        let next = mesh.vertices.len() as u32;
-        if next >= 4 {
-            mesh.add_triangle(next - 4, next - 3, next - 2);
-            mesh.add_triangle(next - 3, next - 2, next - 1);
-        }
-    }
-    painter.add(Shape::mesh(mesh));
+    let line = axes.samples().map(|(x, value)| pos2(x, axes.y(function.opacity_at(value)))).collect();
     let strength = if edited { 1.0 } else { 0.5 };
     painter.add(Shape::line(line, Stroke::new(1.5, theme::EYE_CURVE.gamma_multiply(strength))));
 }

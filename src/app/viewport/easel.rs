@@ -153,8 +153,7 @@ impl Easel {
                 self.changed = Instant::now();
                 self.wanted = Some(wanted);
             }
-            // Until the window takes a picture nobody knows what it wants next. Refining would only keep it from
-            // saying so where it is drawn by the same processors.
+            // Until the window takes a picture nobody knows what it wants next: refining might only delay it.
             if self.handed {
                 self.changed = Instant::now();
                 self.handed = desk.frame.is_some();

@@ -9,12 +9,13 @@ mod easel;
 mod exposure;
 mod facts;
 mod painter;
+pub(super) mod plate;
 mod response;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
+use eframe::egui::{self, ColorImage};
 
 pub(super) use self::facts::{Doing, Facts};
 use self::painter::{Frame, Painter};
@@ -23,7 +24,7 @@ use self::response::Waiting;
 use super::refine::Look;
 use crate::data::{Bricks, Volume};
 pub(super) use crate::gpu::LightFigures;
-use crate::gpu::{Context, Distance, GpuError, Renderer};
+use crate::gpu::{Context, Distance, GpuError, Renderer, WindowPainter, WindowPicture};
 use crate::model::Settings;
 
 /// How long a frame of the window waits for a preview: what is left of 1/60 s.
@@ -48,23 +49,23 @@ struct Wanted {
 }
 
 /// What can be drawn.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Pictures {
     /// The picture, or the left one of two.
-    pub left: Option<egui::TextureId>,
+    pub left: Option<WindowPicture>,
     /// The preview that was shown before, and what is left of its opacity.
-    pub fading: Option<(egui::TextureId, u8)>,
+    pub fading: Option<(WindowPicture, u8)>,
     /// Where two looks are compared.
     pub other: Option<Other>,
 }
 
 /// The second picture of a comparison.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Other {
     /// The right one.
-    pub right: egui::TextureId,
+    pub right: WindowPicture,
     /// What lies between them, amplified.
-    pub difference: egui::TextureId,
+    pub difference: WindowPicture,
     /// How far they are apart.
     pub distance: Distance,
 }
@@ -83,6 +84,8 @@ pub(super) struct Viewport {
     /// What a frame may take while something moves, in milliseconds; `None` for what suits the adapter.
     pub frame_ms: Option<f64>,
     context: Context,
+    /// Draws pictures into the window.
+    window: WindowPainter,
     painter: Painter,
     /// What the painter was last told.
     wanted: Option<Wanted>,
@@ -92,9 +95,9 @@ pub(super) struct Viewport {
     generation: u64,
     volume: Option<(Arc<Volume>, Arc<Bricks>)>,
     /// The picture, or of a comparison left, right and their difference.
-    textures: [Option<Texture>; 3],
+    placed: [Option<WindowPicture>; 3],
     /// The preview that fades into the picture at full quality, and since when (egui's seconds).
-    fading: Option<(Texture, f64)>,
+    fading: Option<(WindowPicture, f64)>,
     now_s: f64,
     /// How far the two are apart.
     differs: Option<Distance>,
@@ -104,29 +107,22 @@ pub(super) struct Viewport {
     lost: bool,
 }
 
-/// A picture in egui's care.
-struct Texture(TextureHandle);
-
-impl std::fmt::Debug for Texture {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Texture({:?})", self.0.id())
-    }
-}
-
 impl Viewport {
-    /// An empty viewport; pictures will be rendered with `context`, which is not the window's own.
-    pub(super) fn new(context: Context, ctx: &egui::Context) -> std::io::Result<Self> {
+    /// An empty viewport; pictures will be rendered with `context`, which is not the window's own, and drawn with
+    /// `window`, which is.
+    pub(super) fn new(context: Context, window: WindowPainter, ctx: &egui::Context) -> std::io::Result<Self> {
         let painter = Painter::start(context.clone(), ctx.clone())?;
         Ok(Self {
             frame_ms: None,
             context,
+            window,
             painter,
             wanted: None,
             waiting: Waiting::default(),
             waited_in_vain: false,
             generation: 0,
             volume: None,
-            textures: [None, None, None],
+            placed: [None, None, None],
             fading: None,
             now_s: 0.0,
             differs: None,
@@ -157,12 +153,11 @@ impl Viewport {
 
     /// The picture to be drawn, or several.
     pub(super) fn pictures(&self) -> Pictures {
-        let [left, right, difference] =
-            self.textures.each_ref().map(|texture| texture.as_ref().map(|texture| texture.0.id()));
+        let [left, right, difference] = self.placed.clone();
         let other = right.zip(difference).zip(self.differs);
-        let fading = self.fading.as_ref().map(|(texture, since_s)| {
+        let fading = self.fading.as_ref().map(|(picture, since_s)| {
             let left = 1.0 - (self.now_s - since_s) / FADE_S;
-            (texture.0.id(), (left.clamp(0.0, 1.0) * 255.0) as u8)
+            (picture.clone(), (left.clamp(0.0, 1.0) * 255.0) as u8)
         });
         Pictures {
             left,
@@ -244,20 +239,19 @@ impl Viewport {
         let Frame { wanted, look, image, other } = frame;
         // Pixel for pixel where there are enough of them.
         let exact = image.size == wanted.size.map(|n| n as usize);
-        let options = if exact { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
         // A preview of the same fades away; anything else is replaced at once.
         let is_same = self.shown.as_ref().is_some_and(|(shown, before)| *shown == wanted && *before != look);
         self.fading =
-            self.textures[0].take_if(|_| is_same && other.is_none()).map(|texture| (texture, self.now_s));
+            self.placed[0].take_if(|_| is_same && other.is_none()).map(|picture| (picture, self.now_s));
         if self.fading.is_some() {
             ctx.request_repaint();
         }
-        self.place(0, image, options, ctx);
+        self.place(0, &image, exact);
         match other {
             Some((right, difference)) => {
                 self.differs = Some(difference.distance);
-                self.place(1, right, options, ctx);
-                self.place(2, difference.image, options, ctx);
+                self.place(1, &right, exact);
+                self.place(2, &difference.image, exact);
             }
             None => self.differs = None,
         }
@@ -265,10 +259,9 @@ impl Viewport {
         self.shown = Some((wanted, look));
     }
 
-    fn place(&mut self, at: usize, image: ColorImage, options: TextureOptions, ctx: &egui::Context) {
-        match &mut self.textures[at] {
-            Some(texture) => texture.0.set(image, options),
-            empty => *empty = Some(Texture(ctx.load_texture("picture", image, options))),
-        }
+    fn place(&mut self, at: usize, image: &ColorImage, is_exact: bool) {
+        let size = image.size.map(|n| n as u32);
+        let before = self.placed[at].take();
+        self.placed[at] = Some(self.window.place(before, size, image.as_raw(), is_exact));
     }
 }

@@ -1,0 +1,168 @@
+//! What lies behind the curves of the plot: a checkerboard, the histogram, and the colours under the eye's curve.
+//!
+//! It is composed into one picture, when anything of it changes: painted as shapes, three layers over an eighth of
+//! the window, it took a software driver more than the whole rest of the window.
+
+use eframe::egui::{Color32, Rgba, Shape, pos2};
+
+use super::plot::Axes;
+use super::theme;
+use crate::app::canvas::Canvas;
+use crate::app::viewport::plate;
+use crate::gpu::{WindowPainter, WindowPicture};
+use crate::model::TransferFunction;
+
+/// Even where nearly nothing is opaque the colour can be told.
+const LEAST_FILL: f32 = 0.25;
+
+/// Bars of a histogram.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bars {
+    /// The values that they share evenly.
+    pub range: (f64, f64),
+    /// Voxels in each.
+    pub counts: Vec<u64>,
+    /// Rare values are raised so that they can be seen.
+    pub log: bool,
+}
+
+impl Bars {
+    /// Heights as shares of the plot's.
+    fn heights(&self) -> Vec<f32> {
+        let height = |count: u64| if self.log { (count as f64).ln_1p() } else { count as f64 };
+        // The background would dwarf everything else on a linear scale.
+        let mut sorted = self.counts.clone();
+        sorted.sort_unstable();
+        let columns = sorted.len();
+        let top = if self.log { columns - 1 } else { (columns * 99 / 100).min(columns - 1) };
+        let full = height(sorted[top]).max(1e-9);
+        self.counts.iter().map(|&count| (height(count) / full).min(1.0) as f32).collect()
+    }
+
+    /// The bar of a value.
+    fn at(&self, value: f64) -> Option<usize> {
+        let span = if self.range.1 > self.range.0 { self.range.1 - self.range.0 } else { 1.0 };
+        let place = ((value - self.range.0) / span * self.counts.len() as f64).floor();
+        (place >= 0.0 && place < self.counts.len() as f64).then_some(place as usize)
+    }
+}
+
+/// What it is composed from.
+#[derive(Debug, Clone, PartialEq)]
+struct Key {
+    canvas: Canvas,
+    axes: Axes,
+    bars: Bars,
+    function: TransferFunction,
+}
+
+/// The picture as it was composed last.
+#[derive(Debug)]
+pub(super) struct Backdrop {
+    window: WindowPainter,
+    composed: Option<(Key, WindowPicture)>,
+}
+
+impl Backdrop {
+    /// For a window.
+    pub(super) fn new(window: WindowPainter) -> Self {
+        Self { window, composed: None }
+    }
+
+    /// What is to be painted first.
+    pub(super) fn shape(
+        &mut self,
+        axes: &Axes,
+        pixels_per_point: f32,
+        bars: Bars,
+        function: &TransferFunction,
+    ) -> Shape {
+        let canvas = Canvas::within(axes.area, pixels_per_point);
+        if canvas.size.contains(&0) || bars.counts.is_empty() {
+            return Shape::Noop;
+        }
+        let key = Key { canvas, axes: *axes, bars, function: function.clone() };
+        let (_, picture) = match self.composed.take_if(|(before, _)| *before == key) {
+            Some(composed) => self.composed.insert(composed),
+            None => {
+                let before = self.composed.take().map(|(_, picture)| picture);
+                let bytes = compose(&key, pixels_per_point);
+                let picture = self.window.place(before, canvas.size, &bytes, true);
+                self.composed.insert((key, picture))
+            }
+        };
+        plate::picture(canvas.rect, picture, u8::MAX)
+    }
+}
+
+/// Pixels from the upper left, row by row: sRGB, four bytes each.
+fn compose(key: &Key, pixels_per_point: f32) -> Vec<u8> {
+    let Key { canvas, axes, bars, function } = key;
+    let [width, height] = canvas.size.map(|n| n as usize);
+    let heights = bars.heights();
+    // Middles of pixels, in points.
+    let point = |pixel: usize| (pixel as f32 + 0.5) / pixels_per_point;
+    let floor = axes.position(axes.range.0, 0.0).y;
+    let tall = floor - axes.position(axes.range.0, 1.0).y;
+    let mut pixels = vec![Color32::BLACK; width * height];
+    for column in 0..width {
+        let x = canvas.rect.min.x + point(column);
+        let value = axes.is_within(x).then(|| axes.values(pos2(x, floor)).0);
+        let bar = value.and_then(|value| bars.at(value)).map_or(0.0, |bar| heights[bar] * tall);
+        let (curve, fill) = value.map_or((0.0, Color32::TRANSPARENT), |value| {
+            let opacity = function.opacity_at(value) as f32;
+            let [r, g, b] = function.at(value).0.map(|c| c as f32);
+            let share = LEAST_FILL + (1.0 - LEAST_FILL) * opacity;
+            (opacity * tall, Color32::from(Rgba::from_rgb(r, g, b)).gamma_multiply(share))
+        });
+        for row in 0..height {
+            let above_floor = floor - canvas.rect.min.y - point(row);
+            let field =
+                (point(column) / theme::CHECKER_EDGE) as usize + (point(row) / theme::CHECKER_EDGE) as usize;
+            let mut color = theme::CHECKER[1 - field % 2];
+            if (0.0..bar).contains(&above_floor) {
+                color = theme::HISTOGRAM;
+            }
+            if (0.0..curve).contains(&above_floor) {
+                color = color.blend(fill);
+            }
+            pixels[row * width + column] = color;
+        }
+    }
+    pixels.iter().flat_map(Color32::to_array).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Rect, vec2};
+
+    use super::*;
+
+    #[test]
+    fn bars_and_colours_stand_on_the_floor() {
+        let area = Rect::from_min_size(pos2(3.0, 400.0), vec2(116.0, 64.0));
+        let axes = Axes::new(area, ((0.0, 10.0), true));
+        let bars = Bars { range: (0.0, 10.0), counts: vec![0, 8, 4, 0, 0, 0, 0, 0, 0, 0], log: false };
+        let key =
+            Key { canvas: Canvas::within(area, 1.0), axes, bars, function: TransferFunction::default() };
+        let picture = compose(&key, 1.0);
+        let at = |value: f64, share: f64| {
+            let place = axes.position(value, share) - key.canvas.rect.min;
+            let pixel = place.y as usize * 116 + place.x as usize;
+            Color32::from_rgb(picture[4 * pixel], picture[4 * pixel + 1], picture[4 * pixel + 2])
+        };
+        let is_checker = |color| theme::CHECKER.contains(&color);
+        let curve = |value| key.function.opacity_at(value);
+        let above = |value: f64, share: f64| curve(value) < share - 0.05;
+        assert!(above(1.5, 0.9) && above(2.5, 0.4) && above(2.5, 0.6), "the default is nearly clear there");
+        assert_eq!(at(1.5, 0.9), theme::HISTOGRAM);
+        assert_eq!(at(2.5, 0.4), theme::HISTOGRAM);
+        assert!(is_checker(at(2.5, 0.6)) && is_checker(at(0.5, 0.9)));
+        // Under the curve the colours lie over what is behind.
+        let high = (0..100).map(|i| f64::from(i) / 10.0).find(|&value| curve(value) > 0.3);
+        let high = high.expect("something is opaque");
+        assert!(!is_checker(at(high, 0.1)));
+        // The margin shows neither.
+        assert!(is_checker(Color32::from_rgb(picture[0], picture[1], picture[2])));
+    }
+}
