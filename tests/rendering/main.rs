@@ -21,3 +21,4 @@ mod scenes;
 mod stretch;
 mod thresholds;
 mod variants;
+mod window;

@@ -82,16 +82,13 @@ impl Backdrop {
             return Shape::Noop;
         }
         let key = Key { canvas, axes: *axes, bars, function: function.clone() };
-        let (_, picture) = match self.composed.take_if(|(before, _)| *before == key) {
-            Some(composed) => self.composed.insert(composed),
-            None => {
-                let before = self.composed.take().map(|(_, picture)| picture);
-                let bytes = compose(&key, pixels_per_point);
-                let picture = self.window.place(before, canvas.size, &bytes, true);
-                self.composed.insert((key, picture))
-            }
-        };
-        plate::picture(canvas.rect, picture, u8::MAX)
+        if self.composed.as_ref().is_none_or(|(before, _)| *before != key) {
+            let before = self.composed.take().map(|(_, picture)| picture);
+            let bytes = compose(&key, pixels_per_point);
+            self.composed = Some((key, self.window.place(before, canvas.size, &bytes, true)));
+        }
+        let picture = |(_, picture): &(Key, WindowPicture)| plate::picture(canvas.rect, picture, u8::MAX);
+        self.composed.as_ref().map_or(Shape::Noop, picture)
     }
 }
 
@@ -137,14 +134,18 @@ mod tests {
     use eframe::egui::{Rect, vec2};
 
     use super::*;
+    use crate::model::ControlPoint;
 
     #[test]
     fn bars_and_colours_stand_on_the_floor() {
         let area = Rect::from_min_size(pos2(3.0, 400.0), vec2(116.0, 64.0));
         let axes = Axes::new(area, ((0.0, 10.0), true));
         let bars = Bars { range: (0.0, 10.0), counts: vec![0, 8, 4, 0, 0, 0, 0, 0, 0, 0], log: false };
-        let key =
-            Key { canvas: Canvas::within(area, 1.0), axes, bars, function: TransferFunction::default() };
+        // Opaque white from 6 on, nothing before.
+        let points = [(0.0, 0.0), (6.0, 0.0), (6.0, 1.0), (10.0, 1.0)];
+        let points = points.map(|(value, opacity)| ControlPoint::new(value, [1.0; 3], opacity)).to_vec();
+        let function = TransferFunction { points, ..TransferFunction::default() };
+        let key = Key { canvas: Canvas::within(area, 1.0), axes, bars, function };
         let picture = compose(&key, 1.0);
         let at = |value: f64, share: f64| {
             let place = axes.position(value, share) - key.canvas.rect.min;
@@ -152,16 +153,12 @@ mod tests {
             Color32::from_rgb(picture[4 * pixel], picture[4 * pixel + 1], picture[4 * pixel + 2])
         };
         let is_checker = |color| theme::CHECKER.contains(&color);
-        let curve = |value| key.function.opacity_at(value);
-        let above = |value: f64, share: f64| curve(value) < share - 0.05;
-        assert!(above(1.5, 0.9) && above(2.5, 0.4) && above(2.5, 0.6), "the default is nearly clear there");
         assert_eq!(at(1.5, 0.9), theme::HISTOGRAM);
         assert_eq!(at(2.5, 0.4), theme::HISTOGRAM);
-        assert!(is_checker(at(2.5, 0.6)) && is_checker(at(0.5, 0.9)));
-        // Under the curve the colours lie over what is behind.
-        let high = (0..100).map(|i| f64::from(i) / 10.0).find(|&value| curve(value) > 0.3);
-        let high = high.expect("something is opaque");
-        assert!(!is_checker(at(high, 0.1)));
+        assert!(is_checker(at(2.5, 0.6)), "the bar is half as tall");
+        assert!(is_checker(at(0.5, 0.9)) && is_checker(at(5.5, 0.1)), "nothing is there");
+        assert_eq!(at(7.5, 0.1), Color32::WHITE);
+        assert_eq!(at(7.5, 0.9), Color32::WHITE);
         // The margin shows neither.
         assert!(is_checker(Color32::from_rgb(picture[0], picture[1], picture[2])));
     }

@@ -21,8 +21,8 @@ use crate::plan::{LightKey, Request, plan};
 /// A change this long ago is over: time to refine.
 const REST: Duration = Duration::from_millis(150);
 
-/// How often a refinement tells how far it is: each time the window is drawn, which takes a software
-/// driver some 40 ms of the same processors.
+/// How often a refinement tells how far it is: each time the window is drawn, where the driver is software by the
+/// same processors.
 const TELL_EVERY: Duration = Duration::from_millis(400);
 
 /// Largest previews whose brightness is measured: two milliseconds for a software adapter.
