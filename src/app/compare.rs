@@ -82,8 +82,10 @@ impl Compare {
             let words = text::picture::difference(left, right);
             label(pos2(rect.center().x, top), Align2::CENTER_TOP, &words);
         } else {
-            label(pos2(rect.left() + 8.0, top), Align2::LEFT_TOP, left);
-            label(pos2(rect.right() - 8.0, top), Align2::RIGHT_TOP, right);
+            // Beside the divider: lights and cube have the corners.
+            let x = rect.left() + self.divider * rect.width();
+            label(pos2(x - GRIP, top), Align2::RIGHT_TOP, left);
+            label(pos2(x + GRIP, top), Align2::LEFT_TOP, right);
         }
         if let Some(other) = &pictures.other {
             let Distance { rmse, largest } = other.distance;
