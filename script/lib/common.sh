@@ -147,6 +147,17 @@ has_vulkan_driver() {
     return 1
 }
 
+# For windows on a virtual X server: a hardware driver can often not show pictures there, the software one always
+# can. What the caller has chosen stays.
+prefer_software_driver() {
+    [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
+    local drivers
+    drivers=$(printf '%s:' /usr/share/vulkan/icd.d/lvp_icd*.json)
+    [ "$drivers" != '/usr/share/vulkan/icd.d/lvp_icd*.json:' ] || return 0
+    # The second name is the one that older loaders know.
+    export VK_DRIVER_FILES=${drivers%:} VK_ICD_FILENAMES=${drivers%:}
+}
+
 # What the window's library loads at run time, for X11 and for Wayland.
 need_window_libraries() {
     is_linux || return 0
