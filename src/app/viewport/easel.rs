@@ -144,8 +144,7 @@ impl Easel {
                 desk.figures = figures;
                 self.refine = Refine::new(self.software);
                 self.scene = Some(scene);
-                (self.wanted, self.running) = (None, None);
-                (self.shown, self.settled, self.failed) = (None, None, None);
+                (self.wanted, self.running, self.shown, self.settled, self.failed) = Default::default();
                 (self.exposures, self.previewed) = (Exposures::default(), None);
             }
             self.refine.set_frame_ms(desk.frame_ms);
@@ -161,7 +160,8 @@ impl Easel {
             if self.running.is_some() || self.due().is_some() {
                 return true;
             }
-            let rest = self.is_unfinished().then(|| REST.saturating_sub(self.changed.elapsed()));
+            let rest =
+                (self.is_unfinished() && !self.handed).then(|| REST.saturating_sub(self.changed.elapsed()));
             desk = match rest {
                 None => shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner),
                 Some(rest) => {
