@@ -2,6 +2,7 @@
 //
 // egui's own shader filters textures in two ways, for pictures of tests too, and chooses between them for every
 // pixel. Software drivers do both: 900 cycles for each pixel of the window.
+#import "common/srgb.wgsl"
 
 // The target converts to sRGB when it is written to.
 override LINEAR_TARGET: bool = false;
@@ -22,12 +23,6 @@ fn corner(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u3
     // Half of a square of twice the viewport's edges.
     let place = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u));
     return Corner(vec4f(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y, 0.0, 1.0), place, number);
-}
-
-// sRGB to linear light (IEC 61966-2-1).
-fn linear_from_srgb(srgb: vec3f) -> vec3f {
-    let curved = pow((srgb + 0.055) / 1.055, vec3f(2.4));
-    return select(curved, srgb / 12.92, srgb <= vec3f(0.04045));
 }
 
 fn for_target(srgb: vec3f) -> vec3f {

@@ -1,4 +1,6 @@
 // What is shown of linear, premultiplied light: the mean of a pixel's samples, tone map, background, sRGB.
+#import "common/srgb.wgsl"
+
 struct Display {
     // sRGB.
     top: vec4f,
@@ -36,15 +38,6 @@ fn neutral(color: vec3f) -> vec3f {
     let w = 1.0 - SHOULDER;
     let compressed = 1.0 - w * w / (max(peak, SHOULDER) - SHOULDER + w);
     return color * select(1.0, compressed / max(peak, 1e-6), peak > SHOULDER);
-}
-
-// IEC 61966-2-1.
-fn linear_from_srgb(c: vec3f) -> vec3f {
-    return select(pow((c + 0.055) / 1.055, vec3f(2.4)), c / 12.92, c <= vec3f(0.04045));
-}
-
-fn srgb_from_linear(c: vec3f) -> vec3f {
-    return select(1.055 * pow(max(c, vec3f(1e-9)), vec3f(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3f(0.0031308));
 }
 
 // Light of the volume before that of the floor at one sample.

@@ -9,7 +9,7 @@ use super::{Context, GpuError};
 use crate::export::ExportError;
 
 /// Every shader file, by its path below `shaders/`.
-pub const SHADERS: [(&str, &str); 41] = [
+pub const SHADERS: [(&str, &str); 42] = [
     ("common/cells.wgsl", include_str!("../../shaders/common/cells.wgsl")),
     ("common/classify.wgsl", include_str!("../../shaders/common/classify.wgsl")),
     ("common/cut.wgsl", include_str!("../../shaders/common/cut.wgsl")),
@@ -27,6 +27,7 @@ pub const SHADERS: [(&str, &str); 41] = [
     ("common/sheet_frame.wgsl", include_str!("../../shaders/common/sheet_frame.wgsl")),
     ("common/shown.wgsl", include_str!("../../shaders/common/shown.wgsl")),
     ("common/space.wgsl", include_str!("../../shaders/common/space.wgsl")),
+    ("common/srgb.wgsl", include_str!("../../shaders/common/srgb.wgsl")),
     ("common/table.wgsl", include_str!("../../shaders/common/table.wgsl")),
     ("common/tiles.wgsl", include_str!("../../shaders/common/tiles.wgsl")),
     ("common/volume.wgsl", include_str!("../../shaders/common/volume.wgsl")),
