@@ -72,7 +72,8 @@ fn every_shader_is_valid_for_both_storage_formats() {
 #[test]
 fn storage_formats_reach_the_shader() {
     for (format, wgsl) in [(TextureFormat::R16Float, "r16float"), (TextureFormat::R32Float, "r32float")] {
-        let source = ShaderLibrary::source("downsample.wgsl", format, format).expect("the shader is there");
+        let source =
+            ShaderLibrary::source("volume/downsample.wgsl", format, format).expect("the shader is there");
         assert!(source.contains(&format!("texture_storage_3d<{wgsl}, write>")), "{format:?}");
         assert!(!source.contains("STORAGE_FORMAT"), "{format:?}");
     }
@@ -80,7 +81,7 @@ fn storage_formats_reach_the_shader() {
 
 #[test]
 fn broken_shaders_are_reported() {
-    let source = joined("display.wgsl");
+    let source = joined("output/display.wgsl");
     assert!(check(&source).is_ok());
     for (from, to, what) in [
         ("let w = 1.0 - SHOULDER;", "let w = 1.0 - SHOULDERS;", "an unknown name"),
@@ -110,7 +111,7 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
     declared.filter(is_late).map(str::to_owned).collect()
 }
 
-/// A software driver reads them lane by lane behind a branch (common/volume.wgsl).
+/// A software driver reads them lane by lane behind a branch (density/volume.wgsl).
 #[test]
 fn uniforms_are_copied_before_anything_branches() {
     let late: Vec<_> = entry_shaders()
@@ -123,7 +124,7 @@ fn uniforms_are_copied_before_anything_branches() {
 
 #[test]
 fn uniforms_read_late_are_noticed() {
-    let source = joined("eye.wgsl");
+    let source = joined("eye/gather.wgsl");
     for (from, to, name) in [
         ("    grid = bound_grid;\n", "", "bound_grid"),
         ("grid = bound_grid;", "if (true) {}\n    grid = bound_grid;", "bound_grid"),
@@ -268,14 +269,14 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
         pad0,
     });
     vec![
-        ("eye.wgsl", frame.clone()),
-        ("light_march.wgsl", frame.clone()),
-        ("light_backproject.wgsl", frame),
-        ("eye.wgsl", grid.clone()),
-        ("light_march.wgsl", grid),
-        ("eye.wgsl", layout!(Cut { low, pad0, high, pad1, plane })),
+        ("eye/gather.wgsl", frame.clone()),
+        ("light/march.wgsl", frame.clone()),
+        ("light/backproject.wgsl", frame),
+        ("eye/gather.wgsl", grid.clone()),
+        ("light/march.wgsl", grid),
+        ("eye/gather.wgsl", layout!(Cut { low, pad0, high, pad1, plane })),
         (
-            "light_march.wgsl",
+            "light/march.wgsl",
             layout!(March {
                 frame,
                 begin,
@@ -292,7 +293,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         (
-            "light_backproject.wgsl",
+            "light/backproject.wgsl",
             layout!(Backprojection {
                 frame,
                 light_from_index_x,
@@ -312,14 +313,14 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 pad1,
             }),
         ),
-        ("light_raycast.wgsl", light.clone()),
+        ("light/raycast.wgsl", light.clone()),
         (
-            "light_raycast.wgsl",
+            "light/raycast.wgsl",
             layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, pad0, shading_cut }),
         ),
-        ("eye.wgsl", light),
+        ("eye/gather.wgsl", light),
         (
-            "eye.wgsl",
+            "eye/gather.wgsl",
             layout!(Space {
                 scene_from_index_x,
                 scene_from_index_y,
@@ -330,7 +331,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         (
-            "eye.wgsl",
+            "eye/gather.wgsl",
             layout!(Shading {
                 emission,
                 ambient,
@@ -347,7 +348,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         (
-            "eye.wgsl",
+            "eye/gather.wgsl",
             layout!(Eye {
                 frame,
                 shading,
@@ -369,7 +370,7 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         (
-            "scatter_splat.wgsl",
+            "scatter/splat.wgsl",
             layout!(Scatter {
                 frame,
                 sheets_from_index_x,
@@ -398,10 +399,10 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
                 pad2,
             }),
         ),
-        ("scatter_footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
-        ("light_collapse.wgsl", layout!(Collapse { dims, bricks, voxel_step, pad0, pad1, pad2 })),
+        ("scatter/footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
+        ("light/combine.wgsl", layout!(Collapse { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         (
-            "ground.wgsl",
+            "eye/floor.wgsl",
             layout!(Ground {
                 frame,
                 space,
@@ -422,12 +423,12 @@ fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         (
-            "display.wgsl",
+            "output/display.wgsl",
             layout!(Display { top, bottom, transparent, clip, exposure, first_row, rows, pad0, pad1, pad2 }),
         ),
-        ("prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
-        ("downsample.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
-        ("gradients.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("volume/prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("volume/downsample.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("volume/gradients.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
     ]
 }
 
@@ -521,11 +522,11 @@ fn every_shared_struct_is_compared() {
 
 #[test]
 fn differing_structs_are_reported() {
-    let source = joined("light_march.wgsl");
+    let source = joined("light/march.wgsl");
     let layout_of = |name: &str| {
         let found = mirrored()
             .into_iter()
-            .find(|(shader, layout)| *shader == "light_march.wgsl" && layout.name == name);
+            .find(|(shader, layout)| *shader == "light/march.wgsl" && layout.name == name);
         found.expect("it is compared").1
     };
     let (march, grid) = (layout_of("March"), layout_of("Grid"));
@@ -565,23 +566,23 @@ fn constant(source: &str, name: &str) -> Option<f64> {
 #[test]
 fn constants_are_the_same_in_rust_and_in_the_shaders() {
     let expected: [(&str, f64, &[&str]); 5] = [
-        ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye.wgsl"]),
-        ("TABLE_SIZE", LUT_SIZE as f64, &["eye.wgsl", "light_march.wgsl"]),
-        ("MIN_KERNEL_VOXELS", MIN_KERNEL_VOXELS, &["light_backproject.wgsl"]),
-        ("MAX_KERNEL_PIXELS", MAX_KERNEL_PIXELS, &["light_backproject.wgsl"]),
-        ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye.wgsl", "light_march.wgsl"]),
+        ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye/gather.wgsl"]),
+        ("TABLE_SIZE", LUT_SIZE as f64, &["eye/gather.wgsl", "light/march.wgsl"]),
+        ("MIN_KERNEL_VOXELS", MIN_KERNEL_VOXELS, &["light/backproject.wgsl"]),
+        ("MAX_KERNEL_PIXELS", MAX_KERNEL_PIXELS, &["light/backproject.wgsl"]),
+        ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye/gather.wgsl", "light/march.wgsl"]),
     ];
     for (name, value, shaders) in expected {
         for shader in shaders {
             assert_eq!(constant(&joined(shader), name), Some(value), "{name} in {shader}");
         }
     }
-    assert_eq!(constant(&joined("eye.wgsl"), "NOT_THERE"), None);
+    assert_eq!(constant(&joined("eye/gather.wgsl"), "NOT_THERE"), None);
 }
 
 #[test]
 fn the_table_has_room_for_all_entries() {
-    for shader in ["eye.wgsl", "light_march.wgsl"] {
+    for shader in ["eye/gather.wgsl", "light/march.wgsl"] {
         let module = check(&joined(shader)).expect("the shader is valid");
         let (_, table) = module
             .global_variables
@@ -603,9 +604,9 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
         let (_, text) = SHADERS.iter().find(|(known, _)| *known == name).expect("the file is there");
         code_of(text)
     };
-    let cells = file("common/cells.wgsl");
+    let cells = file("density/cells.wgsl");
     let halves = format!("/ {CELL_EDGE}.0");
-    assert_eq!(cells.matches(&halves).count(), 2, "common/cells.wgsl divides by the edge of a cell");
+    assert_eq!(cells.matches(&halves).count(), 2, "density/cells.wgsl divides by the edge of a cell");
 
     // A workgroup is half a brick.
     let half = BRICK_EDGE / 2;
@@ -617,25 +618,25 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
     ] {
         assert!(listed.contains(&text), "common/listed_bricks.wgsl must have {text}");
     }
-    let (scatter, voxels) = (file("common/scatter.wgsl"), file("common/voxels.wgsl"));
-    assert!(scatter.contains(&format!("floor(p / {BRICK_EDGE}.0)")), "common/scatter.wgsl");
+    let (scatter, voxels) = (file("scatter/slab.wgsl"), file("scatter/voxels.wgsl"));
+    assert!(scatter.contains(&format!("floor(p / {BRICK_EDGE}.0)")), "scatter/slab.wgsl");
     assert!(
         voxels.contains(&format!("{BRICK_EDGE}u * (local.y + {BRICK_EDGE}u * local.z)")),
-        "common/voxels.wgsl"
+        "scatter/voxels.wgsl"
     );
-    let footprints = file("scatter_footprints.wgsl");
+    let footprints = file("scatter/footprints.wgsl");
     for text in [format!("voxel / {BRICK_EDGE};"), format!("brick * {BRICK_EDGE}u *")] {
-        assert!(footprints.contains(&text), "scatter_footprints.wgsl must have {text}");
+        assert!(footprints.contains(&text), "scatter/footprints.wgsl must have {text}");
     }
     // Or a whole one, cell by cell.
-    let backproject = file("light_backproject.wgsl");
+    let backproject = file("light/backproject.wgsl");
     for text in
         [format!("unpacked(brick) * {BRICK_EDGE}u + place * {CELL_EDGE}u"), format!("lane / {BRICK_EDGE}u")]
     {
-        assert!(backproject.contains(&text), "light_backproject.wgsl must have {text}");
+        assert!(backproject.contains(&text), "light/backproject.wgsl must have {text}");
     }
     let over_bricks =
-        ["light_collapse.wgsl", "light_raycast.wgsl", "scatter_normalise.wgsl", "scatter_splat.wgsl"];
+        ["light/combine.wgsl", "light/raycast.wgsl", "scatter/normalise.wgsl", "scatter/splat.wgsl"];
     for name in over_bricks {
         let text = format!("@workgroup_size({BRICK_EDGE}, {BRICK_EDGE}, {half})");
         assert!(file(name).contains(&text), "{name} must have {text}");
@@ -645,26 +646,26 @@ fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
 #[test]
 fn workgroups_have_the_size_that_the_dispatches_count_on() {
     let expected = [
-        ("display.wgsl", [8, 8, 1]),
-        ("display_deep.wgsl", [8, 8, 1]),
-        ("downsample.wgsl", [8, 8, 4]),
-        ("eye.wgsl", [8, 8, 1]),
-        ("gradients.wgsl", [8, 8, 4]),
-        ("ground.wgsl", [8, 8, 1]),
-        ("light_around.wgsl", [8, 8, 4]),
+        ("output/display.wgsl", [8, 8, 1]),
+        ("output/display_deep.wgsl", [8, 8, 1]),
+        ("volume/downsample.wgsl", [8, 8, 4]),
+        ("eye/gather.wgsl", [8, 8, 1]),
+        ("volume/gradients.wgsl", [8, 8, 4]),
+        ("eye/floor.wgsl", [8, 8, 1]),
+        ("light/clear_margin.wgsl", [8, 8, 4]),
         // What LANES says, which the parser leaves open.
-        ("light_backproject.wgsl", [1, 1, 1]),
-        ("light_collapse.wgsl", [8, 8, 4]),
-        ("light_march.wgsl", [8, 8, 1]),
-        ("light_raycast.wgsl", [8, 8, 4]),
-        ("prefilter.wgsl", [8, 8, 4]),
-        ("scatter_eye.wgsl", [8, 8, 1]),
-        ("scatter_footprints.wgsl", [64, 1, 1]),
-        ("scatter_light.wgsl", [8, 8, 1]),
-        ("scatter_normalise.wgsl", [8, 8, 4]),
-        ("scatter_resolve.wgsl", [8, 8, 1]),
-        ("scatter_reverse.wgsl", [8, 8, 1]),
-        ("scatter_splat.wgsl", [8, 8, 4]),
+        ("light/backproject.wgsl", [1, 1, 1]),
+        ("light/combine.wgsl", [8, 8, 4]),
+        ("light/march.wgsl", [8, 8, 1]),
+        ("light/raycast.wgsl", [8, 8, 4]),
+        ("volume/prefilter.wgsl", [8, 8, 4]),
+        ("scatter/eye.wgsl", [8, 8, 1]),
+        ("scatter/footprints.wgsl", [64, 1, 1]),
+        ("scatter/light.wgsl", [8, 8, 1]),
+        ("scatter/normalise.wgsl", [8, 8, 4]),
+        ("scatter/resolve.wgsl", [8, 8, 1]),
+        ("scatter/reverse.wgsl", [8, 8, 1]),
+        ("scatter/splat.wgsl", [8, 8, 4]),
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();
     let passes: Vec<_> =
@@ -758,7 +759,7 @@ fn no_branch_depends_on_uniforms_alone() {
         assert_eq!(branches_on_uniforms_in(&module), 0, "{name}");
     }
     // And such branches are found.
-    let wrong = joined("display.wgsl").replacen(
+    let wrong = joined("output/display.wgsl").replacen(
         "    if (any(",
         "    if (display.clip + 1u > 1u) {\n        return;\n    }\n    if (any(",
         1,

@@ -4,34 +4,27 @@
 //! holds all it was made from; a product is stale exactly when its key differs (design: cache keys).
 //! `Settings` is taken apart without `..`, so a new field does not compile until it is classified.
 
-mod cell_distances;
-mod cell_set;
-mod eye_frame;
-mod light_frame;
-mod occupancy;
-mod pixel_window;
+mod geometry;
 mod probe;
-mod reach;
-mod read_tiles;
-mod sheet_frame;
-mod slice_order;
 #[cfg(test)]
 mod tests;
 
-pub use cell_distances::{CellDistances, FARTHEST};
-pub use cell_set::CellSet;
-pub use eye_frame::{eye_frame, preview_slab};
-pub use light_frame::{LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views};
-pub use occupancy::BrickSet;
-pub use pixel_window::PixelWindow;
-pub use probe::{Arrival, Probe, probe};
-pub use reach::{
+pub use self::geometry::brick_set::BrickSet;
+pub use self::geometry::cell_distances::{CellDistances, FARTHEST};
+pub use self::geometry::cell_set::CellSet;
+pub use self::geometry::eye_frame::{eye_frame, preview_slab};
+pub use self::geometry::light_frame::{
+    LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views,
+};
+pub use self::geometry::march_tiles::{ReadTiles, TILE_EDGE};
+pub use self::geometry::pixel_window::PixelWindow;
+pub use self::geometry::reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach, slab_reach,
     stretch_reach,
 };
-pub use read_tiles::{ReadTiles, TILE_EDGE};
-pub use sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
-pub use slice_order::SliceOrder;
+pub use self::geometry::sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
+pub use self::geometry::slice_order::SliceOrder;
+pub use probe::{Arrival, Probe, probe};
 
 use crate::model::{
     Background, Camera, Classification, Deposit, Easing, Engine, Hood, Interpolation, Kernel, Length, Light,

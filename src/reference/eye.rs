@@ -9,7 +9,8 @@ use super::Reference;
 use super::back_project::Attenuation;
 use super::shade::Shader;
 use super::sheet::{Cutting, Stack};
-use crate::plan::{SheetFrame, eye_frame};
+use crate::plan::SheetFrame;
+use crate::plan::eye_frame;
 
 /// So many slabs are held in memory at once.
 const SLABS_AT_ONCE: u32 = 32;

@@ -209,7 +209,8 @@ mod tests {
     use super::*;
     use crate::math::SceneSpace;
     use crate::model::{Camera, Kernel, Light, Projection, Shadows};
-    use crate::plan::{eye_frame, light_views};
+    use crate::plan::geometry::eye_frame;
+    use crate::plan::light_views;
     use glam::DAffine3;
 
     #[test]

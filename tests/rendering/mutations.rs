@@ -76,33 +76,38 @@ macro_rules! gpu_mutation {
 
 gpu_mutation!(
     gpu_kernel_five_percent_wider,
-    "eye.wgsl",
+    "eye/gather.wgsl",
     "(-0.5 / (SIGMA * SIGMA))",
     "(-0.5 / (1.1025 * SIGMA * SIGMA))"
 );
 gpu_mutation!(
     gpu_transmittance_behind_the_slab,
-    "light_march.wgsl",
+    "light/march.wgsl",
     "select(t * slab_mean(tau), t, DEPOSIT_FRONT)",
     "t * exp(-tau)"
 );
-gpu_mutation!(gpu_weights_not_divided, "light_backproject.wgsl", "sum / weights", "sum");
-gpu_mutation!(gpu_no_obliquity_for_the_eye, "eye.wgsl", "eye.frame.slab * ray.obliquity", "eye.frame.slab");
+gpu_mutation!(gpu_weights_not_divided, "light/backproject.wgsl", "sum / weights", "sum");
+gpu_mutation!(
+    gpu_no_obliquity_for_the_eye,
+    "eye/gather.wgsl",
+    "eye.frame.slab * ray.obliquity",
+    "eye.frame.slab"
+);
 gpu_mutation!(
     gpu_no_obliquity_for_the_light,
-    "light_march.wgsl",
+    "light/march.wgsl",
     "march.frame.slab * ray.obliquity",
     "march.frame.slab"
 );
 gpu_mutation!(
     gpu_normals_flipped,
-    "eye.wgsl",
+    "eye/gather.wgsl",
     "slope * (-1.0 / max(steepness, 1e-9))",
     "slope * (1.0 / max(steepness, 1e-9))"
 );
 gpu_mutation!(
     gpu_kernel_shifted_by_half_a_voxel,
-    "eye.wgsl",
+    "eye/gather.wgsl",
     "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 2.5)",
     "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 3.0)"
 );
@@ -125,38 +130,38 @@ macro_rules! scatter_mutation {
 
 scatter_mutation!(
     scattered_kernel_five_percent_wider,
-    "scatter_splat.wgsl",
+    "scatter/splat.wgsl",
     "/ (scatter.stretch * scatter.stretch);\n    if (squared >= 4.0) {\n        return 0.0;\n    }\n    let reach",
     "/ (1.1025 * scatter.stretch * scatter.stretch);\n    if (squared >= 4.0) {\n        return 0.0;\n    }\n    let reach"
 );
 scatter_mutation!(
     scattered_transmittance_behind_the_slab,
-    "scatter_light.wgsl",
+    "scatter/light.wgsl",
     "select(t * slab_mean(tau), t, DEPOSIT_FRONT)",
     "t * exp(-tau)"
 );
-scatter_mutation!(scattered_weights_not_divided, "scatter_normalise.wgsl", "/ f32(max(weight, 1))", "/ UNIT");
+scatter_mutation!(scattered_weights_not_divided, "scatter/normalise.wgsl", "/ f32(max(weight, 1))", "/ UNIT");
 scatter_mutation!(
     scattered_without_obliquity_for_the_eye,
-    "scatter_eye.wgsl",
+    "scatter/eye.wgsl",
     "met.thickness * ray.obliquity",
     "met.thickness"
 );
 scatter_mutation!(
     scattered_without_obliquity_for_the_light,
-    "scatter_light.wgsl",
+    "scatter/light.wgsl",
     "march.frame.slab * ray.obliquity",
     "march.frame.slab"
 );
 scatter_mutation!(
     scattered_voxels_shifted_by_half,
-    "scatter_splat.wgsl",
+    "scatter/splat.wgsl",
     "let centre = vec3f(voxel);",
     "let centre = vec3f(voxel) + vec3f(0.5, 0.0, 0.0);"
 );
 scatter_mutation!(
     scattered_gradient_flipped,
-    "scatter_eye.wgsl",
+    "scatter/eye.wgsl",
     "/ (2.0 * f32(slabs) * met.thickness)",
     "/ (-2.0 * f32(slabs) * met.thickness)"
 );

@@ -2,11 +2,11 @@
 
 use eframe::egui::Ui;
 
-use super::super::commands::Command;
 use super::super::text::common::DEGREES;
 use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice};
 use super::{Panels, sampling};
+use crate::app::shell::commands::Command;
 use crate::model::Projection;
 
 const PROJECTIONS: [(Projection, Named); 2] = [

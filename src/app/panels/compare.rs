@@ -2,10 +2,10 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::commands::Command;
-use super::super::compare::Compare;
 use super::super::text::{self, Named};
 use super::controls::{row, switch, unlabelled};
+use crate::app::shell::commands::Command;
+use crate::app::viewport::compare::Compare;
 use crate::model::{Settings, Variant};
 
 /// Shows the section.

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Align, Layout, Response, Slider, Ui, Vec2};
 
 use super::super::text::{self, Named};
-use super::super::theme;
+use crate::app::shell::theme;
 
 /// A number with a slider.
 #[derive(Debug, Clone)]

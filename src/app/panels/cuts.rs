@@ -3,11 +3,11 @@
 use eframe::egui::{self, DragValue, Ui};
 use glam::DVec3;
 
-use super::super::commands::Command;
 use super::super::text::{self, Named};
-use super::super::volume_facts::VolumeFacts;
 use super::Panels;
 use super::controls::{Number, reset, row, switch, unlabelled};
+use crate::app::shell::commands::Command;
+use crate::app::shell::volume_facts::VolumeFacts;
 use crate::model::{ClipPlane, CropBox, CutEffect, MIN_CROP};
 
 /// Shows the section.

@@ -2,11 +2,11 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::commands::Command;
 use super::super::text::{self, Named};
-use super::super::volume_facts::VolumeFacts;
 use super::Panels;
 use super::controls::{choice, row};
+use crate::app::shell::commands::Command;
+use crate::app::shell::volume_facts::VolumeFacts;
 use crate::model::{Length, Settings};
 
 /// Shows the section.

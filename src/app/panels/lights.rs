@@ -3,12 +3,12 @@
 use eframe::egui::{self, Ui};
 use glam::DVec3;
 
-use super::super::commands::Command;
 use super::super::text::common::{DEGREES, TIMES};
 use super::super::text::{self, Named};
-use super::super::theme;
 use super::Panels;
 use super::controls::{Number, choice, color, row, switch, unlabelled};
+use crate::app::shell::commands::Command;
+use crate::app::shell::theme;
 use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, Settings};
 
 const KINDS: [(LightKind, Named); 2] =

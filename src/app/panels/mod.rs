@@ -13,11 +13,11 @@ mod shadows;
 
 use eframe::egui;
 
-use super::commands::Command;
-use super::compare::Compare;
+use super::shell::commands::Command;
+use super::shell::volume_facts::VolumeFacts;
 use super::text;
 use super::viewport::Facts;
-use super::volume_facts::VolumeFacts;
+use super::viewport::compare::Compare;
 use crate::model::Settings;
 
 pub(super) use lights::add_light;

@@ -2,12 +2,12 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::commands::Command;
 use super::super::text::common::TIMES;
 use super::super::text::{self, Named};
-use super::super::theme;
 use super::controls::{Number, advanced, choice, row, switch, unlabelled};
 use super::{Panels, sampling};
+use crate::app::shell::commands::Command;
+use crate::app::shell::theme;
 use crate::model::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm};
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.

@@ -4,35 +4,18 @@
 //! because other languages put the figures elsewhere. The look of a text stays where it is shown. The names of
 //! presets, colour maps, views and sets of lights are with them in `src/model`; errors word themselves.
 
-pub(super) mod camera;
-pub(super) mod commands;
 pub(super) mod common;
-pub(super) mod compared;
-pub(super) mod contact_sheet;
-pub(super) mod cut_handles;
-pub(super) mod cuts;
-pub(super) mod data;
-pub(super) mod export;
-pub(super) mod files;
-pub(super) mod floor;
-pub(super) mod help;
-pub(super) mod light_volume;
-pub(super) mod lights;
-pub(super) mod marks;
-pub(super) mod menu;
-pub(super) mod messages;
-pub(super) mod opening;
-pub(super) mod picture;
-pub(super) mod probe;
-pub(super) mod raw;
-pub(super) mod sampling;
-pub(super) mod sections;
-pub(super) mod shading;
-pub(super) mod shadows;
-pub(super) mod slices;
-pub(super) mod status;
+mod panels;
+mod shell;
 pub(super) mod transfer;
+mod viewport;
+mod windows;
 pub(super) mod work;
+
+pub(super) use self::panels::{camera, cuts, data, floor, lights, sampling, sections, shading, shadows};
+pub(super) use self::shell::{commands, menu, messages, opening, status};
+pub(super) use self::viewport::{compared, cut_handles, marks, picture, probe};
+pub(super) use self::windows::{contact_sheet, export, files, help, light_volume, raw, slices};
 
 /// A control's name, and what a pointer resting on it is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

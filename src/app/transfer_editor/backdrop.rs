@@ -7,8 +7,8 @@ use eframe::egui::{Color32, Rgba, Shape, pos2};
 
 use super::plot::Axes;
 use super::theme;
-use crate::app::canvas::Canvas;
-use crate::app::viewport::plate;
+use crate::app::viewport::canvas::Canvas;
+use crate::app::viewport::paint_callback as plate;
 use crate::gpu::{WindowPainter, WindowPicture};
 use crate::model::TransferFunction;
 

@@ -2,10 +2,10 @@
 
 use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Sense, Ui, vec2};
 
-use super::super::commands::Command;
 use super::super::text::{self, Named};
-use super::super::theme;
-use super::super::volume_facts::VolumeFacts;
+use crate::app::shell::commands::Command;
+use crate::app::shell::theme;
+use crate::app::shell::volume_facts::VolumeFacts;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
 /// Size of the strip that shows a colour map.

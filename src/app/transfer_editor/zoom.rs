@@ -2,8 +2,8 @@
 
 use eframe::egui::{PointerButton, Rect, Response, Ui};
 
-use super::super::orbit::wheel_notches;
 use super::super::text;
+use crate::app::viewport::orbit::wheel_notches;
 
 /// A notch of the wheel shows this much less.
 const ZOOM_PER_NOTCH: f64 = 1.2;

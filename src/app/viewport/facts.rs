@@ -1,6 +1,6 @@
 //! What the rest of the window may know of the renderer.
 
-use super::Viewport;
+use crate::app::viewport::Viewport;
 use crate::gpu::{LightFigures, Stage};
 use crate::model::Settings;
 

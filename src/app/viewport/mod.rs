@@ -1,16 +1,21 @@
 //! The picture in the middle of the window: previews while something moves, full quality at rest.
 //!
-//! The window's thread only says what is wanted and takes finished pictures; a [`painter`] thread
+//! The window's thread only says what is wanted and takes finished pictures; a thread of its own
 //! renders them, on a device of its own. Whatever the GPU does, the window stays alive: long work
 //! never stands in the queue of its frames, and a driver that loses the one device keeps the other.
 
-mod difference;
-mod easel;
-mod exposure;
+pub(super) mod canvas;
+pub(super) mod compare;
+pub(super) mod cut_handles;
 mod facts;
-mod painter;
-pub(super) mod plate;
-mod response;
+pub(super) mod hints;
+pub(super) mod light_chips;
+pub(super) mod light_handles;
+pub(super) mod light_probe;
+pub(super) mod orbit;
+pub(super) mod overlay;
+pub(super) mod paint_callback;
+pub(super) mod view_projection;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -18,10 +23,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, ColorImage};
 
 pub(super) use self::facts::{Doing, Facts};
-use self::painter::{Frame, Painter};
-pub(super) use self::response::Response;
-use self::response::Waiting;
-use super::refine::Look;
+use super::worker::quality::Look;
+use super::worker::render_thread::{Frame, Painter};
+use super::worker::request::{Scene, Wanted};
+pub(super) use super::worker::response::Response;
+use super::worker::response::Waiting;
 use crate::data::{Bricks, Volume};
 pub(super) use crate::gpu::LightFigures;
 use crate::gpu::{Context, Distance, GpuError, Renderer, WindowPainter, WindowPicture};
@@ -35,18 +41,6 @@ const SOFTWARE_PATIENCE: Duration = Duration::from_millis(40);
 
 /// How long a preview takes to fade into the picture at full quality.
 const FADE_S: f64 = 0.12;
-
-/// What is to be seen.
-#[derive(Debug, Clone, PartialEq)]
-struct Wanted {
-    /// Counts the volumes, so that a picture of an earlier one is not taken for one of this.
-    generation: u64,
-    settings: Settings,
-    /// To be compared with.
-    other: Option<Settings>,
-    /// Window pixels.
-    size: [u32; 2],
-}
 
 /// What can be drawn.
 #[derive(Debug, Clone)]
@@ -68,14 +62,6 @@ pub(super) struct Other {
     pub difference: WindowPicture,
     /// How far they are apart.
     pub distance: Distance,
-}
-
-/// What the painter works on.
-#[derive(Debug)]
-struct Scene {
-    renderer: Renderer,
-    volume: Arc<Volume>,
-    bricks: Arc<Bricks>,
 }
 
 /// The picture on screen, and the way to the painter.

@@ -1,0 +1,116 @@
+// The volume as the sheets see it: density at a point of index space, by kernel or from the pyramid.
+#import "density/kernel.wgsl"
+#import "sheets/sheet_frame.wgsl"
+
+struct Grid {
+    // Voxels.
+    dims: vec3f,
+    // Cells beyond the one around a sample that it sees: stretched, or at two points.
+    dilation: i32,
+    // 1 / texels of the density texture, which has one voxel of nothing around the data.
+    density_scale: vec3f,
+    pad0: f32,
+    // 1 / texels of the pyramid's level 0, which has four voxels of nothing before the data.
+    pyramid_scale: vec3f,
+    pad1: f32,
+    // 1 / cells of 2³ voxels.
+    cell_scale: vec3f,
+    pad2: f32,
+}
+
+// Uniforms are copied before anything branches: behind a branch Mesa's software driver reads them lane by
+// lane, with some thirty instructions for each number.
+@group(1) @binding(0) var<uniform> bound_grid: Grid;
+var<private> grid: Grid;
+@group(1) @binding(1) var density_texture: texture_3d<f32>;
+@group(1) @binding(2) var pyramid_texture: texture_3d<f32>;
+@group(1) @binding(3) var clamped: sampler;
+// Takes the nearest texel.
+@group(1) @binding(4) var nearest: sampler;
+
+// Points per slab: 1 at its middle, or 2 by Gauss–Legendre.
+override QUADRATURE: u32 = 1u;
+// Whether any slab's pixels are wider than voxels.
+override STRETCH: bool = false;
+
+// Gauss–Legendre with two points: ± 1/(2√3) of the interval's length.
+const TWO_POINT_OFFSET = 0.28867513;
+
+// One fetch from the pyramid of prefiltered volumes.
+fn pyramid(p: vec3f, level: f32) -> f32 {
+    return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
+}
+
+// Σ over the 4³ neighbours of density × kernel. The four weights of an axis are two pairs, and a
+// pair is one linear fetch between its members: eight trilinear fetches for 64 voxels.
+fn density_by_kernel(p: vec3f) -> f32 {
+    let cell = floor(p);
+    let f = p - cell;
+    let wx = kernel_weights(f.x);
+    let wy = kernel_weights(f.y);
+    let wz = kernel_weights(f.z);
+    let low = vec3f(wx.x + wx.y, wy.x + wy.y, wz.x + wz.y);
+    let high = vec3f(wx.z + wx.w, wy.z + wy.w, wz.z + wz.w);
+    // Texel centres: one voxel of padding and half a texel.
+    let a = (cell + vec3f(wx.y, wy.y, wz.y) / low + 0.5) * grid.density_scale;
+    let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 2.5) * grid.density_scale;
+    let near = high.x * textureSampleLevel(density_texture, clamped, vec3f(b.x, a.y, a.z), 0.0).r
+        + low.x * textureSampleLevel(density_texture, clamped, vec3f(a.x, a.y, a.z), 0.0).r;
+    let near_up = high.x * textureSampleLevel(density_texture, clamped, vec3f(b.x, b.y, a.z), 0.0).r
+        + low.x * textureSampleLevel(density_texture, clamped, vec3f(a.x, b.y, a.z), 0.0).r;
+    let far = high.x * textureSampleLevel(density_texture, clamped, vec3f(b.x, a.y, b.z), 0.0).r
+        + low.x * textureSampleLevel(density_texture, clamped, vec3f(a.x, a.y, b.z), 0.0).r;
+    let far_up = high.x * textureSampleLevel(density_texture, clamped, vec3f(b.x, b.y, b.z), 0.0).r
+        + low.x * textureSampleLevel(density_texture, clamped, vec3f(a.x, b.y, b.z), 0.0).r;
+    return low.z * (low.y * near + high.y * near_up) + high.z * (low.y * far + high.y * far_up);
+}
+
+// The kernel's stretch at a depth, as a level of the pyramid.
+fn kernel_level(frame: SheetFrame, depth: f32) -> f32 {
+    if (!STRETCH) {
+        return 0.0;
+    }
+    return stretch_level(frame, depth);
+}
+
+// Density at a point, with the kernel stretched to pyramid level `level`.
+fn density(p: vec3f, level: f32) -> f32 {
+    if (KERNEL == KERNEL_PREFILTERED) {
+        return pyramid(p, level);
+    }
+    if (!STRETCH) {
+        return density_by_kernel(p);
+    }
+    let blurred = pyramid(p, max(level, 1.0));
+    if (level >= 1.0) {
+        return blurred;
+    }
+    return mix(density_by_kernel(p), blurred, level);
+}
+
+// The sheet's value: density averaged over slab k where the ray crosses it.
+fn slab_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+    let depth = depth_of(frame, k);
+    if (QUADRATURE == 2u) {
+        let near = depth - TWO_POINT_OFFSET * frame.slab;
+        let far = depth + TWO_POINT_OFFSET * frame.slab;
+        return 0.5 * (density(ray.origin + ray.direction * near, kernel_level(frame, near))
+            + density(ray.origin + ray.direction * far, kernel_level(frame, far)));
+    }
+    return density(ray.origin + ray.direction * depth, kernel_level(frame, depth));
+}
+
+// First and last slab whose middle can lie where material is: the grid and two voxels around it.
+fn slabs_inside(frame: SheetFrame, ray: Ray) -> vec2i {
+    let parallel_to = abs(ray.direction) < vec3f(1e-12);
+    let direction = select(ray.direction, vec3f(1e-12), parallel_to);
+    let a = (vec3f(-2.0) - ray.origin) / direction;
+    let b = (grid.dims + 1.0 - ray.origin) / direction;
+    let near = min(a, b);
+    let far = max(a, b);
+    let enter = (max(max(near.x, near.y), near.z) - frame.first_depth) / frame.slab - 0.5;
+    let leave = (min(min(far.x, far.y), far.z) - frame.first_depth) / frame.slab - 0.5;
+    let last = f32(frame.slab_count) - 1.0;
+    // A millionth of slack for faces that lie exactly on a slab's middle.
+    return vec2i(i32(ceil(clamp(enter - 1e-5, 0.0, last + 1.0))), i32(floor(clamp(leave + 1e-5, -1.0, last))));
+}

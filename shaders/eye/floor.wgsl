@@ -1,0 +1,121 @@
+// The floor under the volume: one thread per pixel finds where its ray meets the floor, and sends a ray from
+// there to each light, through all that attenuates it. The result is linear and premultiplied; what the volume
+// covers is laid over it when the picture is shown (output/display.wgsl).
+#import "density/table.wgsl"
+#import "shading/shadow_ray.wgsl"
+#import "shading/lights.wgsl"
+#import "common/space.wgsl"
+#import "sheets/tiles.wgsl"
+
+struct Ground {
+    frame: SheetFrame,
+    space: Space,
+    shading: Shading,
+    // What attenuates light.
+    shading_cut: Cut,
+    // In index space: the floor is where dot(plane.xyz, p) = plane.w, and above it is more.
+    plane: vec4f,
+    // Linear.
+    color: vec3f,
+    opacity: f32,
+    // Distance from the middle at which nothing is left, and what the way from whole to nothing is divided by.
+    radius: f32,
+    fade: f32,
+    // Takes back what makes up for shadows on the volume.
+    light_share: f32,
+    // 1: seen only where it is in shadow.
+    shadow_only: f32,
+    // Rows of this dispatch: first, and one beyond the last.
+    first_row: u32,
+    end_row: u32,
+    // Runs of rows of tiles (sheets/tiles.wgsl).
+    runs: u32,
+    pad0: u32,
+    lights: array<Light, MAX_LIGHTS>,
+}
+
+@group(0) @binding(0) var<uniform> bound_ground: Ground;
+var<private> ground: Ground;
+// g: distance to the nearest cell that attenuates light.
+@group(0) @binding(2) var distances: texture_3d<f32>;
+@group(0) @binding(3) var picture: texture_2d<f32>;
+@group(0) @binding(4) var floor_light: texture_storage_2d<rgba16float, write>;
+
+// Lights that are on; those that material attenuates come first.
+override LIGHTS: u32 = 1u;
+override SHADOWED: u32 = 1u;
+
+// Nobody sees less than this of the floor: an eighth of an 8-bit step.
+const LEAST = 0.0005;
+
+fn light_extinction(density: f32) -> f32 {
+    return classified_extinction(density);
+}
+
+fn light_distance(cell: vec3f) -> i32 {
+    return near(distances, cell).y;
+}
+
+// Light on a floor that looks up: with all that material lets through, and as it would be without any.
+struct Fallen {
+    light: vec3f,
+    bare: vec3f,
+}
+
+fn fallen(light: Light, p: vec3f, place: vec3f, shadowed: bool) -> Fallen {
+    let towards = to_light(light, place);
+    let hood = hood_share(light, towards.direction);
+    let bare = light.color * max(towards.direction.z, 0.0);
+    let s = ground.shading;
+    var left = 0.0;
+    if (shadowed && towards.direction.z > 0.0 && hood > 0.0) {
+        let direction = to_index(ground.space, towards.direction);
+        let cut = ground.shading_cut;
+        let scale = light.extinction_scale;
+        left = shadow_ray(p, direction, towards.distance, s.ray_step, scale, s.dark_depth, cut);
+    }
+    return Fallen(bare * select(hood, received(s, left * hood), shadowed), bare * hood);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+) {
+    grid = bound_grid;
+    ground = bound_ground;
+    let pixel = tile_of(group, groups.y, ground.runs) * 8u + local.xy + vec2u(0u, ground.first_row);
+    if (pixel.x >= ground.frame.size.x || pixel.y >= ground.end_row) {
+        return;
+    }
+    let ray = ray_of(ground.frame, vec2f(pixel));
+    let speed = dot(ground.plane.xyz, ray.direction);
+    let depth = (ground.plane.w - dot(ground.plane.xyz, ray.origin)) / min(speed, -1e-9);
+    let p = ray.origin + ray.direction * depth;
+    let place = place_of(ground.space, p);
+    let t = clamp((ground.radius - length(place.xy)) / ground.fade, 0.0, 1.0);
+    // From above, and in front of a perspective eye.
+    let is_seen = speed < 0.0 && 1.0 + depth * ground.frame.inverse_distance > 1e-3;
+    let presence = select(0.0, ground.opacity * t * t * (3.0 - 2.0 * t), is_seen);
+    var result = vec4f(0.0);
+    if (presence * (1.0 - textureLoad(picture, pixel, 0).a) > LEAST) {
+        var light = vec3f(0.0);
+        var bare = vec3f(0.0);
+        for (var i = 0u; i < LIGHTS; i += 1u) {
+            // Not from the copy: an index that varies would keep that as an array in memory.
+            let one = fallen(bound_ground.lights[i], p, place, i < SHADOWED);
+            light += one.light;
+            bare += one.bare;
+        }
+        let s = ground.shading;
+        let shown = s.ambient + s.diffuse * ground.light_share * light;
+        let luminance = vec3f(0.2126, 0.7152, 0.0722);
+        let unshadowed = dot(luminance, s.ambient + s.diffuse * ground.light_share * bare);
+        let missing = clamp(1.0 - dot(luminance, shown) / max(unshadowed, 1e-6), 0.0, 1.0);
+        let whole = vec4f(ground.color * shown, 1.0);
+        let shadow = vec4f(0.0, 0.0, 0.0, missing);
+        result = presence * mix(whole, shadow, ground.shadow_only);
+    }
+    textureStore(floor_light, pixel, result);
+}

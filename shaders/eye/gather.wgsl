@@ -1,0 +1,185 @@
+// The picture (P §2, §3.5, eq. 9): one thread per pixel walks the eye's sheets front to back, sums
+// density, classifies the sum, shades it with the attenuated light and composites.
+//
+// The result is linear, premultiplied and not yet tone-mapped.
+#import "density/classify.wgsl"
+#import "shading/shadow_ray.wgsl"
+#import "shading/shade.wgsl"
+#import "density/gradient.wgsl"
+#import "sheets/tiles.wgsl"
+
+// r: distance to the nearest cell that the eye's transfer function shows.
+@group(0) @binding(2) var distances: texture_3d<f32>;
+@group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
+// For rays to lights: the lighting transfer function, and in g the distance in cells to the nearest that
+// it makes attenuate light.
+@group(0) @binding(4) var<storage, read> lighting_table: array<vec4f, 1024>;
+@group(0) @binding(5) var light_distances: texture_3d<f32>;
+
+// Cast rays to the lights instead of looking into volumes (P §3.3).
+override DIRECT: bool = false;
+// Gradients of the pyramid (volume/gradients.wgsl).
+@group(0) @binding(6) var gradients: texture_3d<f32>;
+
+// Take gradients from there instead of from the pyramid itself.
+override GRADIENT_TEXTURE: bool = false;
+// Take gradients from neighbouring sheets.
+override SHEET_GRADIENTS: bool = false;
+
+fn light_extinction(density: f32) -> f32 {
+    let at = table_entry(density);
+    return mix(lighting_table[at.low].a, lighting_table[at.low + 1u].a, at.fraction);
+}
+
+fn light_distance(cell: vec3f) -> i32 {
+    return near(light_distances, cell).y;
+}
+
+fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
+    let p = biased(light, surface, towards);
+    if (!DIRECT) {
+        return looked_up(light, volume, p);
+    }
+    let s = eye.shading;
+    let reach = towards.distance - s.bias;
+    let direction = to_index(eye.space, towards.direction);
+    return shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth, eye.shading_cut)
+        * hood_share(light, towards.direction);
+}
+
+// The sheet's value at a pixel and slab; nothing lies before the first slab or behind the last.
+fn sheet(pixel: vec2f, k: f32) -> f32 {
+    let inside = k >= 0.0 && k < f32(eye.frame.slab_count);
+    return select(0.0, slab_density(eye.frame, ray_of(eye.frame, pixel), k), inside);
+}
+
+// Differences between neighbouring sheets and their pixels, as a renderer that keeps only sheets has
+// them (scatter/eye.wgsl).
+fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
+    let last = vec2f(eye.frame.size - 1u);
+    let reach = f32(eye.gradient_pixels);
+    let low = max(pixel - reach, vec2f(0.0));
+    let high = min(pixel + reach, last);
+    let across = (sheet(vec2f(high.x, pixel.y), k) - sheet(vec2f(low.x, pixel.y), k)) / max(high.x - low.x, 1.0);
+    let down = (sheet(vec2f(pixel.x, high.y), k) - sheet(vec2f(pixel.x, low.y), k)) / max(high.y - low.y, 1.0);
+    let slabs = f32(eye.gradient_slabs);
+    let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * slabs * eye.frame.slab);
+    return gradient_of_sheets(pixel, depth_of(eye.frame, k), vec3f(across, down, deep), vec3f(0.0));
+}
+
+// The light from the material of slab k where the ray crosses it.
+fn shaded(ray: Ray, pixel: vec2u, k: i32, material: vec3f) -> vec3f {
+    let depth = depth_of(eye.frame, f32(k));
+    let p = ray.origin + ray.direction * depth;
+    let level = kernel_level(eye.frame, depth);
+    var slope: vec3f;
+    if (SHEET_GRADIENTS) {
+        slope = gradient_between_sheets(vec2f(pixel), f32(k));
+    } else {
+        if (GRADIENT_TEXTURE) {
+            let coordinates = (p + 4.5) * grid.pyramid_scale;
+            slope = textureSampleLevel(gradients, clamped, coordinates, level).xyz;
+        } else {
+            slope = index_gradient(p, level);
+        }
+        slope = gradient_to_scene(eye.space, slope);
+    }
+    slope += gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
+    return shade(p, slope, material);
+}
+
+// The next slab, from `first` on, in a cell that may show something; or one beyond the last.
+fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
+    var k = first;
+    loop {
+        if (k > last) {
+            break;
+        }
+        let cell = cell_at(walk, k);
+        let empty = near(distances, cell).x - grid.dilation;
+        if (empty <= 0) {
+            break;
+        }
+        k = leap(walk, k, cell, empty);
+    }
+    return k;
+}
+
+// What slab k shows where the ray crosses it.
+fn material_of(ray: Ray, span: vec2f, k: i32) -> vec4f {
+    let material = slab_material(eye.frame, ray, f32(k));
+    return vec4f(material.rgb, material.a * share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab));
+}
+
+struct Sample {
+    k: i32,
+    material: vec4f,
+}
+
+// The next slab, from `first` on, that is worth sampling. Stretched kernels are sampled far around the cells
+// that show something, and mostly find nothing: the search goes on until they do, though all lanes of a vector
+// wait for the slowest. Otherwise that would take longer than shading what is not there.
+fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Sample {
+    var at = Sample(next_seen(walk, first, last), vec4f(0.0));
+    if (STRETCH) {
+        loop {
+            if (at.k > last) {
+                break;
+            }
+            at.material = material_of(ray, span, at.k);
+            if (at.material.a > 0.0) {
+                break;
+            }
+            at.k = next_seen(walk, at.k + 1, last);
+            if (at.k > last) {
+                break;
+            }
+        }
+    }
+    return at;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+) {
+    eye = bound_eye;
+    grid = bound_grid;
+    let pixel = tile_of(group, groups.y, eye.runs) * 8u + in_tile(local.xy) + vec2u(0u, eye.first_row);
+    if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
+        return;
+    }
+    let ray = ray_of(eye.frame, vec2f(pixel));
+    let span = span_within(eye.seen, ray);
+    let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
+    let walk = walk_along(eye.frame, ray);
+    var at = next_sample(ray, walk, span, inside.x, inside.y);
+    var color = vec3f(0.0);
+    var t = 1.0;
+    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
+    // there, not from the middle.
+    loop {
+        if (at.k > inside.y) {
+            break;
+        }
+        if (!STRETCH) {
+            at.material = material_of(ray, span, at.k);
+        }
+        if (at.material.a > 0.0) {
+            let rgb = shaded(ray, pixel, at.k, at.material.rgb);
+            let passed = exp(-at.material.a * eye.frame.slab * ray.obliquity);
+            color += t * (1.0 - passed) * rgb;
+            t *= passed;
+        }
+        if (t < eye.dark) {
+            break;
+        }
+        at = next_sample(ray, walk, span, at.k + 1, inside.y);
+        if (at.k > inside.y) {
+            break;
+        }
+    }
+    textureStore(picture, pixel, vec4f(color, 1.0 - t));
+}

@@ -1,0 +1,41 @@
+// All lights that material attenuates in one volume of colours (P §4): shading is done here, once for
+// every voxel, and the picture only looks up diffuse light. One thread per voxel.
+#import "density/volume.wgsl"
+#import "shading/shade.wgsl"
+#import "shading/looked_up_light.wgsl"
+#import "common/listed_bricks.wgsl"
+#import "density/gradient.wgsl"
+
+struct Collapse {
+    dims: vec3u,
+    // Bricks listed for this dispatch.
+    bricks: u32,
+    // Data voxels per voxel of the light volumes.
+    voxel_step: f32,
+    pad0: f32,
+    pad1: f32,
+    pad2: f32,
+}
+
+@group(0) @binding(1) var<uniform> bound_collapse: Collapse;
+var<private> collapse: Collapse;
+@group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
+@group(0) @binding(4) var collapsed: texture_storage_3d<rgba16float, write>;
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    collapse = bound_collapse;
+    eye = bound_eye;
+    grid = bound_grid;
+    let listed = listed_brick(group);
+    if (listed >= collapse.bricks) {
+        return;
+    }
+    let voxel = voxel_in(bricks[listed].x, group, local);
+    if (!is_listed(bricks[listed], group, local) || any(voxel >= collapse.dims)) {
+        return;
+    }
+    let p = (vec3f(voxel) + 0.5) * collapse.voxel_step - 0.5;
+    let slope = gradient_to_scene(eye.space, index_gradient(p, 0.0) + face_gradient(eye.seen, p, 0.0));
+    textureStore(collapsed, voxel, vec4f(lit_through_material(surface_at(p, slope)).diffuse, 1.0));
+}

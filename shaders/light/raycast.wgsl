@@ -1,0 +1,60 @@
+// A light volume filled by a ray from every voxel to the light (P §3.4, eq. 8): one thread per voxel.
+#import "density/table.wgsl"
+#import "shading/shadow_ray.wgsl"
+#import "shading/lights.wgsl"
+#import "common/space.wgsl"
+#import "common/listed_bricks.wgsl"
+
+struct Raycast {
+    light: Light,
+    space: Space,
+    dims: vec3u,
+    // Bricks listed for this dispatch.
+    bricks: u32,
+    // Data voxels per voxel of the light volume.
+    voxel_step: f32,
+    // Distance between samples, in scene units.
+    ray_step: f32,
+    // Optical depth at which a ray ends.
+    dark: f32,
+    pad0: u32,
+    // What attenuates light.
+    shading_cut: Cut,
+}
+
+@group(0) @binding(0) var<uniform> bound_raycast: Raycast;
+var<private> raycast: Raycast;
+// g: distance to the nearest cell that attenuates light.
+@group(0) @binding(2) var distances: texture_3d<f32>;
+@group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
+@group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+
+fn light_extinction(density: f32) -> f32 {
+    return classified_extinction(density);
+}
+
+fn light_distance(cell: vec3f) -> i32 {
+    return near(distances, cell).y;
+}
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    grid = bound_grid;
+    raycast = bound_raycast;
+    let listed = listed_brick(group);
+    if (listed >= raycast.bricks) {
+        return;
+    }
+    let voxel = voxel_in(bricks[listed].x, group, local);
+    if (!is_listed(bricks[listed], group, local) || any(voxel >= raycast.dims)) {
+        return;
+    }
+    let p = (vec3f(voxel) + 0.5) * raycast.voxel_step - 0.5;
+    let towards = to_light(raycast.light, place_of(raycast.space, p));
+    let direction = to_index(raycast.space, towards.direction);
+    let scale = raycast.light.extinction_scale;
+    let reach = towards.distance;
+    let cut = raycast.shading_cut;
+    let arriving = shadow_ray(p, direction, reach, raycast.ray_step, scale, raycast.dark, cut);
+    textureStore(attenuation, voxel, vec4f(arriving * hood_share(raycast.light, towards.direction)));
+}

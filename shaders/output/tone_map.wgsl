@@ -1,0 +1,82 @@
+// What is shown of linear, premultiplied light: the mean of a pixel's samples, tone map, background, sRGB.
+#import "output/srgb.wgsl"
+
+struct Display {
+    // sRGB.
+    top: vec4f,
+    bottom: vec4f,
+    // 1: leave the background out and write straight alpha.
+    transparent: u32,
+    // 0: neutral, 1: clip.
+    clip: u32,
+    // Multiplies all light.
+    exposure: f32,
+    // First row of this part of the picture, and rows of the whole.
+    first_row: f32,
+    rows: f32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+@group(0) @binding(0) var<uniform> bound_display: Display;
+var<private> display: Display;
+@group(0) @binding(1) var picture: texture_2d<f32>;
+// Under it, premultiplied, too.
+@group(0) @binding(3) var floor_light: texture_2d<f32>;
+
+// Samples of a pixel, along an edge.
+override SAMPLES: u32 = 1u;
+
+// Where the shoulder of the neutral tone map begins.
+const SHOULDER = 0.8;
+
+// The colour as is up to the shoulder; above, its largest component approaches 1 with a continuous
+// slope, 1 − w²/(peak − 0.8 + w) with w = 0.2, and the others keep their ratio to it.
+fn neutral(color: vec3f) -> vec3f {
+    let peak = max(max(color.r, color.g), color.b);
+    let w = 1.0 - SHOULDER;
+    let compressed = 1.0 - w * w / (max(peak, SHOULDER) - SHOULDER + w);
+    return color * select(1.0, compressed / max(peak, 1e-6), peak > SHOULDER);
+}
+
+// Light of the volume before that of the floor at one sample.
+fn sample_light(at: vec2u, has_floor: bool) -> vec4f {
+    let volume = textureLoad(picture, at, 0) * vec4f(vec3f(display.exposure), 1.0);
+    let below = textureLoad(floor_light, select(vec2u(0u), at, has_floor), 0);
+    return volume + (1.0 - volume.a) * below;
+}
+
+// Linear, premultiplied light of a pixel: the mean of its samples.
+fn pixel_light(pixel: vec2u) -> vec4f {
+    // A floor of one texel is none.
+    let has_floor = all(textureDimensions(floor_light) == textureDimensions(picture));
+    var light = vec4f(0.0);
+    for (var j = 0u; j < SAMPLES; j += 1u) {
+        for (var i = 0u; i < SAMPLES; i += 1u) {
+            light += sample_light(pixel * SAMPLES + vec2u(i, j), has_floor);
+        }
+    }
+    return light / f32(SAMPLES * SAMPLES);
+}
+
+// sRGB.
+fn background_at(row: u32) -> vec3f {
+    let down = (f32(row) + display.first_row + 0.5) / display.rows;
+    return mix(display.top.rgb, display.bottom.rgb, down);
+}
+
+// Display colours of a pixel, with straight alpha where the background is left out.
+fn shown_color(pixel: vec2u) -> vec4f {
+    let light = pixel_light(pixel);
+    let straight = light.rgb / max(light.a, 1e-6);
+    let mapped = select(neutral(straight), clamp(straight, vec3f(0.0), vec3f(1.0)), display.clip != 0u);
+    // Uniforms are no conditions of branches: Mesa's software driver would make each shader anew for their
+    // values, for every dispatch, and keep it.
+    let alone = vec4f(srgb_from_linear(select(vec3f(0.0), mapped, light.a > 0.0)), light.a);
+    let background = background_at(pixel.y);
+    let mixed = srgb_from_linear(mix(linear_from_srgb(background), mapped, light.a));
+    // Where nothing is, exactly the background, not its way to linear light and back.
+    let before_background = vec4f(select(mixed, background, light.a <= 0.0), 1.0);
+    return select(before_background, alone, display.transparent != 0u);
+}

@@ -1,0 +1,88 @@
+// The picture from scattered sheets (P §3.5, eq. 9): one thread per pixel takes the slab's sum,
+// classifies and shades it, and composites it behind the slabs before. Its gradient is that of the
+// neighbouring sheets, which are in the ring already.
+#import "density/table.wgsl"
+#import "scatter/slab.wgsl"
+#import "shading/shade.wgsl"
+#import "shading/looked_up_light.wgsl"
+
+// Distance in bricks to the nearest that the eye's transfer function shows.
+@group(0) @binding(2) var distances: texture_3d<u32>;
+// Colour and opacity so far.
+@group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
+@group(1) @binding(4) var clamped: sampler;
+
+// The sheet's value at a pixel; nothing lies before the first or behind the last.
+fn sheet(pixel: vec2i, k: i32) -> f32 {
+    let last = i32(scatter.sheet_count) - 1;
+    let sum = f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(clamp(k, 0, last)))])) / UNIT;
+    return select(0.0, sum, (k >= 0) & (k <= last));
+}
+
+// The sheet's material: what its density means, or the sum of what its voxels mean.
+fn material_of(pixel: vec2i, k: i32) -> vec4f {
+    if (SPLAT != SPLAT_MATERIAL) {
+        return classify(sheet(pixel, k));
+    }
+    let at = sheet_index(vec2u(pixel), u32(k));
+    let sums = vec4f(
+        f32(atomicLoad(&sheets[channel_index(at, 1u)])),
+        f32(atomicLoad(&sheets[channel_index(at, 2u)])),
+        f32(atomicLoad(&sheets[channel_index(at, 3u)])),
+        f32(atomicLoad(&sheets[channel_index(at, 4u)])),
+    ) / UNIT;
+    return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit);
+}
+
+fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
+    let last = vec2i(eye.frame.size) - 1;
+    let low = max(pixel - eye.gradient_pixels, vec2i(0));
+    let high = min(pixel + eye.gradient_pixels, last);
+    let reach = vec2f(max(high - low, vec2i(1)));
+    let across = (sheet(vec2i(high.x, pixel.y), k) - sheet(vec2i(low.x, pixel.y), k)) / reach.x;
+    let down = (sheet(vec2i(pixel.x, high.y), k) - sheet(vec2i(pixel.x, low.y), k)) / reach.y;
+    let slabs = eye.gradient_slabs;
+    let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * f32(slabs) * met.thickness);
+    let axis = select(scatter.axis, vec3f(0.0), ORDER == ORDER_IMAGE_ALIGNED);
+    return gradient_of_sheets(vec2f(pixel), met.depth, vec3f(across, down, deep), axis);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    eye = bound_eye;
+    scatter = bound_scatter;
+    if (any(id.xy >= eye.frame.size)) {
+        return;
+    }
+    let k = i32(scatter.k);
+    let pixel = vec2i(id.xy);
+    let at = id.y * eye.frame.size.x + id.x;
+    let before = rays[at];
+    let left = 1.0 - before.a;
+    let ray = ray_of(eye.frame, vec2f(id.xy));
+    let met = crossing_of(ray, f32(k));
+    let p = ray.origin + ray.direction * met.depth;
+    let material = material_of(pixel, k);
+    let brick = brick_with_material(p);
+    // In front of a perspective eye.
+    let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
+    if (material.a > 0.0 && left >= eye.dark && brick.x >= 0 && in_front) {
+        // Sums are complete only where the transfer function shows something at all.
+        if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
+            let level = stretch_level(eye.frame, met.depth);
+            let faces = gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
+            let rgb = shade(p, gradient_between_sheets(pixel, k, met) + faces, material.rgb);
+            let share = share_within(span_within(eye.seen, ray), met.depth, met.thickness);
+            let opacity = 1.0 - exp(-share * material.a * met.thickness * ray.obliquity);
+            rays[at] = before + left * opacity * vec4f(rgb, 1.0);
+        }
+    }
+    // Nobody looks back that far again: room for a sheet to come.
+    // Uniforms are no conditions of branches (output/display.wgsl).
+    let kept = select(-1, 0, k >= eye.gradient_slabs);
+    let past = sheet_index(id.xy, u32(max(k - eye.gradient_slabs, 0)));
+    atomicAnd(&sheets[past], kept);
+    for (var channel = 1u; channel < 5u && SPLAT == SPLAT_MATERIAL; channel += 1u) {
+        atomicAnd(&sheets[channel_index(past, channel)], kept);
+    }
+}

@@ -1,0 +1,107 @@
+// Every footprint composited by itself (the paper's reference 25): one thread per voxel classifies and
+// shades its voxel and lays it over all pixels under its footprint. Voxels of one dispatch are so far
+// apart in their slice that no two of them touch a pixel.
+#import "density/table.wgsl"
+#import "scatter/footprint.wgsl"
+#import "shading/shade.wgsl"
+#import "shading/looked_up_light.wgsl"
+#import "scatter/voxels.wgsl"
+#import "common/listed_bricks.wgsl"
+
+// Which voxels of every brick, or of every `stride`-th brick, this dispatch composites: their place
+// in the slice.
+struct Phase {
+    // Within a brick …
+    u: u32,
+    v: u32,
+    // … and which bricks, of `stride` in a row.
+    brick_u: u32,
+    brick_v: u32,
+    stride: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+// Where each brick's voxels begin; −1 for bricks that hold nothing.
+@group(0) @binding(3) var<storage, read> first_words: array<i32>;
+// Bricks of the slice: coordinates of ten bits each, and where the brick's voxels begin.
+@group(0) @binding(4) var<storage, read> bricks: array<vec2u>;
+// How many footprints were splatted.
+@group(0) @binding(5) var<storage, read_write> splats: atomic<u32>;
+// Colour and opacity so far.
+@group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
+@group(1) @binding(4) var clamped: sampler;
+@group(3) @binding(0) var<uniform> bound_phase: Phase;
+var<private> phase: Phase;
+
+fn density_of(voxel: vec3i) -> f32 {
+    if (any(voxel < vec3i(0)) || any(vec3f(voxel) >= scatter.dims)) {
+        return 0.0;
+    }
+    let brick = voxel / 8;
+    let first = first_words[brick.x + scatter.bricks.x * (brick.y + scatter.bricks.y * brick.z)];
+    if (first < 0) {
+        return 0.0;
+    }
+    return voxel_density(u32(first), vec3u(voxel % 8));
+}
+
+// Central differences between voxels, in scene space.
+fn gradient_of(voxel: vec3i) -> vec3f {
+    return gradient_to_scene(eye.space, 0.5 * vec3f(
+        density_of(voxel + vec3i(1, 0, 0)) - density_of(voxel - vec3i(1, 0, 0)),
+        density_of(voxel + vec3i(0, 1, 0)) - density_of(voxel - vec3i(0, 1, 0)),
+        density_of(voxel + vec3i(0, 0, 1)) - density_of(voxel - vec3i(0, 0, 1)),
+    ));
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    eye = bound_eye;
+    phase = bound_phase;
+    scatter = bound_scatter;
+    if (id.x >= scatter.count) {
+        return;
+    }
+    let listed = bricks[scatter.first + id.x];
+    let brick = unpacked(listed.x);
+    // The two axes of the slice.
+    let along = vec3u(scatter.axis);
+    let u_axis = select(vec3u(1u, 0u, 0u), vec3u(0u, 1u, 0u), along.x == 1u);
+    let v_axis = vec3u(1u) - along - u_axis;
+    if (dot(brick, u_axis) % phase.stride != phase.brick_u || dot(brick, v_axis) % phase.stride != phase.brick_v) {
+        return;
+    }
+    let slice = u32(slice_of(f32(scatter.k)));
+    let voxel = brick * 8u * (u_axis + v_axis) + u_axis * phase.u + v_axis * phase.v + along * slice;
+    let material = classify(voxel_density(listed.y, voxel % 8u));
+    if (material.a <= 0.0 || any(vec3f(voxel) >= scatter.dims)) {
+        return;
+    }
+    let centre = vec3f(voxel);
+    if (!is_within(eye.seen, centre)) {
+        return;
+    }
+    let at = locate(centre);
+    let box = pixels_under(at);
+    // Behind a perspective eye, or beside the picture.
+    if (1.0 + at.z * eye.frame.inverse_distance <= 1e-3 || any(box.first > box.last)) {
+        return;
+    }
+    atomicAdd(&splats, 1u);
+    let stretch = stretch_of(at.z);
+    let faces = gradient_to_scene(eye.space, face_gradient(eye.seen, centre, log2(max(stretch, 1.0))));
+    let rgb = shade(centre, gradient_of(vec3i(voxel)) + faces, material.rgb);
+    for (var j = box.first.y; j <= box.last.y; j += 1.0) {
+        for (var i = box.first.x; i <= box.last.x; i += 1.0) {
+            let ray = ray_of(scatter.frame, vec2f(i, j));
+            let depth = whole_footprint(centre, ray, stretch) * material.a * ray.obliquity;
+            if (depth > 0.0) {
+                let pixel = u32(j) * scatter.frame.size.x + u32(i);
+                let before = rays[pixel];
+                rays[pixel] = before + (1.0 - before.a) * (1.0 - exp(-depth)) * vec4f(rgb, 1.0);
+            }
+        }
+    }
+}

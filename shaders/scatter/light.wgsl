@@ -1,0 +1,42 @@
+// The march of light through scattered sheets (P §3.5, eq. 10): one thread per pixel takes the slab's
+// sum and leaves room for the next.
+#import "density/table.wgsl"
+#import "sheets/march.wgsl"
+#import "scatter/slab.wgsl"
+
+// Distances in bricks: g to the nearest that attenuates light.
+@group(0) @binding(2) var distances: texture_3d<u32>;
+
+// What the slabs that share a texel of the ring deposit.
+@group(0) @binding(5) var<storage, read_write> deposits: array<vec4f>;
+
+// Bricks beyond an occupied one that a stretched kernel can see.
+override DILATION: i32 = 0;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    march = bound_march;
+    scatter = bound_scatter;
+    if (any(id.xy >= march.frame.size)) {
+        return;
+    }
+    let pixel = id.y * march.frame.size.x + id.x;
+    let sum = f32(atomicExchange(&sheets[sheet_index(id.xy, scatter.k)], 0)) / UNIT;
+    let t = select(transmittance[pixel], unattenuated(vec2f(id.xy)), scatter.k == 0u);
+    let ray = ray_of(march.frame, vec2f(id.xy));
+    let brick = brick_with_material(ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k)));
+    var tau = 0.0;
+    if (t > march.dark && brick.x >= 0) {
+        // Sums are complete only where something attenuates light at all.
+        if (i32(textureLoad(distances, brick, 0).g) <= DILATION) {
+            let extinction = select(classify(sum).a, sum * scatter.extinction_unit, SPLAT == SPLAT_EXTINCTION);
+            let place = ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k));
+            let share = share_that_shades(march.shading_cut, place);
+            tau = share * extinction * march.extinction_scale * march.frame.slab * ray.obliquity;
+        }
+    }
+    let kept = with_deposit(deposits[pixel], scatter.k, deposited(t, tau));
+    deposits[pixel] = kept;
+    keep(id.xy, scatter.k, kept);
+    transmittance[pixel] = t * exp(-tau);
+}

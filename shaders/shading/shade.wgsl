@@ -1,0 +1,146 @@
+// What the picture's samples look like: material, lights, and what of them arrives (P eq. 2–5).
+//
+// The shader that imports this says what is left of a shadowed light, by attenuation_at(), and has a
+// sampler `clamped`.
+#import "shading/lights.wgsl"
+#import "common/space.wgsl"
+#import "sheets/sheet_frame.wgsl"
+#import "density/cut.wgsl"
+
+struct Eye {
+    frame: SheetFrame,
+    shading: Shading,
+    space: Space,
+    // The eye in scene space; w is 0 for an orthographic camera, whose eye is the direction to it.
+    eye: vec4f,
+    // Rows of this dispatch start here.
+    first_row: u32,
+    // One beyond the last row of this dispatch.
+    end_row: u32,
+    // Of scattered sheets: bricks beyond an occupied one in which sums are complete.
+    dilation: i32,
+    // The ray ends when less than this is left of its transmittance.
+    dark: f32,
+    // Gradients from sheets are differences between so many pixels and slabs to either side.
+    gradient_pixels: i32,
+    gradient_slabs: i32,
+    // Runs of rows of tiles (sheets/tiles.wgsl).
+    runs: u32,
+    pad1: i32,
+    // Index space to texture coordinates of the volume into which lights have been collapsed.
+    collapsed_lookup: vec3f,
+    pad2: f32,
+    // What is seen.
+    seen: Cut,
+    // What attenuates light.
+    shading_cut: Cut,
+    lights: array<Light, MAX_LIGHTS>,
+}
+
+@group(0) @binding(0) var<uniform> bound_eye: Eye;
+var<private> eye: Eye;
+@group(2) @binding(0) var attenuation_0: texture_3d<f32>;
+@group(2) @binding(1) var attenuation_1: texture_3d<f32>;
+@group(2) @binding(2) var attenuation_2: texture_3d<f32>;
+@group(2) @binding(3) var attenuation_3: texture_3d<f32>;
+@group(2) @binding(4) var attenuation_4: texture_3d<f32>;
+@group(2) @binding(5) var attenuation_5: texture_3d<f32>;
+@group(2) @binding(6) var attenuation_6: texture_3d<f32>;
+@group(2) @binding(7) var attenuation_7: texture_3d<f32>;
+
+// Lights that are on; those with an attenuation volume come first.
+override LIGHTS: u32 = 1u;
+// How many of them have one, or would have.
+override SHADOWED: u32 = 1u;
+// The diffuse light of those that have one is in the first volume, as colours (P §4).
+override COLLAPSED: bool = false;
+
+// Where the light of a sample is looked up: the bias nearer to the source.
+fn biased(light: Light, surface: Surface, towards: Towards) -> vec3f {
+    let away = light.place_in_index - surface.point * light.perspective;
+    return surface.point + away * (towards.per_length * eye.shading.bias);
+}
+
+// What its light volume says of a light at an index-space point.
+fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> f32 {
+    return textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0).r;
+}
+
+fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
+    let light = eye.lights[index];
+    let towards = to_light(light, surface.position);
+    let share = received(eye.shading, attenuation_at(light, volume, surface, towards));
+    return reflect_light(eye.shading, light, surface, towards.direction, share);
+}
+
+fn add(a: Lit, b: Lit) -> Lit {
+    return Lit(a.diffuse + b.diffuse, a.specular + b.specular);
+}
+
+// A sample at p (index space) with a gradient in scene space.
+fn surface_at(p: vec3f, slope: vec3f) -> Surface {
+    let steepness = length(slope);
+    let s = eye.shading;
+    let steep2 = steepness * steepness;
+    let position = place_of(eye.space, p);
+    let away = eye.eye.xyz - position * eye.eye.w;
+    return Surface(
+        position,
+        p,
+        slope * (-1.0 / max(steepness, 1e-9)),
+        steep2 / (steep2 + s.surface_gradient * s.surface_gradient),
+        away * (1.0 / max(length(away), 1e-9)),
+    );
+}
+
+// The light of all lights that material attenuates.
+fn lit_through_material(surface: Surface) -> Lit {
+    var lit = Lit(vec3f(0.0), vec3f(0.0));
+    if (SHADOWED > 0u) { lit = add(lit, lit_by(0u, attenuation_0, surface)); }
+    if (SHADOWED > 1u) { lit = add(lit, lit_by(1u, attenuation_1, surface)); }
+    if (SHADOWED > 2u) { lit = add(lit, lit_by(2u, attenuation_2, surface)); }
+    if (SHADOWED > 3u) { lit = add(lit, lit_by(3u, attenuation_3, surface)); }
+    if (SHADOWED > 4u) { lit = add(lit, lit_by(4u, attenuation_4, surface)); }
+    if (SHADOWED > 5u) { lit = add(lit, lit_by(5u, attenuation_5, surface)); }
+    if (SHADOWED > 6u) { lit = add(lit, lit_by(6u, attenuation_6, surface)); }
+    if (SHADOWED > 7u) { lit = add(lit, lit_by(7u, attenuation_7, surface)); }
+    return lit;
+}
+
+// The light from a sample at p (index space) with a gradient in scene space.
+fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
+    let s = eye.shading;
+    let surface = surface_at(p, slope);
+    var lit: Lit;
+    if (COLLAPSED) {
+        lit = Lit(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.collapsed_lookup, 0.0).rgb, vec3f(0.0));
+    } else {
+        lit = lit_through_material(surface);
+    }
+    for (var i = SHADOWED; i < LIGHTS; i += 1u) {
+        // Not from the copy: an index that varies would keep that as an array in memory.
+        let light = bound_eye.lights[i];
+        let direction = to_light(light, surface.position).direction;
+        lit = add(lit, reflect_light(s, light, surface, direction, hood_share(light, direction)));
+    }
+    return material * (s.emission + s.ambient + s.diffuse * lit.diffuse) + s.specular * lit.specular;
+}
+
+// The gradient in scene space from differences of the sheets: per pixel to the right, per pixel down
+// and per unit of depth. With the columns of J what a step of each kind moves the sample, it is J⁻ᵀ of
+// the differences (the paper's [16], for any projection and voxel shape). Sheets lie across the line of
+// sight, or across an axis of index space if it is not zero.
+fn gradient_of_sheets(pixel: vec2f, depth: f32, differences: vec3f, axis: vec3f) -> vec3f {
+    let frame = eye.frame;
+    let forward = ray_of(frame, pixel).direction;
+    let speed = dot(axis, forward);
+    let back = select(vec3f(0.0), forward / speed, speed != 0.0);
+    let right_across = frame.origin_di + depth * frame.direction_di;
+    let down_across = frame.origin_dj + depth * frame.direction_dj;
+    let right = right_across - back * dot(axis, right_across);
+    let down = down_across - back * dot(axis, down_across);
+    let volume = dot(right, cross(down, forward));
+    let gradient = (cross(down, forward) * differences.x + cross(forward, right) * differences.y
+        + cross(right, down) * differences.z) / volume;
+    return gradient_to_scene(eye.space, gradient);
+}

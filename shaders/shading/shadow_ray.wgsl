@@ -1,0 +1,58 @@
+// A ray from a point of the volume towards a light (P eq. 7 and 8). The shader that imports this
+// says what attenuates light, by light_extinction(density) and light_distance(cell).
+#import "density/cells.wgsl"
+#import "density/cut.wgsl"
+
+// Whether the first sample lies a whole step from the point, as P eq. 7 and 8 have it, or in the
+// middle of the first step.
+override DEPOSIT_FRONT: bool = false;
+
+// The transmittance between the point p and what lies `reach` scene units further along `direction`,
+// a unit vector of the scene given in index space. Extinctions are multiplied by `scale`; beyond the
+// optical depth `dark` nothing is added, and nothing outside of `cut`.
+fn shadow_ray(
+    p: vec3f,
+    direction: vec3f,
+    reach: f32,
+    ray_step: f32,
+    scale: f32,
+    dark: f32,
+    cut: Cut,
+) -> f32 {
+    // A stack of sheets of its own: the ray's points are the middles of its slabs.
+    var frame: SheetFrame;
+    frame.first_depth = select(0.0, 0.5 * ray_step, DEPOSIT_FRONT);
+    frame.slab = ray_step;
+    frame.voxel_edge = 1.0;
+    frame.slab_count = u32(clamp((reach - frame.first_depth) / ray_step + 0.5, 0.0, 65535.0));
+    let ray = Ray(p, direction, 1.0);
+    let span = span_within(cut, ray);
+    let inside = slabs_within(frame, span, slabs_inside(frame, ray));
+    let walk = walk_along(frame, ray);
+    var k = inside.x;
+    var depth = 0.0;
+    loop {
+        // A loop of its own, as in the eye pass.
+        loop {
+            if (k > inside.y) {
+                break;
+            }
+            let cell = cell_at(walk, k);
+            let empty = light_distance(cell) - grid.dilation;
+            if (empty <= 0) {
+                break;
+            }
+            k = leap(walk, k, cell, empty);
+        }
+        if (k > inside.y) {
+            break;
+        }
+        let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k)));
+        depth += light_extinction(slab_density(frame, ray, f32(k))) * share * ray_step * scale;
+        if (depth > dark) {
+            break;
+        }
+        k += 1;
+    }
+    return exp(-depth);
+}

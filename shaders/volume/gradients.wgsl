@@ -1,0 +1,26 @@
+// Gradients of a level of the pyramid at its texels, so that one fetch replaces six: differences between
+// neighbours and linear interpolation between texels may be taken in either order.
+#import "volume/resample.wgsl"
+
+@group(0) @binding(4) var gradients: texture_storage_3d<rgba16float, write>;
+
+fn value(texel: vec3i) -> f32 {
+    return textureLoad(source, clamp(texel, vec3i(0), vec3i(textureDimensions(source)) - 1), 0).r;
+}
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    resample = bound_resample;
+    let texel = texel_of(group, local);
+    if (any(texel >= textureDimensions(gradients))) {
+        return;
+    }
+    let at = vec3i(texel);
+    let differences = vec3f(
+        value(at + vec3i(1, 0, 0)) - value(at - vec3i(1, 0, 0)),
+        value(at + vec3i(0, 1, 0)) - value(at - vec3i(0, 1, 0)),
+        value(at + vec3i(0, 0, 1)) - value(at - vec3i(0, 0, 1)),
+    );
+    // Texels of the level are `spacing` voxels apart.
+    textureStore(gradients, texel, vec4f(differences / (2.0 * resample.spacing), 0.0));
+}

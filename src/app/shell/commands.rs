@@ -1,0 +1,390 @@
+//! What menus, keys and buttons ask for. Collected during a frame, carried out at its end.
+
+use std::borrow::Cow;
+
+use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
+
+use crate::app::text;
+use crate::model::{COLOR_MAPS, Light, PRESETS, Preset, Rig, StandardView};
+
+/// Something the user asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Command {
+    /// Ask for a volume and open it.
+    OpenDialog,
+    /// Show the window for typing a path.
+    OpenPath,
+    /// Open a file or a built-in volume.
+    Open(String),
+    /// Read the open volume again, so many voxels along each axis averaged into one.
+    Average(usize),
+    /// Stop opening.
+    CancelOpening,
+    /// The volume and the look with which the run before ended.
+    GoOn,
+    /// Save the settings where they belong, or ask where.
+    SaveSettings,
+    /// Ask for settings and apply them.
+    LoadSettings,
+    /// Put the picture on the clipboard.
+    CopyPicture,
+    /// Show the next volume as this one, or not.
+    KeepLook,
+    /// Show the export window.
+    Export,
+    /// Close the window.
+    Quit,
+    /// One step back.
+    Undo,
+    /// One step forward again.
+    Redo,
+    /// The camera as it was when the volume was opened.
+    ResetView,
+    /// All of the volume, from where the eye is.
+    FrameAll,
+    /// From a side.
+    LookFrom(StandardView),
+    /// Perspective or orthographic.
+    ToggleProjection,
+    /// Keep the view under a digit …
+    StoreView(u8),
+    /// … and look that way again.
+    RecallView(u8),
+    /// The window fills the screen, or not.
+    ToggleFullScreen,
+    /// Show or hide the chips of the lights, box, scale bar and cube.
+    ToggleMarks,
+    /// Say what is under the pointer, and what light gets there.
+    ToggleProbe,
+    /// Find a command by its name.
+    ShowPalette,
+    /// Add a light.
+    AddLight,
+    /// Other lights instead of those that are there.
+    UseRig(Rig),
+    /// These lights.
+    UseLights(Vec<Light>),
+    /// Show the contact sheet of lights.
+    TryLights,
+    /// Show the contact sheet of presets.
+    TryPresets,
+    /// The light after the selected one …
+    NextLight,
+    /// … or before it.
+    PreviousLight,
+    /// Only the selected light shines, or all.
+    Solo,
+    /// The selected light shines or not.
+    Mute,
+    /// The selected light is brighter …
+    Brighter,
+    /// … or dimmer.
+    Dimmer,
+    /// The automatic transfer function.
+    AutomaticTransfer,
+    /// One of the library.
+    UsePreset(Preset),
+    /// Other colours for the visible values: the index of a colour map, and whether it is reversed.
+    UseColors(usize, bool),
+    /// Ask for a transfer function of another program …
+    ImportTransfer,
+    /// … or where to write one.
+    ExportTransfer,
+    /// Opacities the other way round.
+    InvertTransfer,
+    /// Crop to the box, or show all.
+    ToggleCrop,
+    /// Cut at the plane, or show all.
+    TogglePlane,
+    /// The plane across the line of sight, through what the eye turns about.
+    FacePlane,
+    /// Show the floor under the volume, or not.
+    ToggleGround,
+    /// Measure the brightness and set the balance.
+    Balance,
+    /// Show or hide the side panel.
+    ToggleSide,
+    /// Show or hide the handles of the lights.
+    ToggleHandles,
+    /// Show two looks in one picture, or one again.
+    ToggleCompare,
+    /// Show cuts through the data, or not.
+    ShowSlices,
+    /// Show a slice of a light volume.
+    ShowLightVolume,
+    /// Ask for settings to compare with.
+    CompareWithFile,
+    /// Show keys and mouse.
+    ShowHelp,
+    /// Show what this is and what it runs on.
+    ShowAbout,
+}
+
+const fn plain(key: Key, command: Command) -> (KeyboardShortcut, Command) {
+    (KeyboardShortcut::new(Modifiers::NONE, key), command)
+}
+
+const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
+    (KeyboardShortcut::new(Modifiers::COMMAND, key), command)
+}
+
+/// A command with its key, as help shows it.
+pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 39] = [
+    control(Key::O, Command::OpenDialog),
+    control(Key::L, Command::OpenPath),
+    control(Key::S, Command::SaveSettings),
+    control(Key::E, Command::Export),
+    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C), Command::CopyPicture),
+    control(Key::P, Command::ShowPalette),
+    control(Key::Q, Command::Quit),
+    // The longer one first: egui lets Shift pass where it is not asked for.
+    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), Command::Redo),
+    control(Key::Z, Command::Undo),
+    plain(Key::R, Command::ResetView),
+    plain(Key::F, Command::FrameAll),
+    plain(Key::Num1, Command::LookFrom(StandardView::MinusY)),
+    plain(Key::Num2, Command::LookFrom(StandardView::PlusY)),
+    plain(Key::Num3, Command::LookFrom(StandardView::PlusX)),
+    plain(Key::Num4, Command::LookFrom(StandardView::MinusX)),
+    plain(Key::Num7, Command::LookFrom(StandardView::PlusZ)),
+    plain(Key::Num8, Command::LookFrom(StandardView::MinusZ)),
+    plain(Key::Num9, Command::LookFrom(StandardView::Isometric)),
+    plain(Key::Num5, Command::ToggleProjection),
+    plain(Key::F11, Command::ToggleFullScreen),
+    plain(Key::Comma, Command::PreviousLight),
+    plain(Key::Period, Command::NextLight),
+    plain(Key::OpenBracket, Command::Dimmer),
+    plain(Key::CloseBracket, Command::Brighter),
+    plain(Key::S, Command::Solo),
+    plain(Key::M, Command::Mute),
+    plain(Key::B, Command::Balance),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::X), Command::FacePlane),
+    plain(Key::X, Command::TogglePlane),
+    plain(Key::K, Command::ToggleCrop),
+    plain(Key::I, Command::ToggleProbe),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleGround),
+    plain(Key::G, Command::ToggleMarks),
+    plain(Key::H, Command::ToggleHandles),
+    plain(Key::C, Command::ToggleCompare),
+    plain(Key::D, Command::ShowSlices),
+    plain(Key::N, Command::ToggleSide),
+    plain(Key::Questionmark, Command::ShowHelp),
+    plain(Key::F1, Command::ShowHelp),
+];
+
+/// Digits under which views are kept.
+pub(crate) const VIEW_SLOTS: std::ops::RangeInclusive<u8> = 1..=9;
+
+const DIGITS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
+/// Every command that can be asked for by its name.
+pub(crate) fn listed() -> Vec<Command> {
+    let mut all = vec![
+        Command::OpenDialog,
+        Command::OpenPath,
+        Command::GoOn,
+        Command::SaveSettings,
+        Command::LoadSettings,
+        Command::Export,
+        Command::CopyPicture,
+        Command::KeepLook,
+        Command::Undo,
+        Command::Redo,
+        Command::ResetView,
+        Command::FrameAll,
+        Command::ToggleProjection,
+        Command::ToggleFullScreen,
+        Command::ToggleMarks,
+        Command::ToggleProbe,
+        Command::ToggleCrop,
+        Command::TogglePlane,
+        Command::FacePlane,
+        Command::ToggleGround,
+        Command::AddLight,
+        Command::TryLights,
+        Command::TryPresets,
+        Command::NextLight,
+        Command::PreviousLight,
+        Command::Solo,
+        Command::Mute,
+        Command::Brighter,
+        Command::Dimmer,
+        Command::Balance,
+        Command::AutomaticTransfer,
+        Command::InvertTransfer,
+        Command::ImportTransfer,
+        Command::ExportTransfer,
+        Command::ToggleSide,
+        Command::ToggleHandles,
+        Command::ToggleCompare,
+        Command::CompareWithFile,
+        Command::ShowSlices,
+        Command::ShowLightVolume,
+        Command::ShowHelp,
+        Command::ShowAbout,
+        Command::Quit,
+    ];
+    all.extend([1, 2, 4].map(Command::Average));
+    all.extend(StandardView::ALL.map(Command::LookFrom));
+    all.extend(Rig::ALL.map(Command::UseRig));
+    all.extend(PRESETS.map(Command::UsePreset));
+    all.extend((0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| Command::UseColors(at, back))));
+    all.extend(VIEW_SLOTS.map(Command::StoreView));
+    all.extend(VIEW_SLOTS.map(Command::RecallView));
+    all
+}
+
+impl Command {
+    /// What help calls it.
+    pub(crate) fn label(&self) -> Cow<'static, str> {
+        let label = match self {
+            Self::LookFrom(view) => return text::commands::look_from(view.name()).into(),
+            Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
+            Self::UsePreset(preset) => {
+                return text::commands::use_preset(preset.domain(), &preset.title()).into();
+            }
+            Self::UseColors(at, back) => {
+                let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
+                return text::commands::use_colors(name, *back).into();
+            }
+            Self::Average(block) => return text::commands::average(*block).into(),
+            Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
+            Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
+            Self::InvertTransfer => text::commands::INVERT_TRANSFER,
+            Self::StoreView(slot) => return text::commands::store_view(*slot).into(),
+            Self::RecallView(slot) => return text::commands::recall_view(*slot).into(),
+            Self::FrameAll => text::commands::FRAME_ALL,
+            Self::ToggleProjection => text::commands::TOGGLE_PROJECTION,
+            Self::ToggleFullScreen => text::commands::TOGGLE_FULL_SCREEN,
+            Self::ToggleMarks => text::commands::TOGGLE_MARKS,
+            Self::ToggleProbe => text::commands::TOGGLE_PROBE,
+            Self::ToggleCrop => text::commands::TOGGLE_CROP,
+            Self::TogglePlane => text::commands::TOGGLE_PLANE,
+            Self::FacePlane => text::commands::FACE_PLANE,
+            Self::ToggleGround => text::commands::TOGGLE_GROUND,
+            Self::ShowPalette => text::commands::SHOW_PALETTE,
+            Self::UseLights(_) => text::commands::USE_LIGHTS,
+            Self::TryLights => text::commands::TRY_LIGHTS,
+            Self::TryPresets => text::commands::TRY_PRESETS,
+            Self::NextLight => text::commands::NEXT_LIGHT,
+            Self::PreviousLight => text::commands::PREVIOUS_LIGHT,
+            Self::Solo => text::commands::SOLO,
+            Self::Mute => text::commands::MUTE,
+            Self::Brighter => text::commands::BRIGHTER,
+            Self::Dimmer => text::commands::DIMMER,
+            Self::OpenDialog => text::commands::OPEN_DIALOG,
+            Self::OpenPath => text::commands::OPEN_PATH,
+            Self::Open(_) => text::commands::OPEN_BUILT_IN,
+            Self::CancelOpening => text::commands::CANCEL_OPENING,
+            Self::GoOn => text::commands::GO_ON,
+            Self::SaveSettings => text::commands::SAVE_SETTINGS,
+            Self::LoadSettings => text::commands::LOAD_SETTINGS,
+            Self::Export => text::commands::EXPORT,
+            Self::CopyPicture => text::commands::COPY_PICTURE,
+            Self::KeepLook => text::commands::KEEP_LOOK,
+            Self::Quit => text::commands::QUIT,
+            Self::Undo => text::commands::UNDO,
+            Self::Redo => text::commands::REDO,
+            Self::ResetView => text::commands::RESET_VIEW,
+            Self::AddLight => text::commands::ADD_LIGHT,
+            Self::AutomaticTransfer => text::commands::AUTOMATIC_TRANSFER,
+            Self::Balance => text::commands::BALANCE,
+            Self::ToggleSide => text::commands::TOGGLE_SIDE,
+            Self::ToggleHandles => text::commands::TOGGLE_HANDLES,
+            Self::ToggleCompare => text::commands::TOGGLE_COMPARE,
+            Self::ShowSlices => text::commands::SHOW_SLICES,
+            Self::ShowLightVolume => text::commands::SHOW_LIGHT_VOLUME,
+            Self::CompareWithFile => text::commands::COMPARE_WITH_FILE,
+            Self::ShowHelp => text::help::KEYS_AND_MOUSE,
+            Self::ShowAbout => text::help::ABOUT,
+        };
+        label.into()
+    }
+
+    /// Its key, for menus.
+    pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
+        match self {
+            Self::StoreView(slot) => return text::commands::store_view_keys(*slot),
+            Self::RecallView(slot) => return text::commands::recall_view_keys(*slot),
+            _ => {}
+        }
+        let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
+        found.map_or_else(String::new, |(shortcut, _)| key_text(ctx, shortcut))
+    }
+}
+
+/// A key as it is printed on the keyboard.
+pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
+    let named = ctx.format_shortcut(&shortcut);
+    let signs = [
+        (Key::OpenBracket, "["),
+        (Key::CloseBracket, "]"),
+        (Key::Comma, ","),
+        (Key::Period, "."),
+        (Key::Questionmark, "?"),
+    ];
+    signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
+}
+
+/// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited.
+pub(crate) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
+    let typing = is_typing(ctx);
+    commands.extend(view_slots(ctx));
+    for (shortcut, command) in &SHORTCUTS {
+        let plain = !shortcut.modifiers.command;
+        if !(typing && plain) && ctx.input_mut(|input| input.consume_shortcut(shortcut)) {
+            commands.push(command.clone());
+        }
+    }
+}
+
+/// Whether letters go into a text field.
+pub(crate) fn is_typing(ctx: &egui::Context) -> bool {
+    ctx.egui_wants_keyboard_input() && ctx.memory(egui::Memory::focused).is_some_and(|id| is_text(ctx, id))
+}
+
+/// Digits with Control, and Shift. By the place of the key: with Shift its sign is another on every keyboard.
+fn view_slots(ctx: &egui::Context) -> Vec<Command> {
+    let slot = |event: &Event| {
+        let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return None };
+        let slot = DIGITS.iter().position(|digit| *digit == physical_key.unwrap_or(*key))? as u8 + 1;
+        (modifiers.command && !modifiers.alt).then_some(if modifiers.shift {
+            Command::StoreView(slot)
+        } else {
+            Command::RecallView(slot)
+        })
+    };
+    ctx.input(|input| input.events.iter().filter_map(slot).collect())
+}
+
+/// Whether a widget is a text field that is being edited.
+fn is_text(ctx: &egui::Context, id: egui::Id) -> bool {
+    egui::TextEdit::load_state(ctx, id).is_some()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_commands_share_a_key_or_a_name() {
+        for (at, (key, command)) in SHORTCUTS.iter().enumerate() {
+            for (other_key, other) in &SHORTCUTS[at + 1..] {
+                assert!(key != other_key, "{command:?} and {other:?}");
+            }
+        }
+        let mut names: Vec<_> = listed().iter().map(Command::label).collect();
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+
+    #[test]
+    fn everything_with_a_key_can_be_found_by_its_name() {
+        for (_, command) in SHORTCUTS {
+            assert!(listed().contains(&command) || command == Command::ShowPalette, "{command:?}");
+        }
+    }
+}

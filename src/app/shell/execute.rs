@@ -1,0 +1,321 @@
+//! Carries out commands and takes in what threads have finished.
+
+use std::path::Path;
+
+use eframe::egui;
+
+use super::commands::Command;
+use super::light_keys;
+use crate::app::text;
+use crate::app::windows::contact_sheet::Sheet;
+use crate::app::windows::export::Exported;
+use crate::app::windows::files::{self, Purpose};
+use crate::app::windows::{export, light_slice};
+use crate::app::worker::loader::Outcome;
+use crate::app::worker::task::Work;
+use crate::app::{App, panels};
+use crate::gpu::{GpuError, Renderer};
+use crate::model::{COLOR_MAPS, Camera, auto};
+
+impl App {
+    /// Does what the user asked for.
+    pub(crate) fn execute(&mut self, command: Command, frame: &eframe::Frame, ctx: &egui::Context) {
+        match command {
+            Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
+            Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
+            Command::Open(source) => self.open(&source, ctx),
+            Command::Average(reduce) => self.average(reduce, ctx),
+            Command::GoOn => match self.memory.before().map(Path::to_owned) {
+                Some(path) => self.open_record(&path, ctx),
+                None => self.messages.note(text::messages::NOTHING_TO_GO_ON_WITH),
+            },
+            Command::CancelOpening => self.loader.cancel(),
+            Command::SaveSettings => match self.session.clone() {
+                Some(path) => self.save_settings(&path),
+                None => self.files.ask(Purpose::SaveSettings, frame, ctx),
+            },
+            Command::LoadSettings => self.files.ask(Purpose::LoadSettings, frame, ctx),
+            Command::Export => self.export.open(self.viewport_size()),
+            Command::CopyPicture => self.copy_picture(ctx),
+            Command::KeepLook => self.keeps_look ^= true,
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::Undo => self.history.undo(&mut self.settings),
+            Command::Redo => self.history.redo(&mut self.settings),
+            Command::ResetView => self.settings.camera = self.defaults.camera.clone(),
+            Command::AddLight => {
+                if let Some(index) = panels::add_light(&mut self.settings) {
+                    self.selected_light = index;
+                }
+            }
+            Command::AutomaticTransfer => {
+                if let (Some((volume, _)), Some(facts)) = (self.viewport.volume(), &self.volume) {
+                    self.settings.transfer = auto::transfer(&volume, &facts.histogram);
+                }
+            }
+            Command::UsePreset(preset) => {
+                if let Some(volume) = &self.volume {
+                    match preset.apply(&self.settings, volume.range) {
+                        Ok(settings) => self.settings = settings,
+                        Err(err) => self.messages.error(text::messages::PRESET_NOT_APPLIED, err.to_string()),
+                    }
+                }
+            }
+            Command::UseColors(at, reversed) => {
+                if let Some(map) = COLOR_MAPS.get(at) {
+                    self.settings.transfer.color_by(map, reversed);
+                }
+            }
+            Command::ImportTransfer => self.files.ask(Purpose::ImportTransfer, frame, ctx),
+            Command::ExportTransfer => self.files.ask(Purpose::ExportTransfer, frame, ctx),
+            Command::InvertTransfer => self.settings.transfer.invert(),
+            Command::ToggleCrop => self.settings.cuts.crop.on ^= true,
+            Command::TogglePlane => self.settings.cuts.plane.on ^= true,
+            Command::FacePlane => {
+                let Camera { target, .. } = self.settings.camera;
+                self.settings.cuts.plane.face(self.settings.camera.scene_from_view().z_axis, target.into());
+            }
+            Command::ToggleGround => self.settings.ground.on ^= true,
+            Command::Balance => self.start_balance(ctx),
+            Command::FrameAll => self.settings.camera.frame_as(&self.defaults.camera),
+            Command::LookFrom(view) => self.settings.camera.look_from(view),
+            Command::ToggleProjection => self.settings.camera.toggle_projection(),
+            Command::StoreView(slot) => {
+                self.settings.views.insert(slot, self.settings.camera.clone());
+                self.messages.note(text::messages::view_kept(slot));
+            }
+            Command::RecallView(slot) => match self.settings.views.get(&slot) {
+                Some(camera) => self.settings.camera = camera.clone(),
+                None => self.messages.note(text::messages::no_view_kept(slot)),
+            },
+            Command::ToggleFullScreen => {
+                let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
+            }
+            Command::ToggleMarks => self.marks.on ^= true,
+            Command::ToggleProbe => self.probe.on ^= true,
+            Command::ShowPalette => self.palette.open(),
+            Command::UseRig(rig) => {
+                self.settings.lights = rig.lights(&self.settings.camera);
+                self.selected_light = 0;
+            }
+            Command::UseLights(lights) => {
+                self.selected_light = self.selected_light.min(lights.len().saturating_sub(1));
+                self.settings.lights = lights;
+            }
+            Command::TryLights => self.contact_sheet.open(Sheet::Lights),
+            Command::TryPresets => self.contact_sheet.open(Sheet::Presets),
+            Command::NextLight | Command::PreviousLight => {
+                let by = if command == Command::NextLight { 1 } else { -1 };
+                let count = self.settings.lights.len();
+                self.selected_light = light_keys::cycle(count, self.selected_light, by);
+            }
+            Command::Solo => light_keys::solo(&mut self.settings.lights, self.selected_light),
+            Command::Mute | Command::Brighter | Command::Dimmer => {
+                if let Some(light) = self.settings.lights.get_mut(self.selected_light) {
+                    match command {
+                        Command::Mute => light.on ^= true,
+                        Command::Brighter => light_keys::brighten(light, 1),
+                        _ => light_keys::brighten(light, -1),
+                    }
+                }
+            }
+            Command::ToggleSide => self.side_open ^= true,
+            Command::ToggleHandles => self.handles.hidden ^= true,
+            Command::ToggleCompare => self.compare.on ^= true,
+            Command::ShowSlices => self.slices.open ^= true,
+            Command::ShowLightVolume => self.light_slice.open = true,
+            Command::CompareWithFile => self.files.ask(Purpose::CompareSettings, frame, ctx),
+            Command::ShowHelp => self.help.keys = true,
+            Command::ShowAbout => self.help.about = true,
+        }
+        ctx.request_repaint();
+    }
+
+    /// Takes in what threads have finished.
+    pub(crate) fn collect(&mut self, ctx: &egui::Context) {
+        match self.loader.take() {
+            None => {}
+            Some(Outcome::Opened(opened)) => self.take_in(*opened, ctx),
+            Some(Outcome::Cancelled) => {
+                self.pending = None;
+                self.messages.note(text::messages::OPENING_CANCELLED);
+            }
+            Some(Outcome::NotDescribed { path, why, guess }) => {
+                self.raw_dialog.ask(&path, why, guess);
+            }
+            Some(Outcome::Failed { short, details }) => {
+                self.pending = None;
+                self.messages.error(short, details);
+            }
+        }
+        if let Some(result) = self.balance.as_ref().and_then(Work::take) {
+            self.balance = None;
+            match result {
+                Ok(Ok(balance)) => {
+                    self.settings.shadows.balance = balance;
+                    self.settings.sanitise();
+                }
+                Ok(Err(err)) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+                Err(panic) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, panic),
+            }
+        }
+        match self.export.take() {
+            None => {}
+            Some(Ok(Exported::File(path))) => self.messages.note(text::messages::exported(&path)),
+            Some(Ok(Exported::Picture(picture))) => {
+                ctx.copy_image(picture);
+                self.messages.note(text::messages::PICTURE_COPIED);
+            }
+            Some(Ok(Exported::Cancelled)) => self.messages.note(text::messages::EXPORT_CANCELLED),
+            Some(Err(err)) => self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err),
+        }
+        if let Some((purpose, path)) = self.files.take() {
+            self.chosen(purpose, &path, ctx);
+        }
+    }
+
+    /// The windows over the picture.
+    pub(crate) fn windows(
+        &mut self,
+        frame: &eframe::Frame,
+        ctx: &egui::Context,
+        commands: &mut Vec<Command>,
+    ) {
+        if self.contact_sheet.wanted
+            && let Some(subject) = self.subject()
+            && let Err(err) = self.contact_sheet.start(subject, ctx)
+        {
+            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+        }
+        if let Err(err) = self.contact_sheet.ui(ctx, commands) {
+            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+        }
+        if let Some(described) = self.raw_dialog.ui(ctx) {
+            self.open_described(&described, ctx);
+        }
+        if let Some((purpose, path)) = self.files.ui(ctx) {
+            self.chosen(purpose, &path, ctx);
+        }
+        let volume = self.viewport.volume().map(|(volume, _)| volume);
+        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), &self.settings.transfer);
+        let scene = light_slice::Scene {
+            settings: &self.settings,
+            volume: self.viewport.volume(),
+            context: self.viewport.context(),
+            at_rest: self.is_idle(),
+        };
+        match self.light_slice.ui(ctx, &scene) {
+            Ok(false) => {}
+            Ok(true) => self.files.ask(Purpose::ExportLight, frame, ctx),
+            Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
+        }
+        match self.export.ui(ctx, self.viewport_size()) {
+            None => {}
+            Some(export::Request::Choose) => self.files.ask(Purpose::ExportPicture, frame, ctx),
+            Some(export::Request::Export) => self.start_export(ctx),
+        }
+    }
+
+    fn viewport_size(&self) -> [u32; 2] {
+        self.canvas.map_or([1280, 720], |canvas| canvas.size.map(|n| n.max(1)))
+    }
+
+    /// A file was chosen or typed.
+    fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
+        match purpose {
+            Purpose::OpenVolume => self.open(&path.display().to_string(), ctx),
+            Purpose::ExportPicture => self.export.set_path(path),
+            Purpose::SaveSettings => self.save_settings(path),
+            Purpose::ExportLight => {
+                let Some((volume, _)) = self.viewport.volume() else { return };
+                match self.light_slice.export(path, &volume) {
+                    Ok(()) => self.messages.note(text::messages::exported(path)),
+                    Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
+                }
+            }
+            Purpose::LoadSettings => self.load_settings(path),
+            Purpose::ImportTransfer => match files::import_transfer(path, self.value_range()) {
+                Ok(function) => self.settings.transfer = function,
+                Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
+            },
+            Purpose::ExportTransfer => {
+                match files::export_transfer(path, &self.settings.transfer, self.value_range()) {
+                    Ok(()) => self.messages.note(text::messages::wrote(path)),
+                    Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
+                }
+            }
+            Purpose::CompareSettings => {
+                let read = files::load_record(path);
+                match read.and_then(|read| self.with_record(&read, self.value_range())) {
+                    Ok(look) => self.compare.with(look),
+                    Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+                }
+            }
+        }
+    }
+
+    fn start_balance(&mut self, ctx: &egui::Context) {
+        let Some((volume, bricks)) = self.viewport.volume().filter(|_| self.balance.is_none()) else {
+            return;
+        };
+        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
+        let task = move || {
+            let mut renderer = Renderer::new(&context.sibling()?)?;
+            crate::gpu::balance(&mut renderer, &volume, &bricks, &settings)
+        };
+        match Work::start("balance", ctx, task) {
+            Ok(work) => self.balance = Some(work),
+            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+        }
+    }
+
+    /// What is to be exported; a message if there is nothing.
+    fn subject(&mut self) -> Option<export::Subject> {
+        let Some((volume, bricks)) = self.viewport.volume() else {
+            self.messages.note(text::messages::NO_PICTURE);
+            return None;
+        };
+        Some(export::Subject {
+            context: self.viewport.context().clone(),
+            volume,
+            bricks,
+            settings: self.settings.clone(),
+            source: self.volume.as_ref().map_or_else(String::new, |volume| volume.source.clone()),
+            selected_light: self.selected_light,
+        })
+    }
+
+    pub(crate) fn start_export(&mut self, ctx: &egui::Context) {
+        if let Some(subject) = self.subject()
+            && let Err(err) = self.export.start(subject, ctx)
+        {
+            self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+        }
+    }
+
+    fn copy_picture(&mut self, ctx: &egui::Context) {
+        if self.export.is_busy() {
+            self.messages.note(text::messages::EXPORT_RUNS);
+        } else if let Some(subject) = self.subject()
+            && let Err(err) = self.export.copy(subject, self.viewport_size(), ctx)
+        {
+            self.messages.error(text::messages::PICTURE_NOT_COPIED, err);
+        }
+    }
+
+    /// The renderer gave up on something. When the device is gone, the settings are made safe.
+    pub(crate) fn rendering_failed(&mut self, err: &GpuError) {
+        if !self.viewport.is_lost() {
+            self.messages.error(text::messages::NOT_RENDERED, err.to_string());
+            return;
+        }
+        let path =
+            self.session.clone().unwrap_or_else(|| std::env::temp_dir().join("chiaroscuro-rescued.json"));
+        let rescue = match files::save_settings(&path, &self.settings, self.volume_record()) {
+            Ok(()) => text::messages::rescued(&path),
+            Err(failure) => text::messages::not_rescued(&failure),
+        };
+        let details = text::messages::lost_and_rescued(&err.to_string(), &rescue);
+        self.messages.error(text::messages::DEVICE_LOST, details);
+    }
+}

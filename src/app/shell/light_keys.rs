@@ -1,0 +1,111 @@
+//! Lights by the keyboard: arrows turn the selected one, and what commands do to it.
+
+use eframe::egui::{self, Key, Modifiers};
+use glam::{DQuat, DVec3};
+
+use super::commands::is_typing;
+use crate::model::{Camera, Light, Settings};
+
+/// Degrees per press of an arrow key …
+const NUDGE_DEG: f64 = 1.0;
+/// … and with Shift.
+const BIG_NUDGE_DEG: f64 = 10.0;
+/// Factor of the intensity per press.
+const INTENSITY_STEP: f64 = 1.1;
+
+/// Turns the selected light by the arrow keys. Nothing else must want them: no widget has the focus.
+pub(crate) fn nudge(ctx: &egui::Context, settings: &mut Settings, selected: usize) {
+    if is_typing(ctx) || ctx.memory(egui::Memory::focused).is_some() {
+        return;
+    }
+    let Settings { camera, lights, .. } = settings;
+    let Some(light) = lights.get_mut(selected) else { return };
+    for (key, right, up) in [
+        (Key::ArrowLeft, -1.0, 0.0),
+        (Key::ArrowRight, 1.0, 0.0),
+        (Key::ArrowUp, 0.0, 1.0),
+        (Key::ArrowDown, 0.0, -1.0),
+    ] {
+        let big = ctx.input_mut(|input| input.count_and_consume_key(Modifiers::SHIFT, key)) as f64;
+        let small = ctx.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f64;
+        let degrees = big * BIG_NUDGE_DEG + small * NUDGE_DEG;
+        if degrees != 0.0 {
+            turn(light, camera, right * degrees, up * degrees);
+        }
+    }
+}
+
+/// Turns a light about the middle of the volume, to the right and upwards as the eye sees it.
+pub(crate) fn turn(light: &mut Light, camera: &Camera, right_deg: f64, up_deg: f64) {
+    let view = camera.scene_from_view();
+    let turn = DQuat::from_axis_angle(view.y_axis, right_deg.to_radians())
+        * DQuat::from_axis_angle(view.x_axis, -up_deg.to_radians());
+    let world = DVec3::from(light.in_world(camera).position);
+    light.set_world_position(turn * world, camera);
+}
+
+/// Only this light shines; if it is so already, all do.
+pub(crate) fn solo(lights: &mut [Light], selected: usize) {
+    let alone = lights.iter().enumerate().all(|(at, light)| light.on == (at == selected));
+    for (at, light) in lights.iter_mut().enumerate() {
+        light.on = alone || at == selected;
+    }
+}
+
+/// A step brighter, or dimmer. From darkness it begins small.
+pub(crate) fn brighten(light: &mut Light, steps: i32) {
+    let from = if light.intensity > 0.0 || steps < 0 { light.intensity } else { 0.05 };
+    light.intensity = (from * INTENSITY_STEP.powi(steps)).min(1e3);
+}
+
+/// The light so many places further, around the end.
+pub(crate) fn cycle(count: usize, selected: usize, by: isize) -> usize {
+    if count == 0 { 0 } else { (selected as isize + by).rem_euclid(count as isize) as usize }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_turn_as_the_eye_sees_it() {
+        let camera = Camera::default();
+        let view = camera.scene_from_view();
+        let mut light = Light { position: (view.z_axis * 3.0).into(), ..Light::default() };
+        turn(&mut light, &camera, 10.0, 0.0);
+        let seen = view.transpose() * DVec3::from(light.position);
+        assert!((seen.x - 3.0 * 10f64.to_radians().sin()).abs() < 1e-9, "{seen}: to the right");
+        turn(&mut light, &camera, -10.0, 0.0);
+        turn(&mut light, &camera, 0.0, 10.0);
+        let seen = view.transpose() * DVec3::from(light.position);
+        assert!((seen.y - 3.0 * 10f64.to_radians().sin()).abs() < 1e-9, "{seen}: up");
+    }
+
+    #[test]
+    fn solo_twice_is_as_before() {
+        let mut lights = vec![Light::default(); 3];
+        let on = |lights: &[Light]| lights.iter().map(|light| light.on).collect::<Vec<_>>();
+        solo(&mut lights, 1);
+        assert_eq!(on(&lights), [false, true, false]);
+        solo(&mut lights, 2);
+        assert_eq!(on(&lights), [false, false, true]);
+        solo(&mut lights, 2);
+        assert_eq!(on(&lights), [true; 3]);
+    }
+
+    #[test]
+    fn selection_goes_around() {
+        assert_eq!([cycle(3, 2, 1), cycle(3, 0, -1), cycle(0, 5, 1)], [0, 2, 0]);
+    }
+
+    #[test]
+    fn brightness_goes_up_and_down_and_out_of_the_dark() {
+        let mut light = Light { intensity: 1.0, ..Light::default() };
+        brighten(&mut light, 1);
+        brighten(&mut light, -1);
+        assert!((light.intensity - 1.0).abs() < 1e-12);
+        light.intensity = 0.0;
+        brighten(&mut light, 1);
+        assert!(light.intensity > 0.0);
+    }
+}

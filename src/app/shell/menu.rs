@@ -1,0 +1,213 @@
+//! The menu bar.
+
+use eframe::egui::{self, Button, ThemePreference};
+
+use super::commands::{Command, VIEW_SLOTS};
+use super::theme;
+use crate::app::text;
+use crate::data::synthetic;
+use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
+
+/// What the menu shows as chosen.
+pub(crate) struct Menu<'a> {
+    /// The look.
+    pub settings: &'a mut Settings,
+    /// The open volume's name and size, for the middle of the bar.
+    pub title: String,
+    /// Whether there is a step back, and one forward.
+    pub undo_redo: (bool, bool),
+    /// What is on screen.
+    pub shown: Shown,
+    /// Files that were opened, the latest first.
+    pub recent: &'a [String],
+    /// Whether the next volume is shown as this one.
+    pub keeps_look: bool,
+    /// Whether there is a look of the run before.
+    pub can_go_on: bool,
+    /// Milliseconds that a frame may take while something moves.
+    pub frame_ms: &'a mut Option<f64>,
+    /// What the user asks for.
+    pub commands: &'a mut Vec<Command>,
+}
+
+/// Parts of the window that can be switched off.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shown {
+    /// The side panel.
+    pub side: bool,
+    /// The handles of the lights.
+    pub handles: bool,
+    /// Two looks instead of one.
+    pub compares: bool,
+    /// Chips of the lights, box, scale bar and cube.
+    pub marks: bool,
+    /// What is under the pointer.
+    pub probe: bool,
+}
+
+/// Shows the bar.
+pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    egui::Panel::top("menu").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
+        egui::MenuBar::new().ui(ui, |ui| {
+            ui.menu_button(text::menu::FILE, |ui| file(ui, menu));
+            ui.menu_button(text::menu::EDIT, |ui| {
+                let (undo, redo) = menu.undo_redo;
+                item(ui, menu, Command::Undo, undo);
+                item(ui, menu, Command::Redo, redo);
+                ui.separator();
+                item(ui, menu, Command::ShowPalette, true);
+            });
+            ui.menu_button(text::menu::VIEW, |ui| view(ui, menu));
+            ui.menu_button(text::menu::LIGHT, |ui| light(ui, menu));
+            ui.menu_button(text::menu::HELP, |ui| {
+                item(ui, menu, Command::ShowHelp, true);
+                item(ui, menu, Command::ShowAbout, true);
+            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.add(egui::Label::new(egui::RichText::new(&menu.title).weak()).truncate());
+            });
+        });
+    });
+}
+
+fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool) {
+    let button = Button::new(&*command.label()).shortcut_text(command.shortcut_text(ui.ctx()));
+    if ui.add_enabled(enabled, button).clicked() {
+        menu.commands.push(command);
+    }
+}
+
+fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    item(ui, menu, Command::OpenDialog, true);
+    item(ui, menu, Command::OpenPath, true);
+    ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
+        ui.menu_button(text::menu::OPEN_RECENT, |ui| {
+            for path in menu.recent {
+                let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy());
+                if ui.button(name.as_deref().unwrap_or(path)).on_hover_text(path).clicked() {
+                    menu.commands.push(Command::Open(path.clone()));
+                }
+            }
+        });
+    });
+    item(ui, menu, Command::GoOn, menu.can_go_on);
+    ui.menu_button(text::commands::OPEN_BUILT_IN, |ui| {
+        for name in synthetic::NAMES {
+            if ui.button(name).clicked() {
+                menu.commands.push(Command::Open(format!("builtin:{name}")));
+            }
+        }
+    });
+    ui.separator();
+    item(ui, menu, Command::SaveSettings, true);
+    item(ui, menu, Command::LoadSettings, true);
+    ui.separator();
+    let mut keeps_look = menu.keeps_look;
+    let switch = ui.checkbox(&mut keeps_look, &*Command::KeepLook.label());
+    if switch.on_hover_text(text::menu::KEEP_LOOK_TIP).clicked() {
+        menu.commands.push(Command::KeepLook);
+    }
+    ui.separator();
+    item(ui, menu, Command::Export, true);
+    item(ui, menu, Command::CopyPicture, true);
+    ui.separator();
+    item(ui, menu, Command::Quit, true);
+}
+
+fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    item(ui, menu, Command::ResetView, true);
+    item(ui, menu, Command::FrameAll, true);
+    ui.menu_button(text::menu::LOOK_FROM, |ui| {
+        for view in StandardView::ALL {
+            let command = Command::LookFrom(view);
+            let button = Button::new(view.name()).shortcut_text(command.shortcut_text(ui.ctx()));
+            if ui.add(button).clicked() {
+                menu.commands.push(command);
+            }
+        }
+    });
+    ui.menu_button(text::menu::KEPT_VIEWS, |ui| {
+        for slot in VIEW_SLOTS {
+            let kept = menu.settings.views.contains_key(&slot);
+            ui.horizontal(|ui| {
+                item(ui, menu, Command::RecallView(slot), kept);
+                item(ui, menu, Command::StoreView(slot), true);
+            });
+        }
+    });
+    item(ui, menu, Command::ToggleFullScreen, true);
+    ui.separator();
+    item(ui, menu, Command::ShowSlices, true);
+    item(ui, menu, Command::FacePlane, true);
+    ui.separator();
+    let projection = &mut menu.settings.camera.projection;
+    ui.radio_value(projection, Projection::Perspective, text::menu::PERSPECTIVE);
+    ui.radio_value(projection, Projection::Orthographic, text::menu::ORTHOGRAPHIC);
+    ui.separator();
+    let cuts = &menu.settings.cuts;
+    let switches = [
+        (Command::ToggleCrop, cuts.crop.on),
+        (Command::TogglePlane, cuts.plane.on),
+        (Command::ToggleGround, menu.settings.ground.on),
+        (Command::ToggleSide, menu.shown.side),
+        (Command::ToggleHandles, menu.shown.handles),
+        (Command::ToggleMarks, menu.shown.marks),
+        (Command::ToggleProbe, menu.shown.probe),
+        (Command::ToggleCompare, menu.shown.compares),
+    ];
+    for (command, mut shown) in switches {
+        let label = text::menu::with_key(&command.label(), &command.shortcut_text(ui.ctx()));
+        if ui.checkbox(&mut shown, label).clicked() {
+            menu.commands.push(command);
+        }
+    }
+    ui.separator();
+    ui.menu_button(text::menu::WHILE_MOVING, |ui| {
+        for (choice, name) in FRAME_MS {
+            ui.radio_value(menu.frame_ms, choice, name);
+        }
+    });
+    ui.separator();
+    let mut theme = ui.ctx().options(|options| options.theme_preference);
+    for (choice, name) in [
+        (ThemePreference::Dark, text::menu::DARK),
+        (ThemePreference::Light, text::menu::BRIGHT),
+        (ThemePreference::System, text::menu::AS_SYSTEM),
+    ] {
+        if ui.radio_value(&mut theme, choice, name).changed() {
+            ui.ctx().set_theme(choice);
+        }
+    }
+}
+
+/// What a frame may take: 60, 30, 15 and 5 per second.
+const FRAME_MS: [(Option<f64>, &str); 5] = [
+    (None, text::menu::AUTOMATIC),
+    (Some(16.0), text::menu::SMOOTH),
+    (Some(33.0), text::menu::BALANCED),
+    (Some(66.0), text::menu::SHARP),
+    (Some(200.0), text::menu::SHARPEST),
+];
+
+fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    let room = menu.settings.lights.len() < MAX_LIGHTS;
+    item(ui, menu, Command::AddLight, room);
+    ui.menu_button(text::menu::USE_RIG, |ui| {
+        for rig in Rig::ALL {
+            if ui.button(rig.name()).clicked() {
+                menu.commands.push(Command::UseRig(rig));
+            }
+        }
+    });
+    item(ui, menu, Command::TryLights, true);
+    item(ui, menu, Command::NextLight, true);
+    item(ui, menu, Command::Solo, true);
+    item(ui, menu, Command::Mute, true);
+    ui.separator();
+    item(ui, menu, Command::Balance, true);
+    item(ui, menu, Command::ShowLightVolume, true);
+    ui.separator();
+    for light in &mut menu.settings.lights {
+        ui.checkbox(&mut light.on, &light.name);
+    }
+}

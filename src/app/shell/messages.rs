@@ -1,0 +1,91 @@
+//! What went wrong, or went well, in the status bar; details on click, never in the way.
+//!
+//! The bar is always there, so that a message does not change the size of the picture.
+
+use eframe::egui::{self, RichText};
+
+use super::theme;
+use crate::app::text;
+
+/// How long a note stays; errors stay until they are dismissed.
+const NOTE_S: f64 = 5.0;
+
+/// A message to the user.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Message {
+    short: String,
+    details: String,
+    is_error: bool,
+}
+
+/// The latest message and the errors so far.
+#[derive(Debug, Default)]
+pub(crate) struct Messages {
+    current: Option<Message>,
+    expanded: bool,
+    /// When the note goes, in seconds of the window's clock; set when it is first shown.
+    until_s: Option<f64>,
+    /// Since the last volume was opened, for automation.
+    errors: Vec<String>,
+}
+
+impl Messages {
+    /// Something went wrong.
+    pub(crate) fn error(&mut self, short: impl Into<String>, details: impl Into<String>) {
+        let (short, details) = (short.into(), details.into());
+        log::error!("{short}: {details}");
+        self.errors.push(short.clone());
+        self.show(Message { short, details, is_error: true });
+    }
+
+    /// Something worth knowing.
+    pub(crate) fn note(&mut self, short: impl Into<String>) {
+        self.show(Message { short: short.into(), details: String::new(), is_error: false });
+    }
+
+    fn show(&mut self, message: Message) {
+        self.expanded = false;
+        self.until_s = None;
+        self.current = Some(message);
+    }
+
+    /// A new volume is there: what was said before is over.
+    pub(crate) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Errors so far.
+    pub(crate) fn errors(&self) -> &[String] {
+        &self.errors
+    }
+
+    /// Shows the message in a row, if there is anything to say.
+    pub(crate) fn ui(&mut self, ui: &mut egui::Ui) {
+        let Some(message) = &self.current else { return };
+        let now_s = ui.input(|input| input.time);
+        let mut over = false;
+        if !message.is_error {
+            let until_s = *self.until_s.get_or_insert(now_s + NOTE_S);
+            over = now_s >= until_s;
+            ui.request_repaint_after(std::time::Duration::from_secs_f64((until_s - now_s).max(0.0)));
+        }
+        let color = if message.is_error { ui.visuals().error_fg_color } else { theme::accent(ui.visuals()) };
+        ui.separator();
+        ui.label(RichText::new(&message.short).color(color));
+        if !message.details.is_empty() && ui.small_button(text::messages::DETAILS).clicked() {
+            self.expanded ^= true;
+        }
+        over |= ui.small_button(text::messages::DISMISS).clicked();
+        if self.expanded {
+            let above_bar = egui::vec2(8.0, -36.0);
+            egui::Window::new(text::messages::WHAT_HAPPENED)
+                .open(&mut self.expanded)
+                .collapsible(false)
+                .anchor(egui::Align2::LEFT_BOTTOM, above_bar)
+                .show(ui.ctx(), |ui| ui.label(&message.details));
+        }
+        if over {
+            self.current = None;
+        }
+    }
+}

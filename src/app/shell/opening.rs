@@ -1,0 +1,215 @@
+//! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
+
+use std::path::Path;
+
+use eframe::egui;
+
+use super::history::History;
+use super::volume_facts::VolumeFacts;
+use crate::app::windows::files;
+use crate::app::windows::raw_dialog::Described;
+use crate::app::worker::loader::{Opened, Reading};
+use crate::app::{App, text};
+use crate::model::{Length, Record, Settings, VolumeRecord};
+
+/// What is opened when nothing is named.
+const DEFAULT_SOURCE: &str = "builtin:chair";
+
+/// The volume that a session is of, where it says so.
+pub(crate) fn volume_of_session(session: &Path) -> Option<String> {
+    if !session.exists() {
+        return None;
+    }
+    // That the session cannot be read is said when it is due.
+    let volume = files::load_record(session).ok()?.volume?;
+    Some(volume.source_from(session.parent()))
+}
+
+impl App {
+    /// Opens a file or a built-in volume, or the volume of a session or of an exported picture with the look
+    /// that is kept there. What is open stays until it is there.
+    pub fn open(&mut self, source: &str, ctx: &egui::Context) {
+        if files::is_record(Path::new(source)) {
+            self.open_record(Path::new(source), ctx);
+        } else if self.start_loading(source, Reading::default(), ctx) {
+            self.pending = None;
+        }
+    }
+
+    /// Opens what was named at the start. A look that cannot be used leaves the default volume.
+    pub(crate) fn open_first(&mut self, source: Option<&str>, ctx: &egui::Context) {
+        if let Some(source) = source {
+            self.open(source, ctx);
+        }
+        if self.loader.progress().is_none() {
+            self.start_loading(DEFAULT_SOURCE, Reading::default(), ctx);
+        }
+    }
+
+    /// Opens a file of bare voxels of which the user has said how it is stored.
+    pub(crate) fn open_described(&mut self, described: &Described, ctx: &egui::Context) {
+        // A look that waits for this volume goes on waiting.
+        let Described { path, layout, header, is_gzip } = described;
+        if let Some(header) = header {
+            let data_file = path.file_name().unwrap_or_default().to_string_lossy();
+            let content = layout.header(&data_file, *is_gzip);
+            match crate::export::write_atomically(header, content.as_bytes()) {
+                Ok(()) => {
+                    self.start_loading(&header.display().to_string(), Reading::default(), ctx);
+                    return;
+                }
+                // It is shown all the same.
+                Err(err) => self.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
+            }
+        }
+        let reading = Reading { raw: Some(layout.format()), ..Reading::default() };
+        self.start_loading(&path.display().to_string(), reading, ctx);
+    }
+
+    /// Reads the open volume again with other blocks of voxels averaged; the look stays.
+    pub(crate) fn average(&mut self, reduce: usize, ctx: &egui::Context) {
+        let Some(volume) = &self.volume else { return };
+        let mut settings = self.settings.clone();
+        // Opacities refer to the same thickness, however many voxels that has.
+        if let Length::Voxels(_) = settings.opacity_unit {
+            let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
+            settings.opacity_unit = Length::Mm(unit);
+        }
+        let (source, reading) = (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading });
+        match Record::read(&Record::text(&settings, None, None)) {
+            Ok(record) if self.start_loading(&source, reading, ctx) => self.pending = Some(record),
+            Ok(_) => {}
+            Err(err) => self.messages.error(text::opening::NOT_OPENED, err.to_string()),
+        }
+    }
+
+    fn start_loading(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> bool {
+        let started = self.loader.open(source, reading, ctx);
+        if let Err(err) = &started {
+            self.messages.error(text::opening::NOT_OPENED, err.clone());
+        }
+        started.is_ok()
+    }
+
+    /// Takes over the look of a session, a preset or a picture. If it is of another volume than the open one,
+    /// that is opened first; a preset is of any volume.
+    pub(crate) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
+        let record = match files::load_record(path) {
+            Ok(record) => record,
+            Err(err) => return self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+        };
+        let open = self.volume_record().map(|(_, content_id)| content_id);
+        let source = match &record.volume {
+            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => volume.source_from(path.parent()),
+            // What is being opened is what the user will see it on.
+            None if self.loader.progress().is_some() => return self.pending = Some(record),
+            None if open.is_none() => DEFAULT_SOURCE.to_owned(),
+            _ => return self.apply_record(&record, self.value_range()),
+        };
+        if self.start_loading(&source, Reading::default(), ctx) {
+            self.pending = Some(record);
+        }
+    }
+
+    /// Takes over a look for the open volume, whatever volume it was made for.
+    pub(crate) fn load_settings(&mut self, path: &Path) {
+        match files::load_record(path) {
+            Ok(record) => {
+                let open = self.volume_record().map(|(_, content_id)| content_id);
+                if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
+                    self.messages.note(text::opening::OF_ANOTHER_VOLUME);
+                }
+                self.apply_record(&record, self.value_range());
+            }
+            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+        }
+    }
+
+    /// Smallest and largest value of the open volume.
+    pub(crate) fn value_range(&self) -> (f64, f64) {
+        self.volume.as_ref().map_or((0.0, 1.0), |volume| volume.range)
+    }
+
+    /// The settings with a record laid over them, for a volume with these values.
+    pub(crate) fn with_record(&mut self, record: &Record, range: (f64, f64)) -> Result<Settings, String> {
+        let (settings, warnings) = record.apply(&self.settings, range).map_err(|err| err.to_string())?;
+        if !warnings.is_empty() {
+            self.messages.note(warnings.join("; "));
+        }
+        Ok(settings)
+    }
+
+    fn apply_record(&mut self, record: &Record, range: (f64, f64)) {
+        match self.with_record(record, range) {
+            Ok(settings) => self.settings = settings,
+            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+        }
+    }
+
+    /// The open volume, for records.
+    pub(crate) fn volume_record(&self) -> Option<(&str, u64)> {
+        let (volume, _) = self.viewport.volume()?;
+        Some((&self.volume.as_ref()?.source, volume.content_id()))
+    }
+
+    pub(crate) fn save_settings(&mut self, path: &Path) {
+        match files::save_settings(path, &self.settings, self.volume_record()) {
+            Ok(()) => self.messages.note(text::opening::saved(path)),
+            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
+        }
+    }
+
+    /// Keeps the look, so that the next run can go on with it.
+    pub(crate) fn keep_look(&mut self) {
+        if let Some((source, content_id)) = self.volume_record() {
+            let volume = VolumeRecord::new(source, content_id, None);
+            let text = Record::text(&self.settings, Some(&volume), None);
+            self.memory.keep(text);
+        }
+    }
+
+    /// A volume is ready: it replaces the one before.
+    pub(crate) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
+        let Opened { source, reading, volume, too_many, bricks, histogram, renderer, settings } = opened;
+        self.messages.clear();
+        if let Some(before) = too_many {
+            self.messages.note(text::opening::averaged(before, volume.dims()));
+        }
+        self.defaults = settings.clone();
+        if self.keeps_look && self.volume.is_some() {
+            // As it was, but for where the object is: that is another one.
+            let mut kept = Settings { camera: settings.camera.clone(), ..std::mem::take(&mut self.settings) };
+            kept.ground.height = settings.ground.height;
+            self.settings = kept;
+        } else {
+            self.settings = settings;
+        }
+        let range = volume.value_range();
+        // Session and command line speak of the first volume.
+        if std::mem::take(&mut self.session_is_due)
+            && let Some(path) = self.session.clone().filter(|path| path.exists())
+        {
+            match files::load_record(&path) {
+                Ok(record) => self.apply_record(&record, range),
+                Err(err) => self.messages.error(text::opening::SESSION_NOT_LOADED, err),
+            }
+        }
+        self.memory.opened(&source);
+        if let Some(record) = self.pending.take() {
+            if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
+                self.messages.note(text::opening::OF_OTHER_VALUES);
+            }
+            self.apply_record(&record, range);
+        }
+        if let Some(adjust) = self.adjust.take() {
+            self.settings = adjust(std::mem::take(&mut self.settings));
+            self.settings.sanitise();
+        }
+        self.volume = Some(VolumeFacts::of((source, reading), &volume, histogram));
+        self.viewport.set_scene(renderer, volume, bricks);
+        self.history = History::default();
+        self.selected_light = 0;
+        let title = text::opening::title(self.volume_name().unwrap_or_default());
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+    }
+}

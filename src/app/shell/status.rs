@@ -1,0 +1,58 @@
+//! The status bar: what is shown, on what, how fast, and what is being done.
+
+use eframe::egui::{self, ProgressBar, RichText};
+
+use super::commands::Command;
+use super::messages::Messages;
+use super::theme;
+use crate::app::text;
+use crate::app::viewport::{Doing, Facts};
+
+/// Opening a volume: what, the phase, and the share that is done.
+pub(crate) type Opening<'a> = (&'a str, &'static str, Option<f32>);
+
+/// Shows the bar.
+pub(crate) fn show(
+    ui: &mut egui::Ui,
+    facts: &Facts,
+    opening: Option<Opening<'_>>,
+    messages: &mut Messages,
+    commands: &mut Vec<Command>,
+) {
+    egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            if let Some((source, phase, fraction)) = opening {
+                let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);
+                ui.add(bar.animate(fraction.is_none()));
+                ui.label(text::status::opening(phase, source));
+                if ui.small_button(&*Command::CancelOpening.label()).clicked() {
+                    commands.push(Command::CancelOpening);
+                }
+            } else {
+                doing(ui, facts.doing);
+            }
+            messages.ui(ui);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let figures = RichText::new(text::status::figures(facts)).weak();
+                ui.add(egui::Label::new(figures).truncate()).on_hover_text(&facts.driver);
+            });
+        });
+    });
+}
+
+fn doing(ui: &mut egui::Ui, doing: Doing) {
+    match doing {
+        Doing::Nothing => ui.weak(text::status::NO_VOLUME),
+        Doing::FullQuality => ui.label(text::status::FULL_QUALITY),
+        Doing::Preview => ui.label(RichText::new(text::status::PREVIEW).color(theme::accent(ui.visuals()))),
+        Doing::Refining(what, share) => {
+            let bar = ProgressBar::new(share).desired_width(80.0).desired_height(8.0);
+            ui.add(bar.fill(theme::ACCENT));
+            ui.label(text::status::refining(share, what))
+        }
+        Doing::Failed => {
+            ui.label(RichText::new(text::status::NOT_RENDERED).color(ui.visuals().error_fg_color))
+        }
+        Doing::Lost => ui.label(RichText::new(text::status::DEVICE_LOST).color(ui.visuals().error_fg_color)),
+    };
+}

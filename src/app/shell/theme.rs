@@ -1,0 +1,106 @@
+//! Colours, sizes and spacing: the one place for all of them.
+
+use eframe::egui::{self, Color32, FontId, TextStyle, Theme, Vec2};
+
+/// Width of the side panel in points.
+pub(crate) const SIDE_WIDTH: f32 = 316.0;
+/// Height of the transfer function editor in points.
+pub(crate) const EDITOR_HEIGHT: f32 = 158.0;
+/// Width of the labels in front of the controls.
+pub(crate) const LABEL_WIDTH: f32 = 106.0;
+/// Width of a typed value behind a slider.
+pub(crate) const VALUE_WIDTH: f32 = 62.0;
+/// Width of the button that puts a value back.
+pub(crate) const RESET_WIDTH: f32 = 16.0;
+
+/// Radius of a light's handle.
+pub(crate) const HANDLE_RADIUS: f32 = 8.0;
+/// How far from the border of the picture a handle stays.
+pub(crate) const HANDLE_INSET: f32 = 14.0;
+/// Radius of a control point of a transfer function.
+pub(crate) const POINT_RADIUS: f32 = 5.0;
+/// Seconds that handles take to appear and to go.
+pub(crate) const FADE_S: f32 = 0.25;
+
+/// What is selected or active.
+pub(crate) const ACCENT: Color32 = Color32::from_rgb(0xe9, 0xae, 0x4a);
+/// The lighting curve.
+pub(crate) const LIGHT_CURVE: Color32 = Color32::from_rgb(0xff, 0xc1, 0x4d);
+/// The eye's curve, over its colours.
+pub(crate) const EYE_CURVE: Color32 = Color32::from_rgb(0xe8, 0xec, 0xf2);
+/// Histogram bars.
+pub(crate) const HISTOGRAM: Color32 = Color32::from_rgb(0x4a, 0x52, 0x60);
+/// The two fields of the checkerboard behind colours.
+pub(crate) const CHECKER: [Color32; 2] =
+    [Color32::from_rgb(0x22, 0x25, 0x2b), Color32::from_rgb(0x2b, 0x2f, 0x36)];
+/// Edge of a field of the checkerboard.
+pub(crate) const CHECKER_EDGE: f32 = 8.0;
+/// The axes of the grid, x, y and z.
+pub(crate) const AXES: [Color32; 3] = [
+    Color32::from_rgb(0xf0, 0x6a, 0x5e),
+    Color32::from_rgb(0x6c, 0xc9, 0x72),
+    Color32::from_rgb(0x62, 0xa4, 0xf2),
+];
+/// Around handles and points, so that they can be told from any picture.
+pub(crate) const OUTLINE: Color32 = Color32::from_rgb(0x0c, 0x0d, 0x10);
+/// Lines that help while a light is moved.
+pub(crate) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
+/// Behind the picture while there is none.
+pub(crate) const STAGE: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
+
+/// The frame of a panel, through which the background of the window is seen: that is filled at once and cheaply.
+pub(crate) fn panel(ui: &egui::Ui) -> egui::Frame {
+    egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
+}
+
+/// What is selected or active, as text on a panel: 4.5:1 on light ones, too.
+pub(crate) fn accent(visuals: &egui::Visuals) -> Color32 {
+    if visuals.dark_mode { ACCENT } else { Color32::from_rgb(0x85, 0x52, 0x00) }
+}
+
+const INK_ON_LIGHT: Color32 = Color32::from_rgb(0x24, 0x28, 0x30);
+const DIM_ON_LIGHT: Color32 = Color32::from_rgb(0x59, 0x60, 0x6c);
+const ERROR: Color32 = Color32::from_rgb(0xff, 0x8a, 0x7a);
+const PANEL: Color32 = Color32::from_rgb(0x1e, 0x20, 0x26);
+const WELL: Color32 = Color32::from_rgb(0x14, 0x16, 0x1a);
+const TEXT: Color32 = Color32::from_rgb(0xd4, 0xd8, 0xe0);
+const WEAK_TEXT: Color32 = Color32::from_rgb(0x98, 0xa0, 0xae);
+
+/// Gives the window its looks: dark unless the user says otherwise.
+pub(crate) fn apply(ctx: &egui::Context) {
+    ctx.set_theme(egui::ThemePreference::Dark);
+    ctx.style_mut_of(Theme::Dark, |style| {
+        let visuals = &mut style.visuals;
+        visuals.panel_fill = PANEL;
+        visuals.window_fill = PANEL;
+        visuals.extreme_bg_color = WELL;
+        visuals.weak_text_color = Some(WEAK_TEXT);
+        visuals.error_fg_color = ERROR;
+        visuals.widgets.noninteractive.fg_stroke.color = TEXT;
+        visuals.widgets.inactive.fg_stroke.color = TEXT;
+        visuals.selection.bg_fill = Color32::from_rgb(0x6a, 0x4c, 0x16);
+        visuals.selection.stroke.color = Color32::from_rgb(0xff, 0xe6, 0xb8);
+    });
+    ctx.style_mut_of(Theme::Light, |style| {
+        let visuals = &mut style.visuals;
+        visuals.weak_text_color = Some(DIM_ON_LIGHT);
+        visuals.widgets.noninteractive.fg_stroke.color = INK_ON_LIGHT;
+        visuals.widgets.inactive.fg_stroke.color = INK_ON_LIGHT;
+        visuals.selection.bg_fill = Color32::from_rgb(0xf0, 0xcf, 0x8d);
+        visuals.selection.stroke.color = Color32::from_rgb(0x40, 0x2b, 0x00);
+    });
+    ctx.all_styles_mut(|style| {
+        style.spacing.item_spacing = Vec2::new(6.0, 5.0);
+        style.spacing.interact_size.y = 20.0;
+        style.text_styles.insert(TextStyle::Body, FontId::proportional(13.0));
+        style.text_styles.insert(TextStyle::Button, FontId::proportional(13.0));
+        style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
+        style.visuals.slider_trailing_fill = true;
+    });
+}
+
+/// An sRGB colour of the settings for the painter.
+pub(crate) fn color(srgb: [f32; 3]) -> Color32 {
+    let [r, g, b] = srgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
+    Color32::from_rgb(r, g, b)
+}

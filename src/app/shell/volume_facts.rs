@@ -1,0 +1,63 @@
+//! What the panels and the transfer function editor know of the open volume.
+
+use crate::app::worker::loader::Reading;
+use crate::data::{Histogram, Volume, VoxelType};
+use crate::math::SceneSpace;
+
+/// Facts about a volume; all of them fixed.
+#[derive(Debug, Clone)]
+pub(crate) struct VolumeFacts {
+    /// What the user calls it.
+    pub name: String,
+    /// What was opened …
+    pub source: String,
+    /// … and how it was read.
+    pub reading: Reading,
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// The same before voxels were averaged, if they were.
+    pub file_dims: [usize; 3],
+    /// `uint8` …
+    pub voxel_type: &'static str,
+    /// Between voxel centres.
+    pub spacing_mm: [f64; 3],
+    /// Smallest and largest value.
+    pub range: (f64, f64),
+    /// How many different values there can be, for integers.
+    pub levels: Option<usize>,
+    /// Voxels that are not finite.
+    pub odd_voxels: usize,
+    /// Bytes of the voxels.
+    pub bytes: u64,
+    /// How the grid lies in scene space.
+    pub scene: SceneSpace,
+    /// Whether +x, +y and +z are a body's right, front and head.
+    pub is_anatomical: bool,
+    /// How often each value occurs.
+    pub histogram: Histogram,
+}
+
+impl VolumeFacts {
+    /// Collects them.
+    pub(crate) fn of((source, reading): (String, Reading), volume: &Volume, histogram: Histogram) -> Self {
+        let voxel_type = volume.samples().voxel_type();
+        let (low, high) = volume.value_range();
+        let whole = !matches!(voxel_type, VoxelType::F32 | VoxelType::F64);
+        Self {
+            name: volume.name().to_owned(),
+            source,
+            reading,
+            dims: volume.dims(),
+            file_dims: volume.file_dims(),
+            voxel_type: voxel_type.name(),
+            spacing_mm: volume.spacing_mm().into(),
+            range: volume.value_range(),
+            levels: whole.then_some((high - low) as usize + 1),
+            odd_voxels: volume.odd_voxels(),
+            bytes: (volume.voxel_count() * voxel_type.bytes()) as u64,
+            scene: volume.scene(),
+            is_anatomical: volume.is_anatomical(),
+            histogram,
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The section of cuts: the crop box and the clip plane.
+
+use crate::app::text::{Named, named};
+
+/// In place of the section while no volume is open.
+pub(crate) const NOTHING_OPEN: &str = "Nothing is open";
+
+/// What the axes of the volume are called.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
+const EFFECT_TIP: &str = "What becomes of the part that is cut away";
+
+pub(crate) const CROP: Named =
+    named("Crop box", "Leaves out what lies outside a box; its sides are dragged in the picture");
+pub(crate) const EXTENT_TIP: &str = "First and last voxel that remain";
+/// Between the first and the last voxel.
+pub(crate) const UP_TO: &str = "–";
+/// What becomes of what lies outside the box.
+pub(crate) const OUTSIDE: Named = named("Outside", EFFECT_TIP);
+
+pub(crate) const PLANE: Named = named(
+    "Clip plane",
+    "Leaves out what lies in front of a plane; drag its square to move it and the arrow to turn it",
+);
+pub(crate) const OFFSET: Named =
+    named("Offset", "From the middle of the volume, in the direction in which the plane looks");
+pub(crate) const FACING: Named =
+    named("Facing", "Where the plane looks; what lies in front of it is cut away");
+pub(crate) const FLIP: Named = named("Flip", "Cuts the other side away");
+pub(crate) const TOWARDS_EYE: Named = named("Towards the eye", "Across the line of sight");
+/// What becomes of what lies in front of the plane.
+pub(crate) const IN_FRONT: Named = named("In front", EFFECT_TIP);
+
+pub(crate) const REMOVED: &str = "hidden, no shadow";
+pub(crate) const HIDDEN: &str = "hidden, shadow stays";
+pub(crate) const SHADOWLESS: &str = "visible, no shadow";
+
+/// The extent of the box along an axis, as its reset button names it.
+pub(crate) fn crop(axis: &str) -> String {
+    format!("crop {axis}")
+}
+
+/// The first voxel that remains along an axis.
+pub(crate) fn crop_from(axis: &str) -> String {
+    format!("Crop {axis} from")
+}
+
+/// The last voxel that remains along an axis.
+pub(crate) fn crop_to(axis: &str) -> String {
+    format!("Crop {axis} to")
+}
+
+/// How long the box is along an axis.
+pub(crate) fn length(mm: f64) -> String {
+    if mm < 100.0 { format!("{mm:.1} mm") } else { format!("{mm:.0} mm") }
+}
+
+/// The tip of the button that turns the plane across an axis.
+pub(crate) fn across(axis: &str) -> String {
+    format!("Across the {axis} axis")
+}
+
+/// The list of effects on a part: outside the box, or in front of the plane.
+pub(crate) fn effect(part: &str) -> String {
+    format!("{part}: effect")
+}

@@ -1,0 +1,64 @@
+//! The section of data: what the volume is.
+
+use crate::app::text::{Named, named};
+
+/// In place of the section while no volume is open.
+pub(crate) const NOTHING_OPEN: &str = "No volume is open";
+
+pub(crate) const NAME: &str = "Name";
+pub(crate) const SOURCE: &str = "Source";
+pub(crate) const DIMENSIONS: &str = "Voxels";
+/// The voxels of the file, of which blocks were averaged.
+pub(crate) const AVERAGED: &str = "Averaged from";
+pub(crate) const VOXEL_TYPE: &str = "Type";
+pub(crate) const SPACING: &str = "Spacing";
+pub(crate) const VALUES: &str = "Values";
+pub(crate) const MEMORY: &str = "Memory";
+pub(crate) const NOT_FINITE: &str = "Not finite";
+
+pub(crate) const AVERAGING: Named = named(
+    "Averaging",
+    "Shows fewer voxels, each the mean of a block: quicker pictures and less memory, without the finest details. \
+     The volume is read again, the look stays",
+);
+pub(crate) const ALL_VOXELS: Named = named("None", "All voxels of the file");
+pub(crate) const EIGHTHS: Named = named("2 × 2 × 2", "An eighth of the voxels");
+pub(crate) const SIXTY_FOURTHS: Named = named("4 × 4 × 4", "A sixty-fourth of the voxels");
+
+pub(crate) const OPACITY_UNIT: Named = named(
+    "Opacity unit",
+    "The thickness of material to which the opacities of the transfer function refer: larger makes \
+     everything more transparent",
+);
+/// The list of the units in which the opacity unit can be given.
+pub(crate) const UNITS: &str = "Unit of the opacity unit";
+pub(crate) const MILLIMETRES: Named = named("mm", "Stays the same for every volume of the same thing");
+pub(crate) const VOXELS: Named = named("voxels", "Follows the resolution of the data");
+pub(crate) const EXTENT: Named = named("extent", "A share of the longest edge of the volume");
+/// The button that puts the opacity unit back.
+pub(crate) const RESET: &str = "Reset";
+
+/// Voxels along x, y and z.
+pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {
+    format!("{x} × {y} × {z}")
+}
+
+/// Millimetres between voxels along x, y and z, in digits.
+pub(crate) fn spacing([x, y, z]: &[String; 3]) -> String {
+    format!("{x} × {y} × {z} mm")
+}
+
+/// The smallest and the largest value, in digits.
+pub(crate) fn values(low: &str, high: &str) -> String {
+    format!("{low} … {high}")
+}
+
+/// The memory of the voxels.
+pub(crate) fn memory(mebibytes: f64) -> String {
+    format!("{mebibytes:.1} MiB")
+}
+
+/// How many voxels are not finite.
+pub(crate) fn not_finite(voxels: usize) -> String {
+    format!("{voxels} voxels, shown as the smallest value")
+}

@@ -1,0 +1,107 @@
+//! The section of lights, their chips and their handles.
+
+use crate::app::text::{Named, named};
+
+pub(crate) const PARALLEL: Named =
+    named("Parallel", "Like the sun: shadows have the size of what casts them");
+pub(crate) const PERSPECTIVE: Named =
+    named("Perspective", "Like a lamp at a point: shadows grow with the distance");
+
+pub(crate) const WITH_VOLUME: Named =
+    named("The volume", "The light stays where it is: turning the camera rebuilds no shadows");
+pub(crate) const WITH_CAMERA: Named =
+    named("The camera", "The light turns with the camera, like a lamp on the photographer's shoulder");
+
+pub(crate) const ADD: Named = named("Add light", "Adds a light beside the camera; up to eight");
+pub(crate) const REMOVE: Named = named("Remove light", "Takes this light away; undo brings it back");
+
+/// What a light without a name is called.
+pub(crate) const UNNAMED: &str = "Light";
+pub(crate) const ON_TIP: &str = "Switches this light on or off; its shadows are kept";
+pub(crate) const SELECT_TIP: &str = "Select; its handle in the picture is marked";
+
+pub(crate) const NAME: Named = named("Name", "What this light is called in the list");
+pub(crate) const NAME_HINT: &str = "Name of the light";
+pub(crate) const KIND: Named = named("Kind", "How the light's rays run");
+pub(crate) const INTENSITY: Named = named("Intensity", "How bright this light is; costs no new shadows");
+pub(crate) const DISTANCE: Named = named(
+    "Distance",
+    "From the middle of the volume, whose longest edge is 2 long; near lights spread their shadows",
+);
+pub(crate) const LOCK: Named =
+    named("Stays with", "What the light keeps its place to while the camera turns");
+pub(crate) const HEADLIGHT: Named = named(
+    "Headlight",
+    "Puts this light where the eye is, and keeps it there: everything seen is lit, shadows hide",
+);
+pub(crate) const DENSITY: Named = named(
+    "Density",
+    "Multiplies how strongly material attenuates this light alone; refills its light volume",
+);
+pub(crate) const CASTS_SHADOWS: Named =
+    named("Casts shadows", "Whether material attenuates this light; a fill light does without");
+
+pub(crate) const HOOD: Named = named(
+    "Hood",
+    "A lampshade: the light shines only within a cone around the line to the middle of the volume",
+);
+pub(crate) const CONE: Named = named("Cone", "From the middle of the cone to where no light is left");
+pub(crate) const RIM: Named = named("Rim", "How far inside that the light begins to fade; 0 is a hard edge");
+
+/// The chip that adds a light.
+pub(crate) const ADD_CHIP: Named = named("+", "Add a light");
+
+/// Entries of a chip's menu.
+pub(crate) const MUTE: &str = "Mute";
+pub(crate) const UNMUTE: &str = "Unmute";
+pub(crate) const SOLO: &str = "Solo";
+
+/// What a light's shadows cost, in the tip of its chip.
+pub(crate) const NO_SHADOWS: &str = "casts no shadows";
+pub(crate) const NOT_FILLED: &str = "shadows are not filled yet";
+
+/// The switch of a light.
+pub(crate) fn switch(name: &str) -> String {
+    format!("{name} on")
+}
+
+/// The colour of the light at a place of the list, from 1.
+pub(crate) fn color(number: usize) -> String {
+    format!("Colour of light {number}")
+}
+
+/// What a new light at a place of the list is called, from 1.
+pub(crate) fn numbered(number: usize) -> String {
+    format!("Light {number}")
+}
+
+/// The chip of a light.
+pub(crate) fn chip(name: &str, on: bool) -> String {
+    let state = if on { "on" } else { "off" };
+    format!("Light {name}, {state}")
+}
+
+/// The tip of a light's chip. `shadows`: what they cost.
+pub(crate) fn chip_tip(name: &str, intensity: f64, shadows: &str) -> String {
+    format!(
+        "{name}: intensity {intensity:.2}, {shadows}\n\
+         Click selects, drag its handle or use the arrow keys; right click for more"
+    )
+}
+
+/// A light volume: whether all of it is there, how long it took to fill, and its memory.
+pub(crate) fn light_volume(complete: bool, fill_ms: Option<f64>, mebibytes: f64) -> String {
+    let state = if complete { "cached" } else { "being filled" };
+    let ms = fill_ms.map_or_else(String::new, |ms| format!(", {ms:.0} ms"));
+    format!("light volume {state}{ms}, {mebibytes:.1} MiB")
+}
+
+/// The handle by which a light is dragged.
+pub(crate) fn handle(name: &str) -> String {
+    format!("Light handle {name}")
+}
+
+/// The handle that opens and closes a light's hood.
+pub(crate) fn hood_handle(name: &str) -> String {
+    format!("Hood handle {name}")
+}

@@ -1,0 +1,11 @@
+//! Words of the side panels.
+
+pub(in crate::app) mod camera;
+pub(in crate::app) mod cuts;
+pub(in crate::app) mod data;
+pub(in crate::app) mod floor;
+pub(in crate::app) mod lights;
+pub(in crate::app) mod sampling;
+pub(in crate::app) mod sections;
+pub(in crate::app) mod shading;
+pub(in crate::app) mod shadows;

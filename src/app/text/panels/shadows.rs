@@ -1,0 +1,97 @@
+//! The section of shadows.
+
+use crate::app::text::{Named, named};
+
+pub(crate) const ALGORITHM: Named = named("Shadows", "How light is attenuated on its way");
+pub(crate) const OFF: Named = named("Off", "Light reaches everything: only the shading is left");
+pub(crate) const SPLAT: Named =
+    named("Splat", "A light volume filled by sheet-buffer splatting: the quick way");
+pub(crate) const RAYCAST: Named = named(
+    "Ray",
+    "A light volume filled by a ray from every voxel: a little sharper, many times slower when a light moves",
+);
+pub(crate) const DIRECT: Named = named(
+    "Direct",
+    "A ray to the light from every sample: the sharpest shadows; every picture takes as long as a light volume",
+);
+
+pub(crate) const STRENGTH: Named =
+    named("Strength", "0 shows no shadows, 1 shows them fully; between, they are mixed");
+pub(crate) const AMBIENT_OFFSET: Named = named(
+    "Ambient offset",
+    "Light that reaches everything: lifts black interiors without touching bright parts",
+);
+pub(crate) const GAIN: Named =
+    named("Gain", "Multiplies the light that is left, up to full light: brightens half-shadows");
+pub(crate) const LIGHT_BIAS: Named = named(
+    "Light bias",
+    "Looks up the light a little nearer to its source: takes self-shadowing off surfaces",
+);
+
+pub(crate) const BALANCE: Named = named(
+    "Balance",
+    "Multiplies the lights while shadows are on, so that the picture is as bright as without them",
+);
+/// The button that finds the balance.
+pub(crate) const MEASURE_BALANCE: Named =
+    named("Balance brightness", "Measures the picture with and without shadows and sets the balance");
+
+pub(crate) const NEARLY_BLACK: Named = named(
+    "Nearly black",
+    "Share of what is seen that is nearly black. Light opacity below 1 lets light pass thin parts, a \
+     narrow Gaussian or a light bias frees surfaces from their own shadow, an ambient offset lifts all",
+);
+/// In place of a share that is not known yet.
+pub(crate) const UNKNOWN: &str = "–";
+
+pub(crate) const LIGHT_OPACITY: Named = named(
+    "Light opacity",
+    "Multiplies how strongly material attenuates light, not the eye: below 1 lets light pass thin \
+     structures; refills the light volumes",
+);
+pub(crate) const LINKED: Named = named(
+    "Light opacity follows the eye's",
+    "Light meets the opacity that the eye sees. Unlinked, it gets a curve of its own in the editor below",
+);
+
+pub(crate) const RESOLUTION: Named =
+    named("Resolution", "Resolution of the light volumes; they are refilled when it changes");
+pub(crate) const FULL: Named = named("Full", "One light voxel per voxel");
+pub(crate) const HALF: Named = named("Half", "An eighth of the memory and time; shadow edges get softer");
+pub(crate) const QUARTER: Named = named("Quarter", "Soft shadows; for very large volumes");
+
+pub(crate) const FIRST_TOUCH: Named = named(
+    "First touch",
+    "Each voxel takes only the light of the first sheet that touches it: crisper and brighter, \
+     with faint steps",
+);
+
+pub(crate) const PRECISION: Named = named("Precision", "How light volumes are kept");
+pub(crate) const SIXTEEN_BITS: Named = named("16 bits", "Even in the dark, and under gain");
+pub(crate) const EIGHT_BITS: Named =
+    named("8 bits", "Half the memory; shows steps where gain lifts dark parts");
+
+pub(crate) const STORAGE: Named = named("Volumes", "A light volume for each light, or one for all");
+pub(crate) const AUTO: Named = named("Auto", "One for all from five lights on, where nothing shines");
+pub(crate) const PER_LIGHT: Named =
+    named("Each", "A volume for each light: highlights, and colours that change at once");
+pub(crate) const COLLAPSED: Named = named(
+    "One",
+    "The diffuse light of all in one volume: quick pictures under many lights, without their highlights",
+);
+
+pub(crate) const DEPOSIT: Named = named("Deposit", "Which light a sheet leaves in its voxels");
+pub(crate) const SLAB_MEAN: Named = named("Mean", "The mean over the slab: hardly depends on its thickness");
+pub(crate) const FRONT: Named =
+    named("Front", "What arrives in front of the slab: a little brighter; the paper's equation");
+
+/// How much of what is seen is nearly black.
+pub(crate) fn dark_share(share: f64) -> String {
+    format!("{:.0} %", share * 100.0)
+}
+
+/// The memory of the light volumes, and whether all lights share one.
+pub(crate) fn light_volumes(mebibytes: f64, shared: bool) -> String {
+    let kind = if shared { "one for all lights" } else { "one for each light" };
+    format!("Light volumes: {mebibytes:.1} MiB, {kind}")
+}

@@ -1,0 +1,50 @@
+//! The status bar.
+
+use crate::app::viewport::Facts;
+use crate::gpu::Stage;
+
+pub(crate) const NO_VOLUME: &str = "no volume";
+pub(crate) const FULL_QUALITY: &str = "full quality";
+pub(crate) const PREVIEW: &str = "preview";
+pub(crate) const NOT_RENDERED: &str = "not rendered";
+pub(crate) const DEVICE_LOST: &str = "graphics device lost";
+
+/// What is done to a file that is being opened.
+pub(crate) fn opening(phase: &str, source: &str) -> String {
+    format!("{phase} {source}")
+}
+
+/// What the renderer is doing.
+fn name_of(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Upload => "uploading the volume",
+        Stage::Pyramid => "preparing the volume",
+        Stage::LightMarch | Stage::LightBackproject | Stage::LightRaycast => "filling the light volume",
+        Stage::Eye | Stage::Display => "drawing the picture",
+    }
+}
+
+/// The share of the picture at full quality that is done, and what is done now.
+pub(crate) fn refining(share: f32, stage: Stage) -> String {
+    format!("refining {:.0} %, {}", share * 100.0, name_of(stage))
+}
+
+/// How fast, with how much memory, and on what.
+pub(crate) fn figures(facts: &Facts) -> String {
+    let ms = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.0} ms"));
+    let software = if facts.software { " (software)" } else { "" };
+    let splats = if facts.splats > 0 {
+        format!("{:.1} million splats · ", facts.splats as f64 * 1e-6)
+    } else {
+        String::new()
+    };
+    format!(
+        "{splats}full {} · preview {} · light volumes {} cached, {} filled · {:.0} MiB · {}{software}",
+        ms(facts.full_ms),
+        ms(facts.preview_ms),
+        facts.cached_light_volumes,
+        facts.light_rebuilds,
+        facts.gpu_mebibytes,
+        facts.adapter,
+    )
+}

@@ -1,0 +1,23 @@
+//! The window that looks into a light volume.
+
+use crate::app::text::{Named, named};
+
+pub(crate) const TITLE: &str = "Light volume";
+
+/// By axis.
+pub(crate) const ACROSS: [&str; 3] = ["across x", "across y", "across z"];
+pub(crate) const SLICE: &str = "Slice";
+
+/// Instead of the slice.
+pub(crate) const NONE: &str =
+    "No light volume: shadows must be on, splatted or by rays, and a light must cast them";
+
+/// The ends of the scale of colours.
+pub(crate) const DARK: &str = "dark";
+pub(crate) const FULLY_LIT: &str = "fully lit";
+
+pub(crate) const EXPORT: Named = named("Export…", "The whole as .nrrd, or this slice as .png");
+
+/// Why nothing was written.
+pub(crate) const NOTHING_TO_EXPORT: &str = "there is no light volume";
+pub(crate) const NO_SUCH_SLICE: &str = "there is no such slice";

@@ -1,0 +1,9 @@
+//! Words of windows over the main one.
+
+pub(in crate::app) mod contact_sheet;
+pub(in crate::app) mod export;
+pub(in crate::app) mod files;
+pub(in crate::app) mod help;
+pub(in crate::app) mod light_volume;
+pub(in crate::app) mod raw;
+pub(in crate::app) mod slices;

@@ -1,0 +1,297 @@
+//! The transfer function editor: wide and low, values run horizontally and need room.
+//!
+//! Both curves share one plot: the eye's, filled with its colours, and the lighting one as a single
+//! amber line, dashed while it follows the eye's.
+
+mod backdrop;
+mod fields;
+mod menus;
+mod plot;
+mod selection;
+mod zoom;
+
+use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
+
+use self::backdrop::{Backdrop, Bars};
+use self::plot::Axes;
+use self::selection::Selection;
+use self::zoom::Zoom;
+use super::shell::commands::Command;
+use super::shell::theme;
+use super::shell::volume_facts::VolumeFacts;
+use super::text;
+use crate::gpu::WindowPainter;
+use crate::model::{Settings, TransferFunction};
+
+/// Which curve is edited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Curve {
+    /// What the eye sees.
+    #[default]
+    Eye,
+    /// What light meets.
+    Light,
+}
+
+/// State of the editor between frames.
+#[derive(Debug)]
+pub(super) struct TransferEditor {
+    curve: Curve,
+    selection: Selection,
+    /// The curve as it was left: the selection means its points.
+    left: TransferFunction,
+    /// Rare values are raised so that they can be seen.
+    log_histogram: bool,
+    /// Values that are shown, if not all.
+    zoom: Zoom,
+    backdrop: Backdrop,
+}
+
+impl TransferEditor {
+    /// The editor of a window.
+    pub(super) fn new(window: WindowPainter) -> Self {
+        Self {
+            backdrop: Backdrop::new(window),
+            curve: Curve::Eye,
+            selection: Selection::default(),
+            left: TransferFunction::default(),
+            log_histogram: true,
+            zoom: Zoom::default(),
+        }
+    }
+}
+
+/// The steps of the arrow keys: shares of the axes.
+const NUDGE: [f64; 2] = [1.0 / 256.0, 0.01];
+
+/// Points of width in which all tools have room side by side: those of the curve take 590 at most, the others
+/// 410.
+const WIDE: f32 = 1000.0;
+
+impl TransferEditor {
+    /// Shows the editor in the whole of `ui`.
+    pub(super) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        settings: &mut Settings,
+        volume: &VolumeFacts,
+        marked: Option<f64>,
+        commands: &mut Vec<Command>,
+    ) {
+        if settings.lighting.linked {
+            self.curve = Curve::Eye;
+        }
+        if *self.edited(settings) != self.left {
+            // Somebody else has changed it: its points may be others.
+            self.selection.clear();
+        }
+        let is_wide = ui.available_width() >= WIDE;
+        ui.horizontal(|ui| {
+            self.curve_tools(ui, settings, volume, is_wide);
+            if is_wide {
+                let layout = egui::Layout::right_to_left(egui::Align::Center);
+                ui.with_layout(layout, |ui| self.plot_tools(ui, settings, commands));
+            }
+        });
+        if !is_wide {
+            ui.horizontal(|ui| self.plot_tools(ui, settings, commands));
+        }
+        let size = ui.available_size();
+        let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::transfer::PLOT));
+        self.zoom.ui(ui, &response, area, volume.range);
+        let axes = Axes::new(area, self.zoom.shown(volume.range));
+        self.paint(ui, &axes, settings, volume);
+        let name =
+            if self.curve == Curve::Light { text::transfer::LIGHT_POINT } else { text::transfer::EYE_POINT };
+        let function = self.edited(settings);
+        self.add_point(&response, &axes, function);
+        self.selection.frame(ui, &response, &axes, function);
+        self.select_by_keys(ui, &response, function.points.len());
+        self.edit_points(ui, &axes, function, (name, volume.range), response.contains_pointer());
+        self.left = self.edited(settings).clone();
+        plot::readout(ui, &axes, &response, settings);
+        plot::mark(ui, &axes, marked);
+    }
+
+    /// What edits the curve.
+    fn curve_tools(&mut self, ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts, is_wide: bool) {
+        let before = self.curve;
+        let eye = ui.selectable_value(&mut self.curve, Curve::Eye, text::transfer::EYE.name);
+        eye.on_hover_text(text::transfer::EYE.tip);
+        ui.add_enabled_ui(!settings.lighting.linked, |ui| {
+            let light = ui.selectable_value(&mut self.curve, Curve::Light, text::transfer::LIGHT.name);
+            light.on_hover_text(text::transfer::LIGHT.tip).on_disabled_hover_text(text::transfer::LINKED_TIP);
+        });
+        if self.curve != before {
+            self.selection.clear();
+        }
+        ui.separator();
+        let light = self.curve == Curve::Light;
+        let function = self.edited(settings);
+        let selected = self.selection.within(function.points.len());
+        if selected.is_empty() {
+            menus::whole_curve(ui, function, volume.range);
+            menus::shapes(ui, function, volume, self.zoom.shown(volume.range));
+            if is_wide {
+                ui.add(egui::Label::new(egui::RichText::new(text::transfer::HINT).weak()).truncate());
+            }
+        } else if fields::points(ui, function, &selected, volume.range, light) {
+            self.selection.remove(function);
+        }
+    }
+
+    /// The curve that is edited.
+    fn edited<'a>(&self, settings: &'a mut Settings) -> &'a mut TransferFunction {
+        match self.curve {
+            Curve::Eye => &mut settings.transfer,
+            Curve::Light => &mut settings.lighting.curve,
+        }
+    }
+
+    /// What replaces the whole curve, and how the plot shows it.
+    fn plot_tools(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+        let function = self.edited(settings);
+        let automatic = text::transfer::AUTOMATIC;
+        if ui.button(automatic.name).on_hover_text(automatic.tip).clicked() {
+            self.selection.clear();
+            commands.push(Command::AutomaticTransfer);
+        }
+        let log = text::transfer::LOG_HISTOGRAM;
+        ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
+        menus::colors(ui, function, commands);
+        menus::presets(ui, commands);
+        self.zoom.button(ui);
+    }
+
+    /// With the pointer over the plot, Ctrl+A selects all points, and Escape none.
+    fn select_by_keys(&mut self, ui: &Ui, response: &Response, count: usize) {
+        if !response.contains_pointer() || ui.ctx().text_edit_focused() {
+            return;
+        }
+        if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::A)) {
+            self.selection.all(count);
+        } else if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.selection.clear();
+        }
+    }
+
+    fn paint(&mut self, ui: &Ui, axes: &Axes, settings: &Settings, volume: &VolumeFacts) {
+        let painter = ui.painter_at(axes.area);
+        let counts =
+            plot::bars(&volume.histogram, volume.levels, axes.width() * self.zoom.factor(volume.range));
+        let bars = Bars { range: volume.range, counts, log: self.log_histogram };
+        painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &settings.transfer));
+        plot::eye_curve(&painter, axes, &settings.transfer, self.curve == Curve::Eye);
+        plot::light_curve(&painter, axes, settings, self.curve == Curve::Light);
+        plot::labels(&painter, axes);
+    }
+
+    fn add_point(&mut self, response: &Response, axes: &Axes, function: &mut TransferFunction) {
+        if !response.clicked() {
+            return;
+        }
+        if let Some(at) = response.interact_pointer_pos() {
+            let (value, opacity) = axes.values(at);
+            let index = function.insert_on_curve(value);
+            function.points[index].opacity = opacity;
+            self.selection.only(index);
+        }
+    }
+
+    /// Shows the points and lets the user move and remove them. `range`: all values of the volume; `hovered`: the
+    /// pointer is on the plot.
+    fn edit_points(
+        &mut self,
+        ui: &Ui,
+        axes: &Axes,
+        function: &mut TransferFunction,
+        (name, range): (&str, (f64, f64)),
+        hovered: bool,
+    ) {
+        let painter = ui.painter_at(axes.area.expand(theme::POINT_RADIUS + 2.0));
+        let id_of = |index: usize| ui.scope_id().with((name, index));
+        let focused = ui.memory(egui::Memory::focused);
+        let on_point = (0..function.points.len()).any(|index| focused == Some(id_of(index)));
+        let deletes =
+            |input: &egui::InputState| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace);
+        // Somebody may be typing, or working elsewhere.
+        let mut removes = (on_point || (focused.is_none() && hovered)) && ui.input(deletes);
+        for index in 0..function.points.len() {
+            if !axes.shows(function.points[index].value) {
+                continue;
+            }
+            let at = axes.position(function.points[index].value, function.points[index].opacity);
+            let area = Rect::from_center_size(at, Vec2::splat(2.0 * theme::POINT_RADIUS + 6.0));
+            let id = id_of(index);
+            let response = ui.interact(area, id, Sense::click_and_drag());
+            response.widget_info(|| {
+                WidgetInfo::labeled(Role::Slider, true, text::transfer::point(name, index + 1))
+            });
+            let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+            if response.clicked() && adds {
+                self.selection.toggle(index);
+            } else if response.clicked() || (response.drag_started() && !self.selection.has(index)) {
+                self.selection.only(index);
+            }
+            let wanted = self.selection.wants_focus && self.selection.has(index);
+            if ((response.clicked() || response.drag_started()) && self.selection.has(index)) || wanted {
+                self.selection.wants_focus = false;
+                response.request_focus();
+            } else if response.gained_focus() && !self.selection.has(index) {
+                // Reached by the keyboard.
+                self.selection.only(index);
+            }
+            if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+                let (value, opacity) = axes.values(pointer);
+                let point = function.points[index];
+                let by = (value - point.value, opacity - point.opacity);
+                self.selection.shift(function, range, by);
+            }
+            if response.has_focus() {
+                self.nudge(ui, id, axes, function, range);
+            }
+            let selected = self.selection.has(index);
+            if response.double_clicked() {
+                self.selection.only(index);
+                removes = true;
+            }
+            if response.hovered() || response.dragged() {
+                ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
+            }
+            let point = function.points[index];
+            plot::point(
+                &painter,
+                axes.position(point.value, point.opacity),
+                theme::POINT_RADIUS + if response.hovered() { 1.0 } else { 0.0 },
+                theme::color(point.color),
+                selected || response.has_focus(),
+            );
+        }
+        if removes {
+            self.selection.remove(function);
+        }
+    }
+
+    /// Arrow keys move what is selected.
+    fn nudge(
+        &mut self,
+        ui: &Ui,
+        id: egui::Id,
+        axes: &Axes,
+        function: &mut TransferFunction,
+        range: (f64, f64),
+    ) {
+        let arrows =
+            egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(id, arrows));
+        let presses = |less: Key, more: Key| {
+            ui.input(|input| input.num_presses(more) as f64 - input.num_presses(less) as f64)
+        };
+        let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
+        if right != 0.0 || up != 0.0 {
+            let span = axes.range.1 - axes.range.0;
+            self.selection.shift(function, range, (right * NUDGE[0] * span, up * NUDGE[1]));
+        }
+    }
+}

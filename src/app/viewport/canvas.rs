@@ -1,0 +1,176 @@
+//! The middle of the window: the picture, pixel for pixel, and the mouse on it.
+
+use eframe::egui::{self, Rect, Role, Sense, Shape, WidgetInfo, pos2};
+
+use super::compare::Compare;
+use super::cut_handles::CutHandles;
+use super::hints::Hints;
+use super::light_handles::LightHandles;
+use super::light_probe::LightProbe;
+use super::overlay::Marks;
+use super::view_projection::Sight;
+use super::{Facts, Viewport};
+use super::{light_chips, light_probe, orbit};
+use crate::app::shell::commands::Command;
+use crate::app::shell::theme;
+use crate::app::text;
+use crate::app::windows::slices::Slices;
+use crate::gpu::GpuError;
+use crate::math::SceneSpace;
+use crate::model::Settings;
+
+/// The picture's rectangle in points and its size in physical pixels, on the pixel grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Canvas {
+    /// In points; every edge is at a whole physical pixel.
+    pub rect: Rect,
+    /// In physical pixels.
+    pub size: [u32; 2],
+}
+
+impl Canvas {
+    /// The largest rectangle on the pixel grid within another.
+    pub(crate) fn within(rect: Rect, pixels_per_point: f32) -> Self {
+        // A hair of tolerance: 799.9999 is pixel 800.
+        let up = |x: f32| (x * pixels_per_point - 0.01).ceil();
+        let down = |x: f32| (x * pixels_per_point + 0.01).floor();
+        let (left, top) = (up(rect.min.x), up(rect.min.y));
+        let (right, bottom) = (down(rect.max.x).max(left), down(rect.max.y).max(top));
+        Self {
+            rect: Rect::from_min_max(
+                pos2(left, top) / pixels_per_point,
+                pos2(right, bottom) / pixels_per_point,
+            ),
+            size: [(right - left) as u32, (bottom - top) as u32],
+        }
+    }
+}
+
+/// What the canvas works with.
+pub(crate) struct Stage<'a> {
+    /// The look; camera and lights may be changed by the mouse.
+    pub settings: &'a mut Settings,
+    /// The renderer's side.
+    pub viewport: &'a mut Viewport,
+    /// The handles of the lights.
+    pub handles: &'a mut LightHandles,
+    /// The handles of the crop box and the clip plane.
+    pub cut_handles: &'a mut CutHandles,
+    /// The light whose handle is marked.
+    pub selected_light: &'a mut usize,
+    /// Two looks in one picture.
+    pub compare: &'a mut Compare,
+    /// Chips of the lights, box, scale bar and cube.
+    pub marks: Marks,
+    /// What is under the pointer.
+    pub probe: &'a mut LightProbe,
+    /// Cuts through the data, and their cursor.
+    pub slices: &'a mut Slices,
+    /// What the first picture says.
+    pub hints: &'a mut Hints,
+    /// Of the open volume, and whether it is a body that knows its sides; `None` without one.
+    pub scene: Option<(SceneSpace, bool)>,
+    /// What is known of the renderer's work.
+    pub facts: &'a Facts,
+    /// What the user asks for.
+    pub commands: &'a mut Vec<Command>,
+}
+
+/// Shows the picture and everything that is done with the mouse on it.
+pub(crate) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), GpuError>) {
+    let Stage {
+        settings,
+        viewport,
+        handles,
+        cut_handles,
+        selected_light,
+        compare,
+        marks,
+        probe,
+        slices,
+        hints,
+        scene,
+        facts,
+        commands,
+    } = stage;
+    let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
+    let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
+    let Some((scene, is_anatomical)) = scene else {
+        ui.painter().rect_filled(canvas.rect, 0.0, theme::STAGE);
+        return (canvas, Ok(()));
+    };
+    orbit::navigate(
+        ui,
+        &response,
+        settings,
+        *selected_light,
+        !(handles.takes_wheel || cut_handles.takes_wheel),
+        viewport.volume().map(|(volume, _)| volume.value_range()),
+    );
+    if response.double_clicked()
+        && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())
+        && let Some(found) = light_probe::seen_at(&volume, settings, canvas.rect, at)
+    {
+        settings.camera.turn_about(found.point);
+    }
+    if slices.open
+        && response.clicked()
+        && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())
+        && let Some(found) = light_probe::seen_at(&volume, settings, canvas.rect, at)
+    {
+        slices.point_at(found.index, volume.dims());
+    }
+    // Painted first, filled in when the lights have been moved: no frame of delay.
+    let places = [(); 2].map(|()| ui.painter().add(Shape::Noop));
+    let moving =
+        ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
+    marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
+    let sight = Sight { camera: settings.camera.clone(), picture: canvas.rect };
+    slices.mark(&ui.painter_at(canvas.rect), &sight, &scene);
+    cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
+    handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
+    if let Some(view) = marks.show(ui, canvas.rect, &settings.camera, (&scene, is_anatomical)) {
+        commands.push(Command::LookFrom(view));
+    }
+    if marks.on {
+        light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
+    }
+    if let Some((volume, _)) = viewport.volume().filter(|_| probe.on) {
+        let pointer = response.hover_pos().filter(|_| !response.dragged());
+        probe.show(ui, canvas.rect, settings, &volume, pointer);
+    }
+    settings.sanitise();
+    let result = if canvas.size.contains(&0) {
+        Ok(())
+    } else {
+        viewport.advance(compare.looks(settings), canvas.size, ui.ctx())
+    };
+    hints.show(ui, canvas.rect, &response);
+    let pictures = viewport.pictures();
+    compare.ui(ui, canvas.rect, &pictures);
+    for (place, (part, shape)) in places.into_iter().zip(compare.shapes(canvas.rect, &pictures)) {
+        ui.painter_at(part).set(place, shape);
+    }
+    (canvas, result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_canvas_lies_on_the_pixel_grid() {
+        for pixels_per_point in [1.0f32, 1.25, 1.5, 1.75, 2.0, 3.0] {
+            let rect = Rect::from_min_max(pos2(0.3, 23.7), pos2(701.1, 555.5));
+            let canvas = Canvas::within(rect, pixels_per_point);
+            for edge in [canvas.rect.min.x, canvas.rect.min.y, canvas.rect.max.x, canvas.rect.max.y] {
+                let pixel = edge * pixels_per_point;
+                assert!((pixel - pixel.round()).abs() < 1e-3, "{pixel} at {pixels_per_point}");
+            }
+            let width = canvas.rect.width() * pixels_per_point;
+            assert!((width - canvas.size[0] as f32).abs() < 1e-3);
+        }
+        assert_eq!(Canvas::within(Rect::from_min_max(pos2(5.0, 5.0), pos2(4.0, 5.0)), 1.0).size, [0, 0]);
+    }
+}

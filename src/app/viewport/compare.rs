@@ -1,0 +1,132 @@
+//! Two looks in one picture: left and right of a divider, or what lies between them.
+
+use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Stroke, Ui};
+use eframe::egui::{WidgetInfo, pos2, vec2};
+
+use super::{Pictures, paint_callback as plate};
+use crate::app::shell::theme;
+use crate::app::text;
+use crate::gpu::Distance;
+use crate::model::{Settings, Variant};
+
+/// Points to either side of the divider in which it can be taken.
+const GRIP: f32 = 7.0;
+/// Radius of its handle.
+const HANDLE: f32 = 9.0;
+
+/// What is compared, and how.
+#[derive(Debug, Clone)]
+pub(crate) struct Compare {
+    /// Whether two looks are shown.
+    pub on: bool,
+    /// Left of the divider …
+    pub left: Variant,
+    /// … and right of it.
+    pub right: Variant,
+    /// Show what lies between them instead.
+    pub difference: bool,
+    /// The divider's place, as a share of the width.
+    divider: f32,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        Self { on: false, left: Variant::Current, right: Variant::Off, difference: false, divider: 0.5 }
+    }
+}
+
+impl Compare {
+    /// Shows the current look on the left and another one on the right.
+    pub(crate) fn with(&mut self, look: Settings) {
+        (self.on, self.left, self.right) = (true, Variant::Current, Variant::Look(Box::new(look)));
+    }
+
+    /// What is to be rendered: the look, or the left and the right one.
+    pub(crate) fn looks(&self, settings: &Settings) -> (Settings, Option<Settings>) {
+        // Kept views are no part of a picture.
+        let settings = Settings { views: std::collections::BTreeMap::new(), ..settings.clone() };
+        if self.on { (self.left.of(&settings), Some(self.right.of(&settings))) } else { (settings, None) }
+    }
+
+    /// The picture, or two of them, and the part of the rectangle in which each is seen.
+    pub(crate) fn shapes(&self, rect: Rect, pictures: &Pictures) -> [(Rect, Shape); 2] {
+        let nothing = || (rect, Shape::Noop);
+        let opaque = |picture| plate::picture(rect, picture, u8::MAX);
+        let Some(left) = &pictures.left else {
+            return [(rect, Shape::rect_filled(rect, 0.0, theme::STAGE)), nothing()];
+        };
+        let Some(other) = pictures.other.as_ref().filter(|_| self.on) else {
+            let fading = pictures.fading.as_ref();
+            let faded = fading.map(|(before, left)| (rect, plate::picture(rect, before, *left)));
+            return [(rect, opaque(left)), faded.unwrap_or_else(nothing)];
+        };
+        if self.difference {
+            return [(rect, opaque(&other.difference)), nothing()];
+        }
+        let (left_part, right_part) = rect.split_left_right_at_fraction(self.divider);
+        [(left_part, opaque(left)), (right_part, opaque(&other.right))]
+    }
+
+    /// The divider and what is known of the difference, over the picture.
+    pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, pictures: &Pictures) {
+        if !self.on || rect.width() < 4.0 * GRIP {
+            return;
+        }
+        if !self.difference {
+            self.divide(ui, rect);
+        }
+        let [left, right] = [&self.left, &self.right].map(text::compared::variant);
+        let label = |at: Pos2, align: Align2, text: &str| chip(ui, at, align, text);
+        let top = rect.top() + 8.0;
+        if self.difference {
+            let words = text::picture::difference(left, right);
+            label(pos2(rect.center().x, top), Align2::CENTER_TOP, &words);
+        } else {
+            // Beside the divider: lights and cube have the corners.
+            let x = rect.left() + self.divider * rect.width();
+            label(pos2(x - GRIP, top), Align2::RIGHT_TOP, left);
+            label(pos2(x + GRIP, top), Align2::LEFT_TOP, right);
+        }
+        if let Some(other) = &pictures.other {
+            let Distance { rmse, largest } = other.distance;
+            let words = text::picture::distance(rmse, largest);
+            label(pos2(rect.center().x, rect.bottom() - 8.0), Align2::CENTER_BOTTOM, &words);
+        }
+    }
+
+    /// The line that can be dragged.
+    fn divide(&mut self, ui: &Ui, rect: Rect) {
+        let x = rect.left() + self.divider * rect.width();
+        let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
+        let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Splitter, true, text::picture::DIVIDER));
+        if let Some(pointer) = response.interact_pointer_pos() {
+            self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+        }
+        let active = response.hovered() || response.dragged();
+        let ink = if active { theme::ACCENT } else { theme::GUIDE };
+        let x = rect.left() + self.divider * rect.width();
+        let painter = ui.painter();
+        painter.vline(x, rect.y_range(), Stroke::new(3.0, theme::OUTLINE));
+        painter.vline(x, rect.y_range(), Stroke::new(1.0, ink));
+        let middle = pos2(x, rect.center().y);
+        painter.circle(middle, HANDLE, theme::OUTLINE, Stroke::new(1.5, ink));
+        for side in [-1.0, 1.0] {
+            let tip = middle + vec2(side * 6.0, 0.0);
+            let base = middle + vec2(side * 2.5, 0.0);
+            let head = vec![tip, base + vec2(0.0, 3.5), base - vec2(0.0, 3.5)];
+            painter.add(Shape::convex_polygon(head, ink, Stroke::NONE));
+        }
+        response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+    }
+}
+
+/// A few words on a dark ground.
+fn chip(ui: &Ui, at: Pos2, align: Align2, text: &str) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter();
+    let galley = painter.layout_no_wrap(text.to_owned(), font, theme::EYE_CURVE);
+    let rect = align.anchor_size(at, galley.size() + vec2(12.0, 6.0));
+    painter.rect_filled(rect, 4.0, theme::OUTLINE.gamma_multiply(0.8));
+    painter.galley(rect.min + vec2(6.0, 3.0), galley, theme::EYE_CURVE);
+}

@@ -1,0 +1,242 @@
+//! Handles in the picture for the crop box and the clip plane: the sides of the box are drawn along their
+//! axes, the plane along its normal, and its normal is turned by the tip of an arrow.
+
+mod outline;
+
+use eframe::egui::{
+    Color32, CursorIcon, Id, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo,
+};
+use glam::DVec3;
+
+use super::orbit::wheel_notches;
+use super::view_projection::Sight;
+use crate::app::shell::theme;
+use crate::app::text;
+use crate::math::SceneSpace;
+use crate::model::{CropBox, MAX_PLANE_OFFSET, MIN_CROP, Settings};
+
+/// Length of the plane's arrow, in scene units.
+const ARROW: f64 = 0.35;
+/// How far a notch of the wheel moves the plane: a hundredth of the volume's longest edge.
+const OFFSET_PER_NOTCH: f64 = 0.02;
+/// Half the edge of a side's handle, in points.
+const SIDE: f32 = 5.5;
+
+/// A drag that is under way.
+#[derive(Debug, Clone, Copy)]
+struct Drag {
+    id: Id,
+    /// From the pointer to the handle.
+    grip: Vec2,
+    /// What the plane is turned about, and whether its arrow points away from the eye.
+    pivot: DVec3,
+    behind: bool,
+}
+
+/// State of the handles between frames.
+#[derive(Debug, Default)]
+pub(crate) struct CutHandles {
+    drag: Option<Drag>,
+    /// The pointer is on the plane's handle, where the wheel moves the plane.
+    pub takes_wheel: bool,
+}
+
+impl CutHandles {
+    /// Shows the handles of what is on, lets the user drag them, and changes the cuts.
+    pub(crate) fn show(
+        &mut self,
+        ui: &Ui,
+        picture: Rect,
+        settings: &mut Settings,
+        scene: &SceneSpace,
+        hidden: bool,
+    ) {
+        self.takes_wheel = false;
+        if hidden {
+            return;
+        }
+        let sight = Sight { camera: settings.camera.clone(), picture };
+        let visible = ui.rect_contains_pointer(picture) || self.drag.is_some();
+        let opacity = ui.ctx().animate_bool_with_time(Id::unique("cut handles"), visible, theme::FADE_S);
+        let mut painter = ui.painter_at(picture);
+        painter.multiply_opacity(opacity);
+        if settings.cuts.crop.on {
+            self.crop(ui, &painter, &sight, &mut settings.cuts.crop, scene);
+        }
+        if settings.cuts.plane.on {
+            self.plane(ui, &painter, &sight, settings, scene);
+        }
+    }
+
+    fn crop(&mut self, ui: &Ui, painter: &Painter, sight: &Sight, crop: &mut CropBox, scene: &SceneSpace) {
+        let stroke = Stroke::new(1.2, theme::ACCENT.gamma_multiply(0.75));
+        for [a, b] in outline::edges(crop, scene) {
+            if let (Some(a), Some(b)) = (sight.point(a), sight.point(b)) {
+                painter.line_segment([a, b], stroke);
+            }
+        }
+        for axis in 0..3 {
+            for is_high in [false, true] {
+                let (at, along) = outline::side(crop, scene, axis, is_high);
+                let Some(position) = sight.point(at) else { continue };
+                let name = text::cut_handles::crop_side(axis, is_high);
+                let id = Id::unique("crop side").with((axis, is_high));
+                let (response, to) = self.interact(ui, id, &name, position, DVec3::ZERO, false);
+                if let Some(to) = to
+                    && let Some(share) = sight.along(to, at, along)
+                {
+                    let (low, high) = (crop.low[axis], crop.high[axis]);
+                    if is_high {
+                        crop.high[axis] = (high + share).clamp(low + MIN_CROP, 1.0);
+                    } else {
+                        crop.low[axis] = (low + share).clamp(0.0, high - MIN_CROP);
+                    }
+                }
+                let now = sight.point(outline::side(crop, scene, axis, is_high).0).unwrap_or(position);
+                square(painter, now, &response);
+            }
+        }
+    }
+
+    fn plane(
+        &mut self,
+        ui: &Ui,
+        painter: &Painter,
+        sight: &Sight,
+        settings: &mut Settings,
+        scene: &SceneSpace,
+    ) {
+        let section = outline::section(&settings.cuts.plane, scene);
+        let border: Vec<Pos2> = section.iter().filter_map(|&corner| sight.point(corner)).collect();
+        if border.len() == section.len() {
+            let stroke = Stroke::new(1.2, theme::ACCENT.gamma_multiply(0.75));
+            painter.add(Shape::closed_line(border, stroke));
+        }
+        let plane = &mut settings.cuts.plane;
+        let normal = plane.unit_normal();
+        let middle = outline::middle(&section, plane);
+        let tip = middle + normal * ARROW;
+        let (Some(at), Some(end)) = (sight.point(middle), sight.point(tip)) else { return };
+        let to_eye = sight.camera.scene_from_view().z_axis;
+        let behind = normal.dot(to_eye) < 0.0;
+
+        // The tip first, so that where both lie on each other the plane is moved.
+        let id = Id::unique("plane tip");
+        let (turned, to) = self.interact(ui, id, text::cut_handles::PLANE_DIRECTION, end, middle, behind);
+        if let (Some(to), Some(drag)) = (to, self.drag) {
+            let (origin, direction) = sight.ray(to);
+            let normal = towards_sphere(origin - drag.pivot, direction, ARROW, drag.behind);
+            plane.normal = normal.into();
+            plane.offset = normal.dot(drag.pivot);
+        }
+        let id = Id::unique("plane middle");
+        let (moved, to) = self.interact(ui, id, text::cut_handles::PLANE_PLACE, at, middle, behind);
+        if let Some(to) = to
+            && let Some(distance) = sight.along(to, middle, normal)
+        {
+            plane.offset += distance;
+        }
+        // The wheel goes through the volume, whether the plane is seen from the side or faces the eye.
+        if moved.hovered() || moved.dragged() {
+            self.takes_wheel = true;
+            plane.offset += wheel_notches(ui) * OFFSET_PER_NOTCH;
+        }
+        plane.offset = plane.offset.clamp(-MAX_PLANE_OFFSET, MAX_PLANE_OFFSET);
+        let middle = outline::middle(&outline::section(plane, scene), plane);
+        let tip = middle + plane.unit_normal() * ARROW;
+        if let (Some(at), Some(end)) = (sight.point(middle), sight.point(tip)) {
+            arrow(painter, at, end);
+            square(painter, at, &moved);
+            knob(painter, end, &turned, behind);
+        }
+    }
+
+    /// A handle: the response, and while it is dragged the place to which it goes.
+    fn interact(
+        &mut self,
+        ui: &Ui,
+        id: Id,
+        name: &str,
+        position: Pos2,
+        pivot: DVec3,
+        behind: bool,
+    ) -> (Response, Option<Pos2>) {
+        let area = Rect::from_center_size(position, Vec2::splat(2.0 * theme::HANDLE_RADIUS + 4.0));
+        let response = ui.interact(area, id, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+        if response.hovered() {
+            ui.ctx().set_cursor_icon(CursorIcon::Grab);
+        }
+        let pointer = response.interact_pointer_pos();
+        if response.drag_started()
+            && let Some(pointer) = pointer
+        {
+            // Where the button went down: egui reports a drag only some points later.
+            let pressed = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
+            self.drag = Some(Drag { id, grip: position - pressed, pivot, behind });
+        }
+        let drag = self.drag.filter(|drag| drag.id == id);
+        if drag.is_some() && !response.dragged() {
+            self.drag = None;
+        }
+        let moves = response.dragged() && ui.input(|input| input.pointer.delta()) != Vec2::ZERO;
+        let to = drag.zip(pointer).filter(|_| moves).map(|(drag, pointer)| pointer + drag.grip);
+        (response, to)
+    }
+}
+
+/// The direction in which a line of sight (its origin relative to the middle) meets a sphere, or passes it.
+fn towards_sphere(origin: DVec3, direction: DVec3, radius: f64, behind: bool) -> DVec3 {
+    let nearest = origin - direction * origin.dot(direction);
+    let half_chord = (radius * radius - nearest.length_squared()).max(0.0).sqrt();
+    let sign = if behind { 1.0 } else { -1.0 };
+    (nearest + direction * (sign * half_chord)).normalize_or(-direction)
+}
+
+/// Size and colour of a handle: under the pointer it grows and brightens.
+fn look(response: &Response) -> (f32, Color32) {
+    if response.hovered() || response.dragged() {
+        (SIDE + 1.5, theme::EYE_CURVE)
+    } else {
+        (SIDE, theme::ACCENT)
+    }
+}
+
+/// What is drawn along an axis.
+fn square(painter: &Painter, at: Pos2, response: &Response) {
+    let (half, ink) = look(response);
+    painter.rect_filled(Rect::from_center_size(at, Vec2::splat(2.0 * half + 3.0)), 2.0, theme::OUTLINE);
+    painter.rect_filled(Rect::from_center_size(at, Vec2::splat(2.0 * half)), 1.5, ink);
+}
+
+/// What is turned; hollow where it points away from the eye.
+fn knob(painter: &Painter, at: Pos2, response: &Response, hollow: bool) {
+    let (radius, ink) = look(response);
+    painter.circle_filled(at, radius + 1.5, theme::OUTLINE);
+    if hollow {
+        painter.circle_stroke(at, radius - 1.0, Stroke::new(2.0, ink));
+    } else {
+        painter.circle_filled(at, radius, ink);
+    }
+}
+
+fn arrow(painter: &Painter, from: Pos2, to: Pos2) {
+    for (width, color) in [(4.0, theme::OUTLINE), (1.8, theme::ACCENT)] {
+        painter.line_segment([from, to], Stroke::new(width, color));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrows_are_turned_by_their_tip() {
+        let origin = DVec3::new(0.1, 0.0, 5.0);
+        let front = towards_sphere(origin, DVec3::NEG_Z, 0.35, false);
+        assert!((front * 0.35 - DVec3::new(0.1, 0.0, 0.11_f64.sqrt() * 1.011)).length() < 0.01, "{front}");
+        assert!(towards_sphere(origin, DVec3::NEG_Z, 0.35, true).z < 0.0);
+        let beside = towards_sphere(DVec3::new(3.0, 4.0, 5.0), DVec3::NEG_Z, 0.35, false);
+        assert!((beside - DVec3::new(0.6, 0.8, 0.0)).length() < 1e-9, "{beside}");
+    }
+}

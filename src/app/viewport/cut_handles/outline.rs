@@ -1,0 +1,109 @@
+//! Where the crop box and the clip plane lie in the scene.
+
+use glam::DVec3;
+
+use crate::math::SceneSpace;
+use crate::model::{ClipPlane, CropBox};
+
+/// The scene point at shares of the grid along its axes.
+fn place(scene: &SceneSpace, share: DVec3) -> DVec3 {
+    let dims = DVec3::from(scene.dims.map(|n| n as f64));
+    scene.scene_from_index.transform_point3(share * dims - 0.5)
+}
+
+/// The twelve pairs of neighbouring corners of a box, by the bits of their numbers.
+fn corner_pairs() -> impl Iterator<Item = [usize; 2]> {
+    (0..8_usize).flat_map(|from| {
+        (0..3).filter(move |axis| from >> axis & 1 == 0).map(move |axis| [from, from | 1 << axis])
+    })
+}
+
+fn corner(low: DVec3, high: DVec3, at: usize) -> DVec3 {
+    DVec3::from([0, 1, 2].map(|axis| if at >> axis & 1 == 0 { low[axis] } else { high[axis] }))
+}
+
+/// The edges of a crop box, in the scene.
+pub(crate) fn edges(crop: &CropBox, scene: &SceneSpace) -> Vec<[DVec3; 2]> {
+    let (low, high) = (crop.low.into(), crop.high.into());
+    corner_pairs().map(|pair| pair.map(|at| place(scene, corner(low, high, at)))).collect()
+}
+
+/// The middle of a side of a crop box, and all of the grid along that axis.
+pub(crate) fn side(crop: &CropBox, scene: &SceneSpace, axis: usize, is_high: bool) -> (DVec3, DVec3) {
+    let (low, high) = (DVec3::from(crop.low), DVec3::from(crop.high));
+    let mut share = (low + high) / 2.0;
+    share[axis] = if is_high { high[axis] } else { low[axis] };
+    let along = scene.scene_from_index.transform_vector3(DVec3::AXES[axis] * scene.dims[axis] as f64);
+    (place(scene, share), along)
+}
+
+/// What a clip plane cuts out of the grid's box: the corners of a convex polygon, in order; none if it lies
+/// outside.
+pub(crate) fn section(plane: &ClipPlane, scene: &SceneSpace) -> Vec<DVec3> {
+    let normal = plane.unit_normal();
+    let above = |point: DVec3| normal.dot(point) - plane.offset;
+    let met = corner_pairs().filter_map(|pair| {
+        let [a, b] = pair.map(|at| place(scene, corner(DVec3::ZERO, DVec3::ONE, at)));
+        let (from, to) = (above(a), above(b));
+        ((from < 0.0) != (to < 0.0)).then(|| a.lerp(b, from / (from - to)))
+    });
+    let mut corners: Vec<DVec3> = met.collect();
+    if corners.len() < 3 {
+        return Vec::new();
+    }
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    let across = normal.any_orthonormal_vector();
+    let up = normal.cross(across);
+    let turn = |corner: &DVec3| (*corner - middle).dot(up).atan2((*corner - middle).dot(across));
+    corners.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+    corners
+}
+
+/// Where the handle of a clip plane is: in the middle of its section, or as near to the volume's as it gets.
+pub(crate) fn middle(section: &[DVec3], plane: &ClipPlane) -> DVec3 {
+    if section.is_empty() {
+        return plane.unit_normal() * plane.offset;
+    }
+    section.iter().sum::<DVec3>() / section.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DAffine3;
+
+    fn scene() -> SceneSpace {
+        SceneSpace::new([20, 10, 20], DAffine3::IDENTITY)
+    }
+
+    #[test]
+    fn sides_move_along_their_axes() {
+        let crop = CropBox { low: [0.25, 0.0, 0.5], ..CropBox::default() };
+        let (at, along) = side(&crop, &scene(), 0, false);
+        assert!((at - DVec3::new(-0.5, 0.0, 0.5)).length() < 1e-9, "{at}");
+        assert!((along - DVec3::X * 2.0).length() < 1e-9, "{along}");
+        let moved = CropBox { low: [0.35, 0.0, 0.5], ..crop };
+        assert!((side(&moved, &scene(), 0, false).0 - at - along * 0.1).length() < 1e-9);
+        assert_eq!(edges(&moved, &scene()).len(), 12);
+    }
+
+    #[test]
+    fn sections_are_convex_polygons() {
+        let plane = |normal: [f64; 3], offset| ClipPlane { on: true, normal, offset, ..ClipPlane::default() };
+        for (normal, corners) in
+            [([0.0, 1.0, 0.0], 4), ([1.0, 10.0, 1.0], 4), ([1.0, 1.0, 1.0], 6), ([1.0, 2.0, 1.0], 6)]
+        {
+            let plane = plane(normal, 0.0);
+            let section = section(&plane, &scene());
+            assert_eq!(section.len(), corners, "{normal:?}");
+            for at in 0..section.len() {
+                let [a, b, c] = [0, 1, 2].map(|step| section[(at + step) % section.len()]);
+                assert!((b - a).cross(c - b).dot(plane.unit_normal()) > -1e-12, "{normal:?}: {section:?}");
+            }
+            assert!(middle(&section, &plane).length() < 1e-9);
+        }
+        let beyond = plane([0.0, 1.0, 0.0], 0.6);
+        assert!(section(&beyond, &scene()).is_empty());
+        assert_eq!(middle(&[], &beyond), DVec3::Y * 0.6);
+    }
+}

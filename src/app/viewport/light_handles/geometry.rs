@@ -1,0 +1,240 @@
+//! Where light handles are, and where a light goes when its handle is dragged.
+
+use std::f64::consts::TAU;
+
+use eframe::egui::{Pos2, Rect, pos2};
+use glam::DVec3;
+
+use super::theme;
+use crate::app::viewport::view_projection::Sight;
+use crate::model::{Camera, Light, LightKind, Projection};
+
+/// The sphere of parallel lights is a little larger than the volume …
+const SPHERE_PER_SUPPORT: f64 = 1.15;
+/// … but fits in the picture: share of the way to the border.
+const SPHERE_PER_VIEW: f64 = 0.9;
+/// A panned volume must not shrink its sphere to nothing: share of half the picture's shorter side.
+const LEAST_ROOM: f64 = 0.5;
+/// Distance of a perspective light from the eye per notch of the wheel.
+const SIGHT_PER_NOTCH: f64 = 1.06;
+/// Corners of a circle's polyline.
+const CIRCLE_POINTS: usize = 96;
+
+/// Where a handle is painted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Handle {
+    /// In points.
+    pub position: Pos2,
+    /// Further from the eye than the middle of the volume.
+    pub behind: bool,
+}
+
+/// The camera over the picture's rectangle.
+#[derive(Debug, Clone)]
+pub(crate) struct View {
+    sight: Sight,
+    radius: f64,
+}
+
+impl View {
+    /// `picture` in points; `support_radius` of the volume in scene units.
+    pub(crate) fn new(camera: Camera, picture: Rect, support_radius: f64) -> Self {
+        let (width, height) = (f64::from(picture.width()), f64::from(picture.height()).max(1.0));
+        // From the middle of the volume to the nearest border, as long as it is well in the picture.
+        let half = width.min(height) / 2.0;
+        let room = camera
+            .pixel_from_scene(DVec3::ZERO, width, height)
+            .map_or(half, |(x, y, _)| x.min(width - x).min(y).min(height - y).clamp(LEAST_ROOM * half, half));
+        let tan = camera.half_height_at_target() * room / (height / 2.0) * SPHERE_PER_VIEW / camera.distance;
+        let fits = match camera.projection {
+            // The silhouette of a sphere seen from a finite distance is larger than its radius.
+            Projection::Perspective => camera.distance * tan / (1.0 + tan * tan).sqrt(),
+            Projection::Orthographic => camera.distance * tan,
+        };
+        Self { sight: Sight { camera, picture }, radius: (SPHERE_PER_SUPPORT * support_radius).min(fits) }
+    }
+
+    /// Where a scene point is seen, in points; `None` behind the eye.
+    pub(crate) fn point(&self, scene: DVec3) -> Option<Pos2> {
+        self.sight.point(scene)
+    }
+
+    /// Whether a place of the window is well within the picture.
+    pub(crate) fn shows(&self, at: Pos2) -> bool {
+        self.sight.picture.shrink(theme::HANDLE_RADIUS).contains(at)
+    }
+
+    /// From the eye to a point along the axis of view.
+    fn depth(&self, scene: DVec3) -> f64 {
+        (self.sight.camera.eye() - scene).dot(self.sight.camera.scene_from_view().z_axis)
+    }
+
+    /// The handle of a light; `None` for one behind the eye.
+    pub(crate) fn handle(&self, light: &Light) -> Option<Handle> {
+        let scene = match light.kind {
+            LightKind::Parallel => light.direction() * self.radius,
+            LightKind::Perspective => DVec3::from(light.position),
+        };
+        let position = self.point(scene)?;
+        let inner = self.sight.picture.shrink(theme::HANDLE_INSET);
+        let position = pos2(
+            position.x.clamp(inner.min.x, inner.max.x.max(inner.min.x)),
+            position.y.clamp(inner.min.y, inner.max.y.max(inner.min.y)),
+        );
+        Some(Handle { position, behind: self.depth(scene) > self.depth(DVec3::ZERO) + 1e-9 })
+    }
+
+    /// To the right of the picture, in scene space.
+    pub(crate) fn right(&self) -> DVec3 {
+        self.sight.camera.scene_from_view().x_axis
+    }
+
+    /// The scene point that is seen at a place of the window, on the plane through `through` that faces the eye.
+    pub(crate) fn facing(&self, through: DVec3, at: Pos2) -> Option<DVec3> {
+        let (origin, direction) = self.sight.ray(at);
+        let normal = self.sight.camera.scene_from_view().z_axis;
+        let along = (through - origin).dot(normal) / direction.dot(normal);
+        along.is_finite().then(|| origin + direction * along)
+    }
+
+    /// Moves a light so that its handle comes to lie at a point of the window.
+    pub(crate) fn move_light(&self, light: &mut Light, to: Pos2, behind: bool) {
+        let (origin, direction) = self.sight.ray(to);
+        let position = DVec3::from(light.position);
+        light.position = match light.kind {
+            LightKind::Parallel => {
+                (self.on_sphere(origin, direction, behind) * position.length().max(1e-3)).into()
+            }
+            LightKind::Perspective => self.facing(position, to).map_or(light.position, Into::into),
+        };
+    }
+
+    /// Where a ray meets the sphere, as a direction from its middle. Rays that miss it give the
+    /// point of the silhouette that is nearest to them.
+    fn on_sphere(&self, origin: DVec3, direction: DVec3, behind: bool) -> DVec3 {
+        let middle = -origin.dot(direction);
+        let nearest = origin + direction * middle;
+        let half_chord = self.radius * self.radius - nearest.length_squared();
+        let met = if half_chord > 0.0 {
+            let sign = if behind { 1.0 } else { -1.0 };
+            nearest + direction * (sign * half_chord.sqrt())
+        } else {
+            nearest
+        };
+        met.normalize_or(DVec3::Z)
+    }
+
+    /// Moves a perspective light nearer to the eye or further away, along the line of sight.
+    pub(crate) fn move_along_sight(&self, light: &mut Light, notches: f64) {
+        if light.kind == LightKind::Parallel {
+            return;
+        }
+        let position = DVec3::from(light.position);
+        let factor = SIGHT_PER_NOTCH.powf(notches);
+        light.position = match self.sight.camera.projection {
+            Projection::Perspective => {
+                (self.sight.camera.eye() + (position - self.sight.camera.eye()) * factor).into()
+            }
+            Projection::Orthographic => {
+                let step = self.depth(position) * (factor - 1.0);
+                (position - self.sight.camera.scene_from_view().z_axis * step).into()
+            }
+        };
+    }
+
+    /// Of the sphere on which handles of parallel lights lie, in scene units.
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The circle of the sphere that faces the eye.
+    pub(crate) fn silhouette(&self) -> Vec<Pos2> {
+        let view = self.sight.camera.scene_from_view();
+        self.circle(view.x_axis, view.y_axis)
+    }
+
+    /// The great circle through a direction and the line of sight.
+    pub(crate) fn meridian(&self, direction: DVec3) -> Vec<Pos2> {
+        let view = self.sight.camera.scene_from_view();
+        let across = direction.reject_from(view.z_axis).normalize_or(view.x_axis);
+        self.circle(across, view.z_axis)
+    }
+
+    fn circle(&self, a: DVec3, b: DVec3) -> Vec<Pos2> {
+        let at = |i: usize| {
+            let (sin, cos) = (i as f64 / CIRCLE_POINTS as f64 * TAU).sin_cos();
+            self.point((a * cos + b * sin) * self.radius)
+        };
+        (0..=CIRCLE_POINTS).filter_map(at).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::vec2;
+
+    fn view(projection: Projection) -> View {
+        let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(640.0, 480.0));
+        View::new(Camera { projection, ..Camera::default() }, picture, 1.8)
+    }
+
+    fn light(kind: LightKind) -> Light {
+        Light { kind, position: [0.3, -1.5, 0.8], ..Light::default() }
+    }
+
+    #[test]
+    fn a_dragged_handle_stays_under_the_pointer() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            for kind in [LightKind::Parallel, LightKind::Perspective] {
+                let (view, mut light) = (view(projection), light(kind));
+                let before = view.handle(&light).unwrap();
+                let to = before.position + vec2(25.0, 18.0);
+                let length = DVec3::from(light.position).length();
+                view.move_light(&mut light, to, before.behind);
+                let after = view.handle(&light).unwrap();
+                assert!(
+                    after.position.distance(to) < 0.1,
+                    "{projection:?} {kind:?}: {after:?}, wanted {to:?}"
+                );
+                assert_eq!(after.behind, before.behind);
+                if kind == LightKind::Parallel {
+                    assert!((DVec3::from(light.position).length() - length).abs() < 1e-9);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn handles_stay_on_their_side_and_in_the_picture() {
+        let view = view(Projection::Perspective);
+        let mut light = light(LightKind::Parallel);
+        light.position = (-DVec3::from(light.position)).into();
+        let before = view.handle(&light).unwrap();
+        assert!(before.behind);
+        view.move_light(&mut light, before.position + vec2(5.0, 5.0), true);
+        assert!(view.handle(&light).unwrap().behind);
+        // Far beyond the silhouette, towards the lower right.
+        view.move_light(&mut light, pos2(5000.0, 4000.0), false);
+        let handle = view.handle(&light).unwrap();
+        assert!(
+            view.sight.picture.contains(handle.position) && handle.position.x > view.sight.picture.center().x
+        );
+        let far = Light { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..Light::default() };
+        if let Some(handle) = view.handle(&far) {
+            assert!(view.sight.picture.contains(handle.position));
+        }
+    }
+
+    #[test]
+    fn the_wheel_moves_a_perspective_light_along_the_line_of_sight() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let (view, mut light) = (view(projection), light(LightKind::Perspective));
+            let before = view.handle(&light).unwrap().position;
+            let depth = view.depth(DVec3::from(light.position));
+            view.move_along_sight(&mut light, 1.0);
+            assert!(view.handle(&light).unwrap().position.distance(before) < 0.1);
+            assert!(view.depth(DVec3::from(light.position)) > depth);
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Lines that help while a light is moved: where it stands over the ground, its sphere, the cone of its hood.
+
+use std::f64::consts::TAU;
+
+use eframe::egui::{Painter, Pos2, Shape, Stroke};
+use glam::DVec3;
+
+use super::geometry::View;
+use crate::app::shell::theme;
+use crate::model::{Light, LightKind};
+
+/// Corners of a circle.
+const CORNERS: usize = 72;
+/// Lines from a hood's light to the rim of its cone.
+const RIBS: usize = 6;
+
+/// Paints all that help with a light, whose position refers to the scene, over a ground at that height.
+pub(crate) fn paint(painter: &Painter, view: &View, light: &Light, ground: f64) {
+    let line = |points: &[DVec3], strength: f32| {
+        let seen: Option<Vec<Pos2>> = points.iter().map(|&point| view.point(point)).collect();
+        if let Some(seen) = seen {
+            painter.add(Shape::line(seen, Stroke::new(1.0, theme::GUIDE.gamma_multiply(strength))));
+        }
+    };
+    if light.kind == LightKind::Parallel {
+        for (circle, strength) in [(view.silhouette(), 0.5), (view.meridian(light.direction()), 0.35)] {
+            painter.add(Shape::line(circle, Stroke::new(1.0, theme::GUIDE.gamma_multiply(strength))));
+        }
+    }
+    let place = match light.kind {
+        LightKind::Parallel => light.direction() * view.radius(),
+        LightKind::Perspective => light.position.into(),
+    };
+    let Stand { ring, foot, middle } = Stand::of(place, ground);
+    line(&ring, 0.3);
+    line(&[middle, foot], 0.3);
+    line(&[place, foot], 0.6);
+    for rib in hood(light) {
+        line(&rib, 0.6);
+    }
+    if let (Some(from), Some(to)) = (view.point(place), view.point(DVec3::ZERO)) {
+        let stroke = Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.7));
+        painter.extend(Shape::dashed_line(&[from, to], stroke, 4.0, 4.0));
+    }
+}
+
+/// Where a place stands over the ground.
+struct Stand {
+    /// All places as far from the middle.
+    ring: Vec<DVec3>,
+    /// Right below it, or above.
+    foot: DVec3,
+    /// Of the ring.
+    middle: DVec3,
+}
+
+impl Stand {
+    fn of(place: DVec3, ground: f64) -> Self {
+        let middle = DVec3::Z * ground;
+        let radius = place.truncate().length();
+        let at = |corner: usize| {
+            let (sin, cos) = (corner as f64 / CORNERS as f64 * TAU).sin_cos();
+            middle + DVec3::new(cos, sin, 0.0) * radius
+        };
+        Self { ring: (0..=CORNERS).map(at).collect(), foot: place.with_z(ground), middle }
+    }
+}
+
+/// The cone of a hood, up to the middle of the volume: its rim, and lines to it. None without a hood.
+fn hood(light: &Light) -> Vec<Vec<DVec3>> {
+    if light.kind != LightKind::Perspective || !light.hood.on {
+        return Vec::new();
+    }
+    let place = DVec3::from(light.position);
+    let axis = -light.direction();
+    let reach = place.length();
+    let across = axis.any_orthonormal_vector();
+    let up = axis.cross(across);
+    let rim = |share: f64| {
+        let (sin, cos) = (share * TAU).sin_cos();
+        let slope = light.hood.half_angle_deg.to_radians().tan();
+        place + (axis + (across * cos + up * sin) * slope) * reach
+    };
+    let circle = (0..=CORNERS).map(|corner| rim(corner as f64 / CORNERS as f64)).collect();
+    let ribs = (0..RIBS).map(|rib| vec![place, rim(rib as f64 / RIBS as f64)]);
+    std::iter::once(circle).chain(ribs).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Hood;
+
+    #[test]
+    fn lights_stand_over_the_ground() {
+        let stand = Stand::of(DVec3::new(3.0, -4.0, 2.0), -1.0);
+        assert_eq!((stand.foot, stand.middle), (DVec3::new(3.0, -4.0, -1.0), DVec3::new(0.0, 0.0, -1.0)));
+        assert!(stand.ring.iter().all(|point| ((*point - stand.middle).length() - 5.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn cones_are_as_wide_as_their_hoods() {
+        let hooded = Hood { on: true, half_angle_deg: 30.0, rim_deg: 5.0 };
+        let mut light = Light {
+            kind: LightKind::Perspective,
+            position: [0.0, 0.0, 2.0],
+            hood: hooded,
+            ..Light::default()
+        };
+        let cone = hood(&light);
+        assert_eq!(cone.len(), 1 + RIBS);
+        let place = DVec3::from(light.position);
+        for point in &cone[0] {
+            let angle = (*point - place).angle_between(DVec3::NEG_Z).to_degrees();
+            assert!((angle - 30.0).abs() < 1e-9 && point.z.abs() < 1e-9, "{point}");
+        }
+        light.hood.on = false;
+        assert!(hood(&light).is_empty());
+    }
+}

@@ -1,0 +1,162 @@
+//! The handle on the rim of a hood's cone: dragging it opens and closes the hood.
+
+use std::f64::consts::FRAC_PI_4;
+use std::ops::RangeInclusive;
+
+use eframe::egui::{self, Id, Painter, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo};
+use glam::DVec3;
+
+use super::geometry::View;
+use crate::app::shell::theme;
+use crate::app::text;
+use crate::model::{Hood, Light, LightKind};
+
+/// Half angles that can be dragged, in degrees, as in the side panel.
+const HALF_ANGLES_DEG: RangeInclusive<f64> = 1.0..=89.0;
+
+/// Half the edge of the handle, in points.
+const HALF_EDGE: f32 = 5.0;
+
+/// Whether a light has a cone.
+fn has_cone(light: &Light) -> bool {
+    light.kind == LightKind::Perspective && light.hood.on
+}
+
+/// How far along the cone the handle may be: shares of the way to where the cone is as deep as the middle of the
+/// volume.
+const SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
+
+/// Where around the cone it may be, in eighths of a turn from the right: sides before corners.
+const EIGHTHS: [u8; 8] = [0, 4, 2, 6, 1, 3, 5, 7];
+
+/// A line on a cone, and a share of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Spot {
+    eighth: u8,
+    share: f64,
+}
+
+impl Spot {
+    /// Across the axis of the cone, towards the line.
+    fn across(self, view: &View, light: &Light) -> DVec3 {
+        let axis = light.direction();
+        let right = view.right().reject_from(axis).normalize_or(axis.any_orthonormal_vector());
+        let (sin, cos) = (f64::from(self.eighth) * FRAC_PI_4).sin_cos();
+        right * cos + axis.cross(right) * sin
+    }
+
+    fn place(self, view: &View, light: &Light) -> DVec3 {
+        let position = DVec3::from(light.position);
+        let slope = light.hood.half_angle_deg.to_radians().tan();
+        position + (self.across(view, light) * slope - light.direction()) * position.length() * self.share
+    }
+
+    /// The first that the picture shows, as far along as possible.
+    fn seen(view: &View, light: &Light) -> Option<Self> {
+        let spots = SHARES.iter().flat_map(|&share| EIGHTHS.map(|eighth| Self { eighth, share }));
+        let is_seen = |spot: &Self| view.point(spot.place(view, light)).is_some_and(|at| view.shows(at));
+        spots.into_iter().find(is_seen)
+    }
+
+    /// The half angle of a cone from a light through a point; on the other side of its axis, the least.
+    fn half_angle_deg(self, view: &View, light: &Light, through: DVec3) -> f64 {
+        let ray = through - DVec3::from(light.position);
+        let is_beyond = ray.dot(self.across(view, light)) < 0.0;
+        let angle = if is_beyond { 0.0 } else { (-light.direction()).angle_between(ray).to_degrees() };
+        angle.clamp(*HALF_ANGLES_DEG.start(), *HALF_ANGLES_DEG.end())
+    }
+}
+
+/// State of the handle between frames.
+#[derive(Debug, Default)]
+pub(crate) struct HoodHandle {
+    /// What is being dragged.
+    dragged: Option<Spot>,
+    /// The pointer is on it, or drags it.
+    active: bool,
+}
+
+impl HoodHandle {
+    /// Whether the pointer is on it, or drags it.
+    pub(crate) fn is_active(&self) -> bool {
+        self.active
+    }
+
+    /// Shows the handle of a light, which refers to the scene. Returns the half angle that it is dragged to.
+    pub(crate) fn show(
+        &mut self,
+        ui: &Ui,
+        painter: &Painter,
+        view: &View,
+        light: &Light,
+        index: usize,
+    ) -> Option<f64> {
+        let dragged = self.dragged.take();
+        self.active = false;
+        let spot = dragged.or_else(|| Spot::seen(view, light)).filter(|_| has_cone(light))?;
+        let at = spot.place(view, light);
+        let seen = view.point(at)?;
+        let area = Rect::from_center_size(seen, Vec2::splat(2.0 * HALF_EDGE + 6.0));
+        let response = ui.interact(area, Id::unique("hood handle").with(index), Sense::drag());
+        let name = text::lights::hood_handle(&light.name);
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+        self.dragged = response.dragged().then_some(spot);
+        self.active = response.hovered() || response.dragged();
+        if self.active {
+            ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
+        }
+        let edge = Vec2::splat(2.0 * HALF_EDGE + if self.active { 2.0 } else { 0.0 });
+        let square = Rect::from_center_size(seen, edge);
+        let outline = Stroke::new(1.5, theme::OUTLINE);
+        painter.rect(square, 1.0, theme::color(light.color), outline, StrokeKind::Outside);
+        let pointer = response.interact_pointer_pos().filter(|_| response.dragged());
+        let moved = pointer.filter(|_| ui.input(|input| input.pointer.delta()) != Vec2::ZERO);
+        let half_angle_deg = spot.half_angle_deg(view, light, view.facing(at, moved?)?);
+        // Not so far that nobody could grab it any more.
+        let hood = Hood { half_angle_deg, ..light.hood };
+        let moved = spot.place(view, &Light { hood, ..light.clone() });
+        view.point(moved).is_some_and(|at| view.shows(at)).then_some(half_angle_deg)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Camera;
+    use eframe::egui::Pos2;
+
+    #[test]
+    fn the_cone_follows_the_pointer() {
+        let picture = Rect::from_min_size(Pos2::new(10.0, 20.0), Vec2::new(800.0, 600.0));
+        let view = View::new(Camera::default(), picture, 1.2);
+        let mut light = Light {
+            kind: LightKind::Perspective,
+            position: [0.4, -1.1, 2.0],
+            hood: Hood { on: true, half_angle_deg: 20.0, rim_deg: 5.0 },
+            ..Light::default()
+        };
+        let spot = Spot::seen(&view, &light).unwrap();
+        assert_eq!(spot, Spot { eighth: 0, share: 1.0 });
+        let at = spot.place(&view, &light);
+        let seen = view.point(at).unwrap();
+        assert!((spot.half_angle_deg(&view, &light, at) - 20.0).abs() < 1e-9, "where it is, nothing changes");
+        assert!(seen.x > view.point(DVec3::ZERO).unwrap().x, "on the right");
+        let wider = view.facing(at, seen + Vec2::new(40.0, 0.0)).unwrap();
+        let angle = spot.half_angle_deg(&view, &light, wider);
+        assert!(angle > 21.0);
+        light.hood.half_angle_deg = angle;
+        let followed = view.point(spot.place(&view, &light)).unwrap();
+        assert!((followed - seen).x > 20.0, "{:?}", followed - seen);
+        let beyond = view.facing(at, seen - Vec2::new(500.0, 0.0)).unwrap();
+        let closed = spot.half_angle_deg(&view, &light, beyond);
+        assert_eq!(closed, 1.0, "closed, and not open to the other side");
+        // Wherever the light is, some spot of its cone can be grabbed.
+        for position in [[0.0, 0.0, 6.0], [4.0, 3.0, 2.0], [-5.0, 0.1, 0.0], [0.0, 3.0, -1.0]] {
+            let light = Light { position, ..light.clone() };
+            let spot = Spot::seen(&view, &light).expect("a spot");
+            assert!(view.shows(view.point(spot.place(&view, &light)).unwrap()));
+        }
+        light.hood.on = false;
+        assert!(!has_cone(&light));
+    }
+}

@@ -1,0 +1,162 @@
+//! Handles in the picture by which lights are dragged.
+//!
+//! A parallel light's handle lies on a sphere around the volume and is turned like a trackball; a
+//! perspective light's handle lies where the light is and moves in the plane that faces the eye.
+//! Handles are painted by the window over the picture and are therefore never in an export.
+
+mod geometry;
+mod guides;
+mod hood_handle;
+
+use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke, Vec2, WidgetInfo};
+
+use self::geometry::View;
+use self::hood_handle::HoodHandle;
+use super::orbit::wheel_notches;
+use crate::app::shell::theme;
+use crate::app::text;
+use crate::model::{LightKind, Settings};
+
+/// A drag that is under way.
+#[derive(Debug, Clone, Copy)]
+struct Drag {
+    light: usize,
+    /// The handle was on the far side of its sphere.
+    behind: bool,
+    /// From the pointer to the handle.
+    grip: Vec2,
+}
+
+/// State of the handles between frames.
+#[derive(Debug, Default)]
+pub(crate) struct LightHandles {
+    /// The user does not want them.
+    pub hidden: bool,
+    drag: Option<Drag>,
+    /// That of the selected light.
+    hood: HoodHandle,
+    /// The pointer is on a handle for which the wheel means distance.
+    pub takes_wheel: bool,
+    /// Where they were painted last, in points.
+    positions: Vec<Pos2>,
+}
+
+impl LightHandles {
+    /// Where the handles are, in points; empty while hidden.
+    pub(crate) fn positions(&self) -> &[Pos2] {
+        &self.positions
+    }
+
+    /// Shows the handles, lets the user drag them, and moves the lights.
+    pub(crate) fn show(
+        &mut self,
+        ui: &egui::Ui,
+        picture: Rect,
+        settings: &mut Settings,
+        support_radius: f64,
+        selected: &mut usize,
+    ) {
+        self.positions.clear();
+        self.takes_wheel = false;
+        if self.hidden {
+            return;
+        }
+        let view = View::new(settings.camera.clone(), picture, support_radius);
+        let hovered = ui.rect_contains_pointer(picture);
+        let visible = hovered || self.drag.is_some();
+        let opacity = ui.ctx().animate_bool_with_time(Id::unique("light handles"), visible, theme::FADE_S);
+        let mut painter = ui.painter_at(picture);
+        painter.multiply_opacity(opacity);
+        for light in 0..settings.lights.len() {
+            if !settings.lights[light].on {
+                continue;
+            }
+            let seen = |settings: &Settings| view.handle(&settings.lights[light].in_world(&settings.camera));
+            let Some(handle) = seen(settings) else { continue };
+            let area = Rect::from_center_size(handle.position, Vec2::splat(2.0 * theme::HANDLE_RADIUS + 6.0));
+            let response = ui.interact(area, Id::unique("light handle").with(light), Sense::click_and_drag());
+            let name = text::lights::handle(&settings.lights[light].name);
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+            self.drag(ui, &response, &view, &handle, light, settings, selected);
+            let active = response.hovered() || self.drag.is_some_and(|drag| drag.light == light);
+            let handle = seen(settings).unwrap_or(handle);
+            self.positions.push(handle.position);
+            let lamp = settings.lights[light].in_world(&settings.camera);
+            if active || (*selected == light && self.hood.is_active()) {
+                guides::paint(&painter, &view, &lamp, settings.ground.height);
+            }
+            if *selected == light
+                && let Some(half_angle_deg) = self.hood.show(ui, &painter, &view, &lamp, light)
+            {
+                settings.lights[light].hood.half_angle_deg = half_angle_deg;
+            }
+            let color = theme::color(settings.lights[light].color);
+            let radius = theme::HANDLE_RADIUS + if active { 1.5 } else { 0.0 };
+            if *selected == light {
+                painter.circle_stroke(handle.position, radius + 4.0, Stroke::new(1.5, theme::ACCENT));
+            }
+            paint_handle(&painter, handle.position, radius, color, handle.behind);
+            if response.hovered() {
+                ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
+            }
+        }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one call, right above")]
+    fn drag(
+        &mut self,
+        ui: &egui::Ui,
+        response: &Response,
+        view: &View,
+        handle: &geometry::Handle,
+        light: usize,
+        settings: &mut Settings,
+        selected: &mut usize,
+    ) {
+        if response.clicked() || response.drag_started() {
+            *selected = light;
+        }
+        let pointer = response.interact_pointer_pos();
+        if response.drag_started()
+            && let Some(pointer) = pointer
+        {
+            // Where the button went down: egui reports a drag only some points later.
+            let pressed = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
+            self.drag = Some(Drag { light, behind: handle.behind, grip: handle.position - pressed });
+        }
+        if let (Some(drag), Some(pointer)) = (self.drag, pointer)
+            && drag.light == light
+            && response.dragged()
+            && ui.input(|input| input.pointer.delta()) != Vec2::ZERO
+        {
+            let mut moved = settings.lights[light].in_world(&settings.camera);
+            view.move_light(&mut moved, pointer + drag.grip, drag.behind);
+            settings.lights[light].set_world_position(moved.position.into(), &settings.camera);
+        }
+        if self.drag.is_some_and(|drag| drag.light == light) && !response.dragged() {
+            self.drag = None;
+        }
+        if (response.hovered() || response.dragged()) && settings.lights[light].kind == LightKind::Perspective
+        {
+            self.takes_wheel = true;
+            let notches = wheel_notches(ui);
+            if notches != 0.0 {
+                let mut moved = settings.lights[light].in_world(&settings.camera);
+                view.move_along_sight(&mut moved, notches);
+                settings.lights[light].set_world_position(moved.position.into(), &settings.camera);
+            }
+        }
+    }
+}
+
+/// A disc in the light's colour, or a ring for a light on the far side.
+fn paint_handle(painter: &egui::Painter, at: Pos2, radius: f32, color: Color32, hollow: bool) {
+    painter.circle_filled(at, radius + 1.5, theme::OUTLINE);
+    if hollow {
+        painter.circle_stroke(at, radius - 1.0, Stroke::new(2.5, color));
+    } else {
+        painter.circle_filled(at, radius, color);
+        // A darker middle tells white lights from white material.
+        painter.circle_stroke(at, radius - 3.0, Stroke::new(1.0, theme::OUTLINE.gamma_multiply(0.6)));
+    }
+}

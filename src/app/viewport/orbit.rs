@@ -1,0 +1,63 @@
+//! The mouse on the picture: orbit, pan, zoom.
+
+use eframe::egui::{self, Key, PointerButton, Response};
+
+use crate::app::shell::light_keys;
+use crate::model::Settings;
+
+/// Degrees of orbit per point of drag.
+const DEGREES_PER_POINT: f64 = 0.4;
+/// One notch of the wheel brings the eye this much nearer.
+const ZOOM_PER_NOTCH: f64 = 1.1;
+/// Points of scrolling per notch.
+const POINTS_PER_NOTCH: f64 = 40.0;
+
+/// Natural logarithm of how much wider the window becomes by a drag across the whole picture.
+const WINDOW_PER_WIDTH: f64 = 2.0;
+
+/// Applies what the user does on the picture to the camera, or, while L is held, to a light; with the right
+/// button, to level and window of the transfer function.
+///
+/// `zooms`: the wheel is not needed elsewhere. `range`: the values of the volume, if there is one.
+pub(crate) fn navigate(
+    ui: &egui::Ui,
+    response: &Response,
+    settings: &mut Settings,
+    selected: usize,
+    zooms: bool,
+    range: Option<(f64, f64)>,
+) {
+    let Settings { camera, lights, transfer, .. } = settings;
+    let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));
+    let delta = response.drag_delta();
+    let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
+    let shift = ui.input(|input| input.modifiers.shift);
+    let pans =
+        response.dragged_by(PointerButton::Middle) || (shift && response.dragged_by(PointerButton::Primary));
+    let lit = lights.get_mut(selected).filter(|_| ui.input(|input| input.key_down(Key::L)));
+    if let Some(light) = lit.filter(|_| response.dragged_by(PointerButton::Primary)) {
+        light_keys::turn(light, camera, dx * DEGREES_PER_POINT, -dy * DEGREES_PER_POINT);
+    } else if let Some(range) = range.filter(|_| response.dragged_by(PointerButton::Secondary)) {
+        // As in the slices: down means higher values.
+        let shift = dy / height.max(1.0) * (range.1 - range.0);
+        transfer.shift_and_stretch(shift, (WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
+    } else if pans {
+        camera.pan(dx, dy, height);
+    } else if response.dragged_by(PointerButton::Primary) {
+        camera.orbit(dx * DEGREES_PER_POINT, dy * DEGREES_PER_POINT);
+    }
+    if zooms && response.contains_pointer() {
+        let notches = wheel_notches(ui);
+        let pinch = ui.input(egui::InputState::zoom_delta);
+        if notches != 0.0 || pinch != 1.0 {
+            let factor = ZOOM_PER_NOTCH.powf(-notches) / f64::from(pinch);
+            let at = response.hover_pos().unwrap_or(response.rect.center()) - response.rect.min;
+            camera.zoom_at(factor, (f64::from(at.x), f64::from(at.y)), (width, height));
+        }
+    }
+}
+
+/// Notches of the wheel in this frame, upwards.
+pub(crate) fn wheel_notches(ui: &egui::Ui) -> f64 {
+    f64::from(ui.input(|input| input.smooth_scroll_delta().y)) / POINTS_PER_NOTCH
+}

@@ -1,0 +1,246 @@
+//! Marks over the picture: the volume's box, a scale bar, and a cube that says from where one looks. They are
+//! painted by the window and are therefore never in an export.
+
+use eframe::egui::{
+    Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
+};
+use glam::DVec3;
+
+use super::view_projection::Sight;
+use crate::app::shell::theme;
+use crate::app::text;
+use crate::math::SceneSpace;
+use crate::model::{Camera, StandardView};
+
+/// Edge of the cube in points, before it is turned.
+const CUBE: f32 = 44.0;
+/// The scale bar is at most this share of the picture's width.
+const LONGEST_BAR: f64 = 0.25;
+
+/// Which marks are shown.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Marks {
+    /// Any of them.
+    pub on: bool,
+}
+
+impl Default for Marks {
+    fn default() -> Self {
+        Self { on: true }
+    }
+}
+
+impl Marks {
+    /// Paints them. The side of the cube that was clicked, if one was.
+    pub(crate) fn show(
+        self,
+        ui: &Ui,
+        picture: Rect,
+        camera: &Camera,
+        (scene, is_anatomical): (&SceneSpace, bool),
+    ) -> Option<StandardView> {
+        if !self.on || picture.width() < 4.0 * CUBE || picture.height() < 4.0 * CUBE {
+            return None;
+        }
+        let painter = ui.painter_at(picture);
+        scale_bar(&painter, picture, camera, scene);
+        cube(ui, &painter, picture, camera, is_anatomical)
+    }
+
+    /// The box of the grid, while something is dragged or the pointer asks for it.
+    pub(crate) fn outline(self, ui: &Ui, picture: Rect, camera: &Camera, scene: &SceneSpace, strength: f32) {
+        if !self.on || strength <= 0.0 {
+            return;
+        }
+        let painter = ui.painter_at(picture);
+        let sight = Sight { camera: camera.clone(), picture };
+        let dims = DVec3::from(scene.dims.map(|n| n as f64));
+        let corner = |at: usize| {
+            let side = |axis: usize| if at >> axis & 1 == 0 { -0.5 } else { dims[axis] - 0.5 };
+            let point = scene.scene_from_index.transform_point3(DVec3::new(side(0), side(1), side(2)));
+            sight.point(point)
+        };
+        let stroke = Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.45 * strength));
+        for from in 0..8_usize {
+            for axis in 0..3 {
+                let to = from | 1 << axis;
+                if to != from
+                    && let (Some(a), Some(b)) = (corner(from), corner(to))
+                {
+                    painter.line_segment([a, b], stroke);
+                }
+            }
+        }
+    }
+}
+
+/// A length that fits, and what it is in the unit that suits it.
+fn bar_length_mm(longest_mm: f64) -> Option<(f64, String)> {
+    if !(longest_mm.is_finite() && longest_mm > 0.0) {
+        return None;
+    }
+    // 1, 2 or 5 times a power of ten.
+    let power = 10f64.powf(longest_mm.log10().floor());
+    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= longest_mm).unwrap_or(1.0);
+    let length = step * power;
+    let (value, unit) = match length {
+        length if length >= 1e6 => (length * 1e-6, text::marks::KILOMETRES),
+        length if length >= 1e3 => (length * 1e-3, text::marks::METRES),
+        length if length >= 10.0 => (length / 10.0, text::marks::CENTIMETRES),
+        length if length >= 1.0 => (length, text::marks::MILLIMETRES),
+        length if length >= 1e-3 => (length * 1e3, text::marks::MICROMETRES),
+        length => (length * 1e6, text::marks::NANOMETRES),
+    };
+    // At most one digit that is not zero: no rounding shows.
+    Some((length, text::marks::length((value * 1e3).round() / 1e3, unit)))
+}
+
+/// A bar at the bottom left whose length holds at the middle of the view.
+fn scale_bar(painter: &Painter, picture: Rect, camera: &Camera, scene: &SceneSpace) {
+    let mm_per_point =
+        2.0 * camera.half_height_at_target() / f64::from(picture.height().max(1.0)) * scene.mm_per_unit;
+    let Some((length_mm, text)) = bar_length_mm(mm_per_point * LONGEST_BAR * f64::from(picture.width()))
+    else {
+        return;
+    };
+    let length = (length_mm / mm_per_point) as f32;
+    let left = pos2(picture.left() + 16.0, picture.bottom() - 16.0);
+    let right = left + vec2(length, 0.0);
+    for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::EYE_CURVE)] {
+        let stroke = Stroke::new(width, ink);
+        painter.line_segment([left, right], stroke);
+        for end in [left, right] {
+            painter.line_segment([end - vec2(0.0, 4.0), end + vec2(0.0, 4.0)], stroke);
+        }
+    }
+    let middle = left + vec2(length / 2.0, -6.0);
+    outlined(painter, middle, Align2::CENTER_BOTTOM, &text);
+}
+
+/// Text that can be read on any picture.
+fn outlined(painter: &Painter, at: Pos2, align: Align2, text: &str) {
+    let font = FontId::proportional(12.0);
+    for offset in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
+        painter.text(at + offset, align, text, font.clone(), theme::OUTLINE);
+    }
+    painter.text(at, align, text, font, theme::EYE_CURVE);
+}
+
+/// The cube at the top right: its sides can be clicked.
+fn cube(
+    ui: &Ui,
+    painter: &Painter,
+    picture: Rect,
+    camera: &Camera,
+    is_anatomical: bool,
+) -> Option<StandardView> {
+    let middle = pos2(picture.right() - 1.1 * CUBE, picture.top() + 1.1 * CUBE);
+    let view = camera.scene_from_view();
+    let seen = |point: DVec3| {
+        let local = view.transpose() * point;
+        middle + vec2(local.x as f32, -local.y as f32) * (CUBE / 2.0)
+    };
+    let mut clicked = None;
+    let pointer = ui.ctx().pointer_hover_pos();
+    for (normal, names) in SIDES {
+        let name = names[usize::from(is_anatomical)];
+        let facing = view.z_axis.dot(normal);
+        if facing <= 0.02 {
+            continue;
+        }
+        let (a, b) = (DVec3::new(normal.y, normal.z, normal.x), DVec3::new(normal.z, normal.x, normal.y));
+        let corners = [a + b, b - a, -a - b, a - b].map(|corner| seen(normal + corner));
+        let area = Rect::from_points(&corners);
+        let hovered = pointer.is_some_and(|pointer| contains(&corners, pointer));
+        let view = StandardView::facing(normal);
+        // The side that is under the pointer takes the clicks of its whole box.
+        if hovered {
+            let response = ui.interact(area, ui.scope_id().with(("cube", name)), Sense::click());
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, view.name()));
+            if response.clicked() {
+                clicked = Some(view);
+            }
+            response.on_hover_text(view.name());
+        }
+        let shade = 0.35 + 0.45 * facing as f32;
+        let fill = if hovered {
+            theme::ACCENT.gamma_multiply(0.8)
+        } else {
+            theme::GUIDE.gamma_multiply(shade * 0.35)
+        };
+        painter.add(Shape::convex_polygon(
+            corners.to_vec(),
+            over(theme::OUTLINE, fill),
+            Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.6)),
+        ));
+        if facing > 0.35 {
+            painter.text(
+                seen(normal),
+                Align2::CENTER_CENTER,
+                name,
+                FontId::proportional(12.0),
+                theme::EYE_CURVE.gamma_multiply(facing.sqrt() as f32),
+            );
+        }
+    }
+    clicked
+}
+
+/// The sides of the cube, and what is written on them: signs, or for bodies what lies there.
+const SIDES: [(DVec3, [&str; 2]); 6] = [
+    (DVec3::X, text::marks::RIGHT),
+    (DVec3::NEG_X, text::marks::LEFT),
+    (DVec3::Y, text::marks::ANTERIOR),
+    (DVec3::NEG_Y, text::marks::POSTERIOR),
+    (DVec3::Z, text::marks::SUPERIOR),
+    (DVec3::NEG_Z, text::marks::INFERIOR),
+];
+
+/// An opaque colour: one over another.
+fn over(ground: Color32, ink: Color32) -> Color32 {
+    let blend = |a: u8, b: u8| (f32::from(a) * (1.0 - f32::from(ink.a()) / 255.0)).round() as u8 + b;
+    let [r, g, b, _] = ground.to_array();
+    Color32::from_rgb(
+        blend(r, 0).saturating_add(ink.r()),
+        blend(g, 0).saturating_add(ink.g()),
+        blend(b, 0).saturating_add(ink.b()),
+    )
+}
+
+/// Whether a convex polygon holds a point.
+fn contains(corners: &[Pos2; 4], point: Pos2) -> bool {
+    let cross = |a: Vec2, b: Vec2| a.x * b.y - a.y * b.x;
+    let side = |at: usize| cross(corners[(at + 1) % 4] - corners[at], point - corners[at]);
+    let sides = [0, 1, 2, 3].map(side);
+    sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_have_round_lengths_and_units_that_suit_them() {
+        for (longest, length, text) in [
+            (7.3, 5.0, "5 mm"),
+            (49.0, 20.0, "2 cm"),
+            (1.0, 1.0, "1 mm"),
+            (0.0042, 0.002, "2 µm"),
+            (2.6e3, 2e3, "2 m"),
+            (9.9e-5, 5e-5, "50 nm"),
+        ] {
+            let (found, words) = bar_length_mm(longest).unwrap();
+            assert!((found / length - 1.0).abs() < 1e-9, "{longest}: {found}");
+            assert_eq!(words, text);
+        }
+        assert_eq!(bar_length_mm(f64::NAN), None);
+        assert_eq!(bar_length_mm(0.0), None);
+    }
+
+    #[test]
+    fn polygons_hold_what_is_in_them() {
+        let square = [pos2(0.0, 0.0), pos2(4.0, 0.0), pos2(4.0, 4.0), pos2(0.0, 4.0)];
+        assert!(contains(&square, pos2(1.0, 3.0)) && !contains(&square, pos2(5.0, 1.0)));
+    }
+}

@@ -1,0 +1,216 @@
+//! The export window: what is made, how large and how fine, and into which file.
+
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+use eframe::egui::{self, Ui};
+
+use super::{Export, Kind, Request};
+use crate::app::text::{self, Named};
+use crate::export::{AnimationFormat, PictureFormat};
+use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES};
+
+const KINDS: [(Kind, Named); 3] = [
+    (Kind::Still, text::export::STILL),
+    (Kind::Turntable, text::export::TURNTABLE),
+    (Kind::LightTurn, text::export::LIGHT_TURN),
+];
+
+/// Files for a picture, and their ending.
+const STILLS: [(Depth, Named, &str); 3] = [
+    (Depth::Eight, text::export::PNG, "png"),
+    (Depth::Sixteen, text::export::PNG_16, "png"),
+    (Depth::Linear, text::export::EXR, "exr"),
+];
+
+/// Files for a turn, and their ending.
+const TURNS: [(AnimationFormat, Named, &str); 4] = [
+    (AnimationFormat::Apng, text::export::APNG, "png"),
+    (AnimationFormat::Gif, text::export::GIF, "gif"),
+    (AnimationFormat::Mp4, text::export::MP4, "mp4"),
+    (AnimationFormat::Folder, text::export::FOLDER, ""),
+];
+
+/// All endings of files that are written.
+const ENDINGS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
+
+impl Export {
+    /// Shows the window if it is open.
+    pub(in crate::app) fn ui(&mut self, ctx: &egui::Context, viewport: [u32; 2]) -> Option<Request> {
+        let mut request = None;
+        let mut open = self.open;
+        let window =
+            egui::Window::new(text::export::TITLE).open(&mut open).collapsible(false).resizable(false);
+        window.default_pos([160.0, 90.0]).show(ctx, |ui| {
+            ui.horizontal(|ui| {
+                for (kind, Named { name, tip }) in KINDS {
+                    if ui.selectable_label(self.kind == kind, name).on_hover_text(tip).clicked() {
+                        self.set_kind(kind);
+                    }
+                }
+            });
+            self.size_ui(ui, viewport);
+            if self.kind == Kind::Still {
+                self.still_ui(ui);
+            } else {
+                self.turn_ui(ui);
+            }
+            let fits = self.kind == Kind::Still || self.animation() != AnimationFormat::Mp4;
+            let mut left_out = self.shot.transparent && fits;
+            let switch = egui::Checkbox::new(&mut left_out, text::export::TRANSPARENT.name);
+            let response = ui.add_enabled(fits, switch).on_hover_text(text::export::TRANSPARENT.tip);
+            if response.on_disabled_hover_text(text::export::NOT_TRANSPARENT_TIP).changed() {
+                self.shot.transparent = left_out;
+            }
+            ui.horizontal(|ui| {
+                let label = ui.label(text::export::FILE);
+                let field = egui::TextEdit::singleline(&mut self.path).desired_width(280.0);
+                if ui.add(field).labelled_by(label.id).changed() {
+                    self.follow_name();
+                }
+                if ui.button(text::export::CHOOSE).clicked() {
+                    request = Some(Request::Choose);
+                }
+            });
+            ui.horizontal(|ui| {
+                let ready = !self.is_busy() && !self.path.trim().is_empty();
+                if ui.add_enabled(ready, egui::Button::new(text::export::EXPORT)).clicked() {
+                    request = Some(Request::Export);
+                }
+                if self.is_busy() {
+                    self.progress_ui(ui);
+                }
+            });
+        });
+        self.open = open;
+        request
+    }
+
+    /// What a turn is written as.
+    pub(crate) fn animation(&self) -> AnimationFormat {
+        AnimationFormat::of_path(Path::new(self.path.trim()))
+    }
+
+    /// Turns and pictures are not written as the same kinds of files.
+    fn set_kind(&mut self, kind: Kind) {
+        if (self.kind == Kind::Still) != (kind == Kind::Still) {
+            self.set_ending("png");
+        }
+        self.kind = kind;
+        self.follow_name();
+    }
+
+    /// What the name says of the depth holds.
+    pub(crate) fn follow_name(&mut self) {
+        self.shot.depth = PictureFormat::of_path(Path::new(self.path.trim())).depth(self.shot.depth);
+    }
+
+    /// Gives the name an ending, instead of one of ours if it has one: what follows another dot is a part of it.
+    fn set_ending(&mut self, ending: &str) {
+        let path = Path::new(self.path.trim());
+        let known =
+            path.extension().is_some_and(|found| ENDINGS.iter().any(|own| found.eq_ignore_ascii_case(own)));
+        let stem = if known { path.with_extension("") } else { path.to_owned() };
+        self.path = stem.display().to_string();
+        if !ending.is_empty() {
+            self.path = format!("{}.{ending}", self.path);
+        }
+    }
+
+    /// How fine a picture is, and what its file holds.
+    fn still_ui(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.label(text::export::SAMPLES.name);
+            for samples in 1..=MAX_SAMPLES {
+                let count = samples * samples;
+                let response = ui.selectable_label(self.shot.samples == samples, count.to_string());
+                let response = response.on_hover_text(text::export::SAMPLES.tip);
+                response.widget_info(|| {
+                    let label = text::export::samples(count);
+                    egui::WidgetInfo::selected(egui::Role::Button, true, samples == self.shot.samples, label)
+                });
+                if response.clicked() {
+                    self.shot.samples = samples;
+                }
+            }
+        });
+        ui.horizontal(|ui| {
+            for (depth, Named { name, tip }, ending) in STILLS {
+                if ui.selectable_label(self.shot.depth == depth, name).on_hover_text(tip).clicked() {
+                    self.shot.depth = depth;
+                    self.set_ending(ending);
+                }
+            }
+        });
+    }
+
+    /// How many pictures a turn has, how fast they go by, and what its file is.
+    fn turn_ui(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let field = egui::DragValue::new(&mut self.frames)
+                .range(2..=3600)
+                .suffix(text::export::TURN_PICTURES_UNIT);
+            ui.name_inputs(text::export::TURN_PICTURES, |ui| ui.add(field));
+            let field = egui::DragValue::new(&mut self.rate).range(1..=120).suffix(text::export::RATE_UNIT);
+            ui.name_inputs(text::export::RATE, |ui| ui.add(field));
+            ui.weak(text::export::seconds(f64::from(self.frames) / f64::from(self.rate.max(1))));
+        });
+        ui.horizontal(|ui| {
+            for (format, Named { name, tip }, ending) in TURNS {
+                let is_it = self.animation() == format;
+                if ui.selectable_label(is_it, name).on_hover_text(tip).clicked() && !is_it {
+                    self.set_ending(ending);
+                }
+            }
+        });
+    }
+
+    fn progress_ui(&self, ui: &mut Ui) {
+        // First, so that it stays where it is when there is something to count.
+        if ui.button(text::common::CANCEL).clicked() {
+            self.progress.cancelled.store(true, Ordering::Relaxed);
+        }
+        let (done, total) =
+            (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
+        if total > 1 {
+            let bar = egui::ProgressBar::new(done as f32 / total as f32).desired_width(120.0);
+            let count = if self.kind == Kind::Still {
+                text::export::parts_done(done, total)
+            } else {
+                text::export::pictures_done(done, total)
+            };
+            ui.add(bar.text(count));
+        } else {
+            ui.spinner();
+            ui.label(text::export::RENDERING);
+        }
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
+    }
+
+    fn size_ui(&mut self, ui: &mut Ui, viewport: [u32; 2]) {
+        ui.horizontal(|ui| {
+            ui.label(text::export::SIZE);
+            for (edge, name) in self.shot.size.iter_mut().zip([text::export::WIDTH, text::export::HEIGHT]) {
+                let field = egui::DragValue::new(edge).range(1..=MAX_EDGE).suffix(text::export::PIXELS);
+                ui.name_inputs(name, |ui| ui.add(field));
+            }
+            let [width, height] = self.shot.size.map(f64::from);
+            // At the 300 dots per inch that journals ask for.
+            ui.weak(text::export::on_paper(width / 300.0 * 25.4, height / 300.0 * 25.4));
+        });
+        ui.horizontal(|ui| {
+            let presets = [
+                (text::export::WINDOW, viewport),
+                (text::export::TWICE_WINDOW, viewport.map(|n| n.saturating_mul(2))),
+                (text::export::FULL_HD, [1920, 1080]),
+                (text::export::ULTRA_HD, [3840, 2160]),
+                (text::export::ULTRA_HD_8K, [7680, 4320]),
+            ];
+            for (name, size) in presets {
+                if ui.selectable_label(self.shot.size == size, name).clicked() {
+                    self.set_size(size);
+                }
+            }
+        });
+    }
+}

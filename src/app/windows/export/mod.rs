@@ -1,0 +1,149 @@
+//! Export: what the user asks for, the window that asks, and the worker that does it.
+
+mod dialog;
+mod worker;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+
+use self::worker::Progress;
+pub(in crate::app) use self::worker::{Exported, Subject, Worker};
+use crate::app::text;
+use crate::app::worker::task::Work;
+use crate::export::{AnimationFormat, Reel};
+use crate::model::Shot;
+
+/// How long a window that closes waits for an export to end: a part of a picture takes seconds on slow adapters.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// What is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// One picture.
+    Still,
+    /// A turn of the camera …
+    Turntable,
+    /// … or of the selected light.
+    LightTurn,
+}
+
+/// What the user asks of the export window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Request {
+    /// Choose a file with a dialog.
+    Choose,
+    /// Render and write.
+    Export,
+}
+
+/// What is to be exported, and its progress.
+#[derive(Debug)]
+pub(crate) struct Export {
+    open: bool,
+    shot: Shot,
+    path: String,
+    kind: Kind,
+    frames: u32,
+    rate: u16,
+    progress: Arc<Progress>,
+    work: Option<Work<Result<Exported, String>>>,
+}
+
+impl Default for Export {
+    fn default() -> Self {
+        Self {
+            open: false,
+            shot: Shot::new([0, 0]),
+            path: "chiaroscuro.png".to_owned(),
+            kind: Kind::Still,
+            frames: 72,
+            rate: 24,
+            progress: Arc::default(),
+            work: None,
+        }
+    }
+}
+
+impl Export {
+    /// Shows the window, at first with the size of the viewport.
+    pub(crate) fn open(&mut self, viewport: [u32; 2]) {
+        self.open = true;
+        if self.shot.size == [0, 0] {
+            self.shot.size = viewport;
+        }
+    }
+
+    /// Where to write.
+    pub(crate) fn set_path(&mut self, path: &Path) {
+        self.path = path.display().to_string();
+        self.follow_name();
+        self.open = true;
+    }
+
+    /// How large.
+    pub(crate) fn set_size(&mut self, size: [u32; 2]) {
+        self.shot = Shot { size, ..self.shot }.within_limits();
+    }
+
+    /// Whether a picture is being made.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.work.is_some()
+    }
+
+    /// Ends what is being made, because the window closes, and waits for that: so that nothing is left of it.
+    pub(crate) fn abandon(&mut self) {
+        self.progress.cancelled.store(true, Ordering::Relaxed);
+        let begin = Instant::now();
+        while self.is_busy() && self.take().is_none() && begin.elapsed() < PATIENCE {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// How the last export ended, once.
+    pub(crate) fn take(&mut self) -> Option<Result<Exported, String>> {
+        let result = self.work.as_ref()?.take()?;
+        self.work = None;
+        Some(result.and_then(|result| result))
+    }
+
+    /// Starts to render and write.
+    pub(crate) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
+        let (shot, path) = (self.shot.within_limits(), PathBuf::from(self.path.trim()));
+        self.progress = Arc::default();
+        let progress = Arc::clone(&self.progress);
+        let light = match self.kind {
+            Kind::Still => return self.run(ctx, move || worker::still(&subject, &shot, path, &progress)),
+            Kind::Turntable => None,
+            Kind::LightTurn => Some(subject.selected_light),
+        };
+        let transparent = shot.transparent && self.animation() != AnimationFormat::Mp4;
+        let reel = Reel { size: shot.size, frames: self.frames, rate: self.rate, transparent };
+        self.run(ctx, move || worker::turn(&subject, light, &reel, path, &progress))
+    }
+
+    /// Starts to render for the clipboard, as large as the window's picture.
+    pub(crate) fn copy(
+        &mut self,
+        subject: Subject,
+        size: [u32; 2],
+        ctx: &egui::Context,
+    ) -> Result<(), String> {
+        let shot = Shot { transparent: self.shot.transparent, ..Shot::new(size) };
+        self.progress = Arc::default();
+        self.run(ctx, move || worker::copy(&subject, &shot))
+    }
+
+    fn run(
+        &mut self,
+        ctx: &egui::Context,
+        task: impl FnOnce() -> Result<Exported, String> + Send + 'static,
+    ) -> Result<(), String> {
+        let work = Work::start("export", ctx, task);
+        self.work = Some(work.map_err(text::export::no_thread)?);
+        Ok(())
+    }
+}

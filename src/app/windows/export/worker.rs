@@ -1,0 +1,176 @@
+//! What an export does on its own thread, on a renderer of its own: always full quality, whatever the preview
+//! shows.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use eframe::egui;
+
+use crate::data::{Bricks, Volume};
+use crate::export::{Animation, AnimationFormat, ExportError, Reel, write_picture};
+use crate::gpu::{Context, GpuError, RenderOptions, Renderer};
+use crate::model::{PictureRecord, Record, Settings, Shot, VolumeRecord};
+
+/// What is to be exported.
+#[derive(Debug)]
+pub(in crate::app) struct Subject {
+    /// The window's device.
+    pub context: Context,
+    /// The open volume.
+    pub volume: Arc<Volume>,
+    /// Its bricks.
+    pub bricks: Arc<Bricks>,
+    /// The whole look.
+    pub settings: Settings,
+    /// What was opened.
+    pub source: String,
+    /// The light that turns, if one is to.
+    pub selected_light: usize,
+}
+
+/// What an export ended with.
+#[derive(Debug)]
+pub(in crate::app) enum Exported {
+    /// A file was written.
+    File(PathBuf),
+    /// A picture for the clipboard.
+    Picture(egui::ColorImage),
+    /// The user did not want it any more.
+    Cancelled,
+}
+
+/// What the window and its worker tell each other.
+#[derive(Debug, Default)]
+pub(crate) struct Progress {
+    /// Pictures or parts of one that are done …
+    pub done: AtomicU32,
+    /// … of how many; 0 while nobody knows.
+    pub total: AtomicU32,
+    /// Nobody wants the rest.
+    pub cancelled: AtomicBool,
+}
+
+/// Why an export ended early.
+#[derive(Debug)]
+enum Ended {
+    Cancelled,
+    Failed(String),
+}
+
+impl From<ExportError> for Ended {
+    fn from(err: ExportError) -> Self {
+        Self::Failed(err.to_string())
+    }
+}
+
+impl From<GpuError> for Ended {
+    fn from(err: GpuError) -> Self {
+        Self::Failed(err.to_string())
+    }
+}
+
+impl Ended {
+    /// What the window is told.
+    fn told(self) -> Result<Exported, String> {
+        match self {
+            Self::Cancelled => Ok(Exported::Cancelled),
+            Self::Failed(why) => Err(why),
+        }
+    }
+}
+
+impl Progress {
+    fn set(&self, done: u32, total: u32) -> Result<(), Ended> {
+        self.done.store(done, Ordering::Relaxed);
+        self.total.store(total, Ordering::Relaxed);
+        if self.cancelled.load(Ordering::Relaxed) { Err(Ended::Cancelled) } else { Ok(()) }
+    }
+}
+
+/// A renderer beside the window's device, so that the window stays alive.
+pub(in crate::app) struct Worker {
+    renderer: Renderer,
+    adapter: String,
+}
+
+impl Worker {
+    /// A renderer for a subject.
+    pub(in crate::app) fn new(subject: &Subject) -> Result<Self, String> {
+        let beside = subject.context.sibling().map_err(|err| err.to_string())?;
+        let renderer = Renderer::new(&beside).map_err(|err| err.to_string())?;
+        Ok(Self { renderer, adapter: beside.description() })
+    }
+
+    /// A picture of the subject with settings of one's own, as it is shown.
+    pub(in crate::app) fn render(
+        &mut self,
+        subject: &Subject,
+        settings: &Settings,
+        shot: &Shot,
+    ) -> Result<Vec<u8>, String> {
+        let options = RenderOptions::of_shot(shot);
+        let Subject { volume, bricks, .. } = subject;
+        let shown = self.renderer.render_shown(volume, bricks, settings, shot.size, &options);
+        shown.map_err(|err| err.to_string())
+    }
+
+    /// How a picture was made, for a file in a folder.
+    fn record(&self, subject: &Subject, settings: &Settings, shot: &Shot, folder: Option<&Path>) -> String {
+        let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), folder);
+        let how = PictureRecord::new(*shot, self.adapter.clone());
+        Record::text(settings, Some(&volume), Some(&how))
+    }
+}
+
+/// Renders and writes one picture.
+pub(crate) fn still(
+    subject: &Subject,
+    shot: &Shot,
+    path: PathBuf,
+    progress: &Progress,
+) -> Result<Exported, String> {
+    let mut worker = Worker::new(subject)?;
+    let record = worker.record(subject, &subject.settings, shot, path.parent());
+    let Subject { volume, bricks, settings, .. } = subject;
+    let mut bands = worker.renderer.bands(volume, bricks, settings, shot);
+    let mut rows = || {
+        let (done, total) = bands.progress();
+        progress.set(done as u32, total as u32)?;
+        Ok(bands.next_rows()?)
+    };
+    write_picture(&path, shot, Some(&record), &mut rows)
+        .map_or_else(Ended::told, |()| Ok(Exported::File(path)))
+}
+
+/// Renders and writes one turn, of a light or else of the camera.
+pub(crate) fn turn(
+    subject: &Subject,
+    light: Option<usize>,
+    reel: &Reel,
+    path: PathBuf,
+    progress: &Progress,
+) -> Result<Exported, String> {
+    let mut worker = Worker::new(subject)?;
+    let folder = AnimationFormat::record_folder(&path);
+    let shot = Shot { transparent: reel.transparent, ..Shot::new(reel.size) };
+    let mut write = || {
+        let mut file = Animation::create(&path, reel)?;
+        for frame in 0..reel.frames {
+            progress.set(frame, reel.frames)?;
+            let settings = subject.settings.turned(light, f64::from(frame) / f64::from(reel.frames));
+            let shown = worker.render(subject, &settings, &shot).map_err(Ended::Failed)?;
+            file.add(&shown, &worker.record(subject, &settings, &shot, folder))?;
+        }
+        file.finish()?;
+        Ok(())
+    };
+    write().map_or_else(Ended::told, |()| Ok(Exported::File(path)))
+}
+
+/// Renders for the clipboard.
+pub(crate) fn copy(subject: &Subject, shot: &Shot) -> Result<Exported, String> {
+    let shown = Worker::new(subject)?.render(subject, &subject.settings, shot)?;
+    let size = shot.size.map(|n| n as usize);
+    Ok(Exported::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &shown)))
+}

@@ -1,0 +1,259 @@
+//! Files: dialogs on threads, the window for typing a path, dropped files, settings.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+
+use crate::app::text;
+use crate::app::text::files::Question;
+use crate::app::worker::task::Work;
+use crate::data::read_small;
+use crate::export::PictureFormat;
+use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, VolumeRecord, export, import};
+
+/// What a dialog is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// A volume to open.
+    OpenVolume,
+    /// Settings to apply.
+    LoadSettings,
+    /// A transfer function of another program.
+    ImportTransfer,
+    /// Where to write the transfer function for another program.
+    ExportTransfer,
+    /// Settings to compare with.
+    CompareSettings,
+    /// Where to save settings.
+    SaveSettings,
+    /// Where to export a picture.
+    ExportPicture,
+    /// Where to export a light volume, or a slice of it.
+    ExportLight,
+}
+
+impl Purpose {
+    /// How the user is asked.
+    fn question(self) -> Question {
+        match self {
+            Self::OpenVolume => text::files::OPEN_VOLUME,
+            Self::LoadSettings => text::files::LOAD_SETTINGS,
+            Self::ImportTransfer => text::files::IMPORT_TRANSFER,
+            Self::ExportTransfer => text::files::EXPORT_TRANSFER,
+            Self::CompareSettings => text::files::COMPARE_SETTINGS,
+            Self::SaveSettings => text::files::SAVE_SETTINGS,
+            Self::ExportPicture => text::files::EXPORT_PICTURE,
+            Self::ExportLight => text::files::EXPORT_LIGHT,
+        }
+    }
+}
+
+/// A dialog that closes sooner than this was never open: there is no desktop portal.
+const NO_DIALOG: Duration = Duration::from_millis(400);
+
+#[derive(Debug)]
+struct Dialog {
+    purpose: Purpose,
+    started: Instant,
+    work: Work<Option<PathBuf>>,
+}
+
+/// The typed-path window.
+#[derive(Debug)]
+struct Typed {
+    purpose: Purpose,
+    text: String,
+    focus: bool,
+}
+
+/// Dialogs that are open.
+#[derive(Debug, Default)]
+pub(crate) struct Files {
+    dialog: Option<Dialog>,
+    typed: Option<Typed>,
+}
+
+impl Files {
+    /// Opens the desktop's file dialog; without one, the window for typing a path.
+    pub(crate) fn ask(&mut self, purpose: Purpose, frame: &eframe::Frame, ctx: &egui::Context) {
+        if self.dialog.is_some() {
+            return;
+        }
+        let dialog = rfd::AsyncFileDialog::new().set_title(purpose.question().title).set_parent(frame);
+        type Pending = std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
+        let pending: Pending = match purpose {
+            Purpose::OpenVolume => {
+                let filters = ["nrrd", "nhdr", "raw", "gz"];
+                let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
+                Box::pin(dialog.add_filter(text::files::ALL_FILES, &["*"]).pick_file())
+            }
+            Purpose::LoadSettings | Purpose::CompareSettings => {
+                let endings = ["json", "png", "exr"];
+                Box::pin(dialog.add_filter(text::files::SETTINGS_AND_PICTURES, &endings).pick_file())
+            }
+            Purpose::ImportTransfer => {
+                Box::pin(dialog.add_filter(text::files::TRANSFER_FUNCTIONS, &IMPORTED).pick_file())
+            }
+            Purpose::ExportTransfer => {
+                let dialog = dialog.add_filter(text::files::TRANSFER_FUNCTIONS, &EXPORTED);
+                Box::pin(dialog.set_file_name("colors.json").save_file())
+            }
+            Purpose::SaveSettings => {
+                let dialog = dialog.add_filter(text::files::SETTINGS, &["json"]);
+                Box::pin(dialog.set_file_name("settings.json").save_file())
+            }
+            Purpose::ExportPicture => {
+                let dialog = dialog.add_filter(text::files::PICTURES, &["png", "exr", "gif", "mp4"]);
+                Box::pin(dialog.set_file_name("picture.png").save_file())
+            }
+            Purpose::ExportLight => {
+                let dialog = dialog.add_filter(text::files::LIGHT_VOLUME, &["nrrd"]);
+                let dialog = dialog.add_filter(text::files::SLICE, &["png"]);
+                Box::pin(dialog.set_file_name("light.nrrd").save_file())
+            }
+        };
+        let task = move || pollster::block_on(pending).map(|file| file.path().to_owned());
+        match Work::start("file-dialog", ctx, task) {
+            Ok(work) => self.dialog = Some(Dialog { purpose, started: Instant::now(), work }),
+            Err(err) => {
+                log::warn!("no file dialog: {err}");
+                self.type_path(purpose);
+            }
+        }
+    }
+
+    /// Opens the window for typing a path.
+    pub(crate) fn type_path(&mut self, purpose: Purpose) {
+        self.typed = Some(Typed { purpose, text: String::new(), focus: true });
+    }
+
+    /// What the user chose, once.
+    pub(crate) fn take(&mut self) -> Option<(Purpose, PathBuf)> {
+        let dialog = self.dialog.as_ref()?;
+        let chosen = dialog.work.take()?;
+        let (purpose, quick) = (dialog.purpose, dialog.started.elapsed() < NO_DIALOG);
+        self.dialog = None;
+        match chosen {
+            Ok(Some(path)) => return Some((purpose, path)),
+            Ok(None) if !quick => {}
+            Ok(None) => self.type_path(purpose),
+            Err(panic) => {
+                log::warn!("the file dialog failed: {panic}");
+                self.type_path(purpose);
+            }
+        }
+        None
+    }
+
+    /// Shows the window for typing a path, if it is open. Gives what was typed.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<(Purpose, PathBuf)> {
+        let typed = self.typed.as_mut()?;
+        let (mut open, mut accepted, mut cancelled) = (true, false, false);
+        let Question { title, hint, verb } = typed.purpose.question();
+        let window = egui::Window::new(title).id(egui::Id::unique("typed path")).open(&mut open);
+        window.collapsible(false).resizable(false).default_pos([140.0, 110.0]).show(ctx, |ui| {
+            ui.horizontal(|ui| {
+                let label = ui.label(text::files::PATH);
+                let field = egui::TextEdit::singleline(&mut typed.text).hint_text(hint);
+                let field = ui.add(field.desired_width(380.0)).labelled_by(label.id);
+                if std::mem::take(&mut typed.focus) {
+                    field.request_focus();
+                }
+                accepted = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            });
+            ui.horizontal(|ui| {
+                accepted |= ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
+                cancelled = ui.button(text::common::CANCEL).clicked();
+            });
+        });
+        let chosen = (accepted && !typed.text.trim().is_empty())
+            .then(|| (typed.purpose, PathBuf::from(typed.text.trim())));
+        if chosen.is_some() || cancelled || !open {
+            self.typed = None;
+        }
+        chosen
+    }
+}
+
+/// The first file that was dropped on the window.
+pub(crate) fn dropped(ctx: &egui::Context) -> Option<PathBuf> {
+    ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()))
+}
+
+/// Writes settings, and of what volume they are: whole or not at all.
+pub(crate) fn save_settings(
+    path: &Path,
+    settings: &Settings,
+    volume: Option<(&str, u64)>,
+) -> Result<(), String> {
+    let volume = volume.map(|(source, content_id)| VolumeRecord::new(source, content_id, path.parent()));
+    let text = Record::text(settings, volume.as_ref(), None);
+    crate::export::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
+}
+
+/// A small file as text.
+fn read_text(path: &Path) -> Result<String, String> {
+    let bytes = read_small(path).map_err(|err| err.to_string())?;
+    String::from_utf8(bytes).map_err(text::files::no_text)
+}
+
+/// Reads what a session, a preset or an exported picture says.
+pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
+    let record = if PictureFormat::with_record(path).is_some() {
+        let found = crate::export::read_record(path).map_err(|err| err.to_string())?;
+        found.ok_or_else(|| text::files::no_settings(path))?
+    } else {
+        read_text(path).map_err(|err| text::files::settings_not_read(path, err))?
+    };
+    Record::read(&record).map_err(|err| text::files::settings_not_used(path, err))
+}
+
+/// Reads a transfer function of another program.
+pub(crate) fn import_transfer(path: &Path, range: (f64, f64)) -> Result<TransferFunction, String> {
+    let bytes = read_small(path).map_err(|err| text::files::transfer_not_read(path, err))?;
+    import(path, &bytes, range).map_err(|err| text::files::transfer_not_used(path, err))
+}
+
+/// Writes a transfer function for another program.
+pub(crate) fn export_transfer(
+    path: &Path,
+    function: &TransferFunction,
+    range: (f64, f64),
+) -> Result<(), String> {
+    let bytes = export(path, function, range).map_err(|err| err.to_string())?;
+    crate::export::write_atomically(path, &bytes).map_err(|err| err.to_string())
+}
+
+/// Whether a file holds a look and not a volume, by its name.
+pub(crate) fn is_record(path: &Path) -> bool {
+    PictureFormat::with_record(path).is_some()
+        || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_small_texts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        std::fs::write(&path, "{\"shadows\": {\"gain\": 2.0}}").unwrap();
+        let settings = load_record(&path).unwrap().apply(&Settings::default(), (0.0, 1.0)).unwrap().0;
+        assert_eq!(settings.shadows.gain, 2.0);
+        std::fs::write(&path, [0xff, 0xfe]).unwrap();
+        assert!(load_record(&path).unwrap_err().contains("no text"));
+        assert!(load_record(folder.path()).unwrap_err().contains("regular"));
+        assert!(import_transfer(&folder.path().join("none.json"), (0.0, 1.0)).is_err());
+    }
+
+    #[test]
+    fn looks_and_volumes_are_told_apart_by_name() {
+        for (name, record) in
+            [("a.json", true), ("b.PNG", true), ("d.Exr", true), ("c.nrrd", false), ("png", false)]
+        {
+            assert_eq!(is_record(Path::new(name)), record, "{name}");
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The windows "Keys and mouse" and "About".
+
+use eframe::egui;
+
+use crate::app::shell::commands::{SHORTCUTS, key_text};
+use crate::app::text;
+use crate::app::viewport::Facts;
+
+/// Room that keys and mouse take.
+const TABLES: egui::Vec2 = egui::vec2(960.0, 524.0);
+
+/// Two columns: what is done, and what happens.
+fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, String)>) {
+    egui::Grid::new(name).num_columns(2).striped(true).spacing([16.0, 4.0]).show(ui, |ui| {
+        for (what, effect) in rows {
+            ui.label(what);
+            ui.label(effect.trim_end_matches('…'));
+            ui.end_row();
+        }
+    });
+}
+
+/// Which of the windows are open.
+#[derive(Debug, Default)]
+pub(crate) struct Help {
+    /// "Keys and mouse".
+    pub keys: bool,
+    /// "About".
+    pub about: bool,
+}
+
+impl Help {
+    /// Shows the windows that are open.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context, facts: &Facts) {
+        // All of it where the window has room, else with scroll bars.
+        let size = TABLES.min(ctx.content_rect().size() - egui::vec2(90.0, 130.0));
+        let window = egui::Window::new(text::help::KEYS_AND_MOUSE)
+            .open(&mut self.keys)
+            .resizable(false)
+            .collapsible(false);
+        window.default_pos([40.0, 50.0]).fixed_size(size).show(ctx, |ui| {
+            egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                ui.horizontal_top(|ui| {
+                    let mouse = text::help::MOUSE;
+                    table(ui, "mouse", mouse.map(|(what, effect)| (what.to_owned(), effect.to_owned())));
+                    let keys: Vec<_> = SHORTCUTS
+                        .into_iter()
+                        .map(|(key, command)| (key_text(ctx, key), command.label().into_owned()))
+                        .collect();
+                    let (first, second) = keys.split_at(keys.len().div_ceil(2));
+                    for (name, part) in [("keys", first), ("more_keys", second)] {
+                        ui.separator();
+                        table(ui, name, part.iter().cloned());
+                    }
+                });
+            });
+        });
+        let window =
+            egui::Window::new(text::help::ABOUT).open(&mut self.about).resizable(false).collapsible(false);
+        window.default_pos([420.0, 50.0]).show(ctx, |ui| {
+            ui.strong(text::help::program(env!("CARGO_PKG_VERSION")));
+            ui.label(text::help::PURPOSE);
+            ui.label(text::help::AFTER);
+            ui.separator();
+            ui.label(text::help::adapter(&facts.adapter));
+            ui.label(text::help::interface(&facts.driver));
+            if facts.software {
+                ui.label(text::help::SOFTWARE_ADAPTER);
+            }
+        });
+    }
+}

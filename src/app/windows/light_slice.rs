@@ -1,0 +1,209 @@
+//! The window that looks into a light volume: a slice in false colours, and its export.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
+
+use crate::app::text;
+use crate::app::worker::task::Work;
+use crate::data::{Bricks, Volume};
+use crate::export::write_atomically;
+use crate::gpu::{Attenuation, Context, GpuError, RenderOptions, Renderer, export_slice, light_volume_nrrd};
+use crate::math::false_color;
+use crate::model::{LightStorage, Settings};
+use crate::plan::{LightKey, Request};
+
+/// Longest edge of the slice on screen, in points.
+const EDGE: f32 = 360.0;
+
+/// What a worker brings back: of which light volume, and its values.
+type Filled = (LightKey, Attenuation);
+
+/// The window.
+#[derive(Default)]
+pub(crate) struct LightSlice {
+    /// Whether it is there.
+    pub open: bool,
+    light: usize,
+    axis: usize,
+    /// Slice along each axis; the middle until the user moves it.
+    at: [Option<usize>; 3],
+    work: Option<Work<Result<Option<Filled>, GpuError>>>,
+    filled: Option<(LightKey, Arc<Attenuation>)>,
+    /// The key that could not be filled: it is not tried again.
+    failed: Option<LightKey>,
+    texture: Option<TextureHandle>,
+    /// What the texture shows: which light volume, axis and slice.
+    drawn: Option<(LightKey, usize, usize)>,
+}
+
+impl std::fmt::Debug for LightSlice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("LightSlice").field("open", &self.open).finish_non_exhaustive()
+    }
+}
+
+/// What the window works with.
+pub(crate) struct Scene<'a> {
+    /// The look.
+    pub settings: &'a Settings,
+    /// The open volume.
+    pub volume: Option<(Arc<Volume>, Arc<Bricks>)>,
+    /// A device beside which the worker may open its own.
+    pub context: &'a Context,
+    /// Nothing moves: a light volume that is filled now will be wanted.
+    pub at_rest: bool,
+}
+
+impl LightSlice {
+    /// Shows the window if it is open. `true` when the user wants to export.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<bool, String> {
+        if !self.open {
+            return Ok(false);
+        }
+        let result = self.collect(ctx, scene);
+        let (mut open, mut export) = (true, false);
+        let window =
+            egui::Window::new(text::light_volume::TITLE).open(&mut open).collapsible(false).resizable(false);
+        window.default_pos([24.0, 60.0]).show(ctx, |ui| {
+            ui.horizontal(|ui| {
+                let casting =
+                    scene.settings.lights.iter().enumerate().filter(|(_, light)| light.needs_volume());
+                for (index, light) in casting {
+                    ui.selectable_value(&mut self.light, index, &light.name);
+                }
+                if self.work.is_some() {
+                    ui.spinner();
+                }
+            });
+            ui.horizontal(|ui| {
+                for (axis, name) in text::light_volume::ACROSS.into_iter().enumerate() {
+                    ui.selectable_value(&mut self.axis, axis, name);
+                }
+            });
+            let Some((key, attenuation)) = self.filled.clone() else {
+                ui.weak(text::light_volume::NONE);
+                return;
+            };
+            let count = attenuation.dims[self.axis];
+            let mut at = self.at[self.axis].unwrap_or(count / 2).min(count - 1);
+            ui.spacing_mut().slider_width = EDGE - 80.0;
+            let slider = egui::Slider::new(&mut at, 0..=count - 1);
+            if ui.name_inputs(text::light_volume::SLICE, |ui| ui.add(slider)).changed() {
+                self.at[self.axis] = Some(at);
+            }
+            self.picture(ui, &attenuation, (key, self.axis, at));
+            scale(ui);
+            let button = text::light_volume::EXPORT;
+            export = ui.button(button.name).on_hover_text(button.tip).clicked();
+        });
+        self.open = open;
+        result.map(|()| export)
+    }
+
+    /// Writes what is shown: the slice if the name ends in .png, else the whole.
+    pub(crate) fn export(&self, path: &Path, volume: &Volume) -> Result<(), String> {
+        let Some((_, attenuation)) = &self.filled else {
+            return Err(text::light_volume::NOTHING_TO_EXPORT.to_owned());
+        };
+        let is_slice = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+        let written = if is_slice {
+            let at = self.at[self.axis].unwrap_or(attenuation.dims[self.axis] / 2);
+            let slice = attenuation.slice(self.axis, at).ok_or(text::light_volume::NO_SUCH_SLICE)?;
+            export_slice(&slice, path)
+        } else {
+            write_atomically(path, &light_volume_nrrd(volume, attenuation))
+        };
+        written.map_err(|err| err.to_string())
+    }
+
+    /// Takes in what the worker has filled, and sends it again when something else is wanted.
+    fn collect(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<(), String> {
+        if let Some(result) = self.work.as_ref().and_then(Work::take) {
+            self.work = None;
+            match result {
+                Ok(Ok(Some((key, attenuation)))) => {
+                    self.filled = Some((key, Arc::new(attenuation)));
+                    self.failed = None;
+                }
+                Ok(Ok(None)) => self.filled = None,
+                Ok(Err(err)) => return Err(err.to_string()),
+                Err(panic) => return Err(panic),
+            }
+        }
+        let Some((volume, bricks)) = &scene.volume else { return Ok(()) };
+        let is_there =
+            |index: usize| scene.settings.lights.get(index).is_some_and(crate::model::Light::needs_volume);
+        if !is_there(self.light) {
+            self.light = (0..scene.settings.lights.len()).find(|&index| is_there(index)).unwrap_or(0);
+        }
+        let mut request = Request {
+            volume: volume.content_id(),
+            settings: scene.settings.clone(),
+            size: [16, 16],
+            coarse: None,
+        };
+        let Some(key) = LightKey::of(&request, self.light) else {
+            self.filled = None;
+            return Ok(());
+        };
+        let known = self.filled.as_ref().is_some_and(|(filled, _)| *filled == key);
+        if known || self.work.is_some() || !scene.at_rest || self.failed.as_ref() == Some(&key) {
+            return Ok(());
+        }
+        self.failed = Some(key.clone());
+        let (context, volume, bricks) = (scene.context.clone(), Arc::clone(volume), Arc::clone(bricks));
+        let light = self.light;
+        let task = move || {
+            let mut renderer = Renderer::new(&context.sibling()?)?;
+            // Collapsed, it would be gone.
+            request.settings.shadows.storage = LightStorage::PerLight;
+            let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
+            renderer.draw(&volume, &bricks, &request.settings, request.size, &options)?;
+            Ok(renderer.attenuation(&request, light)?.map(|attenuation| (key, attenuation)))
+        };
+        self.work = Some(Work::start("light-slice", ctx, task).map_err(|err| err.to_string())?);
+        Ok(())
+    }
+
+    fn picture(&mut self, ui: &mut egui::Ui, attenuation: &Attenuation, what: (LightKey, usize, usize)) {
+        if self.drawn.as_ref() != Some(&what) {
+            let Some(slice) = attenuation.slice(what.1, what.2) else { return };
+            let image = ColorImage::from_rgb(slice.size, &slice.colors());
+            match &mut self.texture {
+                Some(texture) => texture.set(image, TextureOptions::NEAREST),
+                empty => *empty = Some(ui.ctx().load_texture("light slice", image, TextureOptions::NEAREST)),
+            }
+            self.drawn = Some(what);
+        }
+        let Some(texture) = &self.texture else { return };
+        let size = texture.size_vec2();
+        ui.image((texture.id(), size * (EDGE / size.max_elem())));
+    }
+}
+
+/// What the colours mean.
+fn scale(ui: &mut egui::Ui) {
+    ui.horizontal(|ui| {
+        ui.weak(text::light_volume::DARK);
+        let (rect, _) = ui.allocate_exact_size(Vec2::new(EDGE - 110.0, 10.0), egui::Sense::hover());
+        let mut mesh = egui::Mesh::default();
+        const STEPS: u32 = 32;
+        for step in 0..=STEPS {
+            let share = step as f32 / STEPS as f32;
+            let [r, g, b] = false_color(share);
+            let x = egui::lerp(rect.x_range(), share);
+            for y in [rect.top(), rect.bottom()] {
+                mesh.colored_vertex(egui::pos2(x, y), egui::Color32::from_rgb(r, g, b));
+            }
+            if step > 0 {
+                let end = 2 * step + 1;
+                mesh.add_triangle(end - 3, end - 2, end - 1);
+                mesh.add_triangle(end - 2, end - 1, end);
+            }
+        }
+        ui.painter().add(mesh);
+        ui.weak(text::light_volume::FULLY_LIT);
+    });
+}

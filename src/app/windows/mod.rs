@@ -1,0 +1,10 @@
+//! Windows over the main one: export, files, slices, contact sheet, help.
+
+pub(super) mod contact_sheet;
+pub(super) mod export;
+pub(super) mod files;
+pub(super) mod help;
+pub(super) mod light_slice;
+pub(super) mod palette;
+pub(super) mod raw_dialog;
+pub(super) mod slices;

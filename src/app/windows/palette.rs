@@ -1,0 +1,90 @@
+//! Finding a command by its name.
+
+use eframe::egui::{self, Align2, Key, Modifiers, TextEdit};
+
+use crate::app::shell::commands::{self, Command};
+use crate::app::text;
+
+/// Lines that are shown at once.
+const LINES: usize = 12;
+
+/// The window with the search field.
+#[derive(Debug, Default)]
+pub(crate) struct Palette {
+    open: bool,
+    text: String,
+    chosen: usize,
+}
+
+impl Palette {
+    /// Opens it, empty.
+    pub(crate) fn open(&mut self) {
+        *self = Self { open: true, ..Self::default() };
+    }
+
+    /// Shows it, and adds the command that was chosen.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+        if !self.open {
+            return;
+        }
+        let down = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowDown));
+        let up = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowUp));
+        let enter = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter));
+        let escape = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        let mut found = matching(&self.text);
+        let last = found.len().min(LINES).saturating_sub(1);
+        self.chosen = (self.chosen + usize::from(down)).saturating_sub(usize::from(up)).min(last);
+        let mut run = if enter && !found.is_empty() { Some(self.chosen) } else { None };
+        let window =
+            egui::Window::new(text::commands::FIND).title_bar(false).resizable(false).collapsible(false);
+        window.anchor(Align2::CENTER_TOP, [0.0, 60.0]).fixed_size([380.0, 320.0]).show(ctx, |ui| {
+            let field = TextEdit::singleline(&mut self.text).hint_text(text::commands::FIND_HINT);
+            let response =
+                ui.name_inputs(text::commands::FIND, |ui| ui.add(field.desired_width(f32::INFINITY)));
+            response.request_focus();
+            if response.changed() {
+                self.chosen = 0;
+            }
+            ui.separator();
+            for (at, command) in found.iter().take(LINES).enumerate() {
+                let button = egui::Button::selectable(at == self.chosen, &*command.label())
+                    .shortcut_text(command.shortcut_text(ui.ctx()));
+                if ui.add_sized([ui.available_width(), 20.0], button).clicked() {
+                    run = Some(at);
+                }
+            }
+            if found.is_empty() {
+                ui.weak(text::commands::NOTHING_FOUND);
+            }
+        });
+        if let Some(at) = run {
+            commands.push(found.swap_remove(at));
+        }
+        self.open = !(escape || run.is_some());
+    }
+}
+
+/// Commands whose names hold all the words of a text; those that begin with it first.
+fn matching(text: &str) -> Vec<Command> {
+    let text = text.to_lowercase();
+    let mut found: Vec<_> = commands::listed()
+        .into_iter()
+        .map(|command| (command.label().to_lowercase(), command))
+        .filter(|(name, _)| text.split_whitespace().all(|word| name.contains(word)))
+        .collect();
+    found.sort_by_key(|(name, _)| !name.starts_with(&text));
+    found.into_iter().map(|(_, command)| command).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_are_found_by_parts_of_their_names() {
+        assert_eq!(matching("").len(), commands::listed().len());
+        assert_eq!(matching("balance").first(), Some(&Command::Balance));
+        assert!(matching("light solo").contains(&Command::Solo));
+        assert!(matching("no such thing").is_empty());
+    }
+}

@@ -1,0 +1,131 @@
+//! What a slice looks like: greys, or the colours of the transfer function.
+
+use eframe::egui::ecolor::gamma_u8_from_linear_f32;
+use eframe::egui::{Color32, ColorImage, Vec2};
+
+use crate::data::Volume;
+use crate::model::TransferFunction;
+
+/// Steps of the table from densities to colours: as many greys as anyone can tell apart, four times over.
+const STEPS: usize = 1024;
+
+/// The values that are black and white.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Grey {
+    /// This, and everything below it.
+    pub black: f64,
+    /// This, and everything above it.
+    pub white: f64,
+}
+
+impl Grey {
+    /// The same with black below white, both among the values that there are, or nearly.
+    pub(crate) fn within(self, (low, high): (f64, f64)) -> Self {
+        let span = (high - low).max(f64::MIN_POSITIVE);
+        let black = self.black.clamp(low - span, high + span);
+        Self { black, white: self.white.clamp(black + span * 1e-3, high + 3.0 * span) }
+    }
+
+    /// As radiologists drag: to the right for less contrast, up for a brighter slice. By shares of a slice.
+    pub(crate) fn drag(&mut self, by: Vec2, range: (f64, f64)) {
+        let middle = f64::midpoint(self.black, self.white) + f64::from(by.y) * (range.1 - range.0);
+        let width = (self.white - self.black) * f64::from(by.x * 2.0).exp();
+        *self = Self { black: middle - width / 2.0, white: middle + width / 2.0 }.within(range);
+    }
+}
+
+/// The axes of index space that a cut across an axis shows to the right and upwards.
+pub(crate) fn across(axis: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][axis]
+}
+
+/// Colours of densities from 0 to 1. With a transfer function, in its colours as far as it is opaque.
+pub(crate) fn lookup(volume: &Volume, grey: Grey, transfer: Option<&TransferFunction>) -> Vec<Color32> {
+    let color = |step: usize| {
+        let value = volume.value_of(step as f64 / STEPS as f64);
+        let level = ((value - grey.black) / (grey.white - grey.black)).clamp(0.0, 1.0) as f32;
+        let Some(transfer) = transfer else { return Color32::from_gray((level * 255.0).round() as u8) };
+        let opacity = transfer.opacity_at(value) as f32;
+        let shown = transfer.at(value).0.map(|c| f32::from(gamma_u8_from_linear_f32(c as f32)));
+        let [r, g, b] = shown.map(|c| (level * 255.0 + (c - level * 255.0) * opacity).round() as u8);
+        Color32::from_rgb(r, g, b)
+    };
+    (0..=STEPS).map(color).collect()
+}
+
+/// The voxels across an axis, in the colours of a table.
+pub(crate) fn slice(volume: &Volume, axis: usize, at: usize, table: &[Color32]) -> ColorImage {
+    let dims = volume.dims();
+    let [u, v] = across(axis);
+    let mut pixels = Vec::with_capacity(dims[u] * dims[v]);
+    for row in (0..dims[v]).rev() {
+        for column in 0..dims[u] {
+            let mut voxel = [at; 3];
+            (voxel[u], voxel[v]) = (column, row);
+            let density = volume.density_of(volume.value(voxel[0], voxel[1], voxel[2]));
+            pixels.push(table[((density * STEPS as f64) as usize).min(STEPS)]);
+        }
+    }
+    ColorImage::new([dims[u], dims[v]], pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Samples;
+    use crate::model::ControlPoint;
+    use eframe::egui::vec2;
+    use glam::DVec3;
+
+    /// Values x + 10 y + 100 z.
+    fn volume() -> Volume {
+        let values = (0..2 * 3 * 4).map(|at| (at % 2 + 10 * (at / 2 % 3) + 100 * (at / 6)) as u16).collect();
+        Volume::with_spacing("steps", [2, 3, 4], DVec3::ONE, Samples::U16(values)).unwrap()
+    }
+
+    #[test]
+    fn slices_show_their_voxels_the_right_way_up() {
+        let volume = volume();
+        let table = lookup(&volume, Grey { black: 0.0, white: 321.0 }, None);
+        let grey = |value: f64| {
+            let found = table[(volume.density_of(value) * STEPS as f64) as usize];
+            assert!((f64::from(found.r()) - value / 321.0 * 255.0).abs() <= 1.0, "{value}: {found:?}");
+            found
+        };
+        for (axis, size, top_left, bottom_right) in
+            [(0, [3, 4], 301.0, 21.0), (1, [2, 4], 310.0, 11.0), (2, [2, 3], 120.0, 101.0)]
+        {
+            let image = slice(&volume, axis, 1, &table);
+            assert_eq!(image.size, size, "across axis {axis}");
+            assert_eq!(image.pixels[0], grey(top_left), "across axis {axis}");
+            assert_eq!(*image.pixels.last().unwrap(), grey(bottom_right), "across axis {axis}");
+        }
+    }
+
+    #[test]
+    fn grey_levels_are_dragged_and_stay_in_order() {
+        let mut grey = Grey { black: 20.0, white: 60.0 };
+        grey.drag(vec2(0.0, 0.1), (0.0, 100.0));
+        assert!((grey.black - 30.0).abs() < 1e-4 && (grey.white - 70.0).abs() < 1e-4, "{grey:?}");
+        grey.drag(vec2(0.2, 0.0), (0.0, 100.0));
+        assert!(grey.black < 30.0 && grey.white > 70.0);
+        for _ in 0..50 {
+            grey.drag(vec2(-0.9, 0.9), (0.0, 100.0));
+        }
+        assert!(grey.white > grey.black && grey.black <= 200.0);
+        let turned = Grey { black: 9.0, white: 1.0 }.within((0.0, 10.0));
+        assert!(turned.white > turned.black);
+    }
+
+    #[test]
+    fn colors_come_where_the_transfer_function_is_opaque() {
+        let volume = volume();
+        let point = ControlPoint::new(5.0, [1.0, 0.0, 0.0], 0.0);
+        let mut transfer = TransferFunction { points: vec![point], ..TransferFunction::default() };
+        let grey = Grey { black: 0.0, white: 321.0 };
+        assert_eq!(lookup(&volume, grey, Some(&transfer)), lookup(&volume, grey, None));
+        transfer.points[0].opacity = 1.0;
+        let red = lookup(&volume, grey, Some(&transfer));
+        assert!(red.iter().all(|color| color.r() > 230 && color.g() < 25), "{:?} … {:?}", red[0], red[STEPS]);
+    }
+}

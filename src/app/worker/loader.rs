@@ -1,0 +1,270 @@
+//! Opens volumes on a thread of their own, up to the first look.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::thread::JoinHandle;
+
+use eframe::egui;
+
+use super::task::Work;
+use crate::app::text;
+use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
+use crate::data::{Bricks, Histogram, Volume};
+use crate::gpu::first_look;
+use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, fitted};
+use crate::model::Settings;
+
+/// Bins of the histogram that the transfer function editor shows.
+const HISTOGRAM_BINS: usize = 1024;
+
+/// How a volume is read, where the user has said it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Reading {
+    /// How a file of bare voxels is stored.
+    pub raw: Option<RawFormat>,
+    /// Blocks of so many voxels along each axis are averaged into one.
+    pub reduce: Option<usize>,
+}
+
+/// A volume that is ready to be shown.
+#[derive(Debug)]
+pub(crate) struct Opened {
+    /// What was asked for: a path or the name of a built-in volume.
+    pub source: String,
+    /// How it was read.
+    pub reading: Reading,
+    /// The voxels: with as few averaged as the adapter needs.
+    pub volume: Arc<Volume>,
+    /// How many there were along x, y and z, if the adapter could not hold them.
+    pub too_many: Option<[usize; 3]>,
+    /// Their bricks.
+    pub bricks: Arc<Bricks>,
+    /// Their histogram.
+    pub histogram: Histogram,
+    /// A renderer that has the volume on the GPU.
+    pub renderer: Renderer,
+    /// A first look at it.
+    pub settings: Settings,
+}
+
+/// How an attempt to open a volume ended.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// With a volume.
+    Opened(Box<Opened>),
+    /// The user stopped it.
+    Cancelled,
+    /// It is a file of bare voxels, and how these are stored is not known, or not right.
+    NotDescribed { path: PathBuf, why: String, guess: RawGuess },
+    /// With a message: what, and all that is known.
+    Failed { short: String, details: String },
+}
+
+#[derive(Debug)]
+struct Running {
+    source: String,
+    control: Arc<LoadControl>,
+    phase: Arc<AtomicU8>,
+    work: Work<Outcome>,
+}
+
+/// Opens one volume at a time; a new request replaces the one before.
+#[derive(Debug)]
+pub(crate) struct Loader {
+    context: Context,
+    /// The pipelines of that device, for every volume's renderer.
+    shaders: ShaderLibrary,
+    options: LoadOptions,
+    running: Option<Running>,
+    warm_up: WarmUp,
+}
+
+/// Threads that make pipelines ahead of time. Dropping this waits for them: a driver must not be unloaded while a
+/// thread is in it.
+#[derive(Debug, Default)]
+struct WarmUp {
+    stop: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl WarmUp {
+    fn start(
+        &mut self,
+        shaders: &ShaderLibrary,
+        what: fn(&ShaderLibrary, &AtomicBool) -> Result<(), GpuError>,
+    ) -> std::io::Result<()> {
+        let (shaders, stop) = (shaders.clone(), Arc::clone(&self.stop));
+        let thread = std::thread::Builder::new().name("warm-up".to_owned());
+        self.threads.push(thread.spawn(move || {
+            if let Err(err) = what(&shaders, &stop) {
+                log::error!("pipelines could not be made ahead of time: {err}");
+            }
+            if let Err(err) = shaders.save_cache() {
+                log::warn!("pipelines could not be kept for the next start: {err}");
+            }
+        })?);
+        Ok(())
+    }
+}
+
+impl Drop for WarmUp {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        for thread in self.threads.drain(..) {
+            // That it panicked is logged where it did.
+            drop(thread.join());
+        }
+    }
+}
+
+/// What the user is told, by phase.
+const PHASES: [&str; 5] = [
+    text::opening::READING,
+    text::opening::FITTING,
+    text::opening::COUNTING,
+    text::opening::UPLOADING,
+    text::opening::FIRST_LOOK,
+];
+
+impl Loader {
+    /// A loader for volumes that a device will show. Begins to make its pipelines.
+    pub(crate) fn new(
+        context: Context,
+        options: LoadOptions,
+        storage: Option<&Path>,
+    ) -> std::io::Result<Self> {
+        let shaders = storage.map_or_else(
+            || ShaderLibrary::new(&context),
+            |folder| ShaderLibrary::with_cache(&context, &folder.join("pipelines")),
+        );
+        let mut warm_up = WarmUp::default();
+        warm_up.start(&shaders, ShaderLibrary::warm_up)?;
+        Ok(Self { context, shaders, options, running: None, warm_up })
+    }
+
+    /// Makes pipelines that may be wanted later, once; to be called when nothing else is to be done.
+    pub(crate) fn prepare(&mut self) {
+        if self.warm_up.threads.len() < 2
+            && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_rest)
+        {
+            log::warn!("pipelines will be made when they are wanted: {err}");
+        }
+    }
+
+    /// Starts to open a file or a built-in volume.
+    pub(crate) fn open(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> Result<(), String> {
+        self.cancel();
+        let control = Arc::new(LoadControl::new());
+        let phase = Arc::new(AtomicU8::new(0));
+        let task = {
+            let (context, shaders) = (self.context.clone(), self.shaders.clone());
+            let mut options = self.options.clone();
+            options.raw = reading.raw.unwrap_or(options.raw);
+            let reduce = reading.reduce.unwrap_or(options.reduce);
+            options.reduce = reduce;
+            let reading = Reading { reduce: Some(reduce), ..reading };
+            let (control, phase, source) = (Arc::clone(&control), Arc::clone(&phase), source.to_owned());
+            move || open((source, reading), (&context, shaders), &options, &control, &phase)
+        };
+        let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
+        self.running = Some(Running { source: source.to_owned(), control, phase, work });
+        Ok(())
+    }
+
+    /// Stops opening; what is open stays.
+    pub(crate) fn cancel(&self) {
+        if let Some(running) = &self.running {
+            running.control.cancel();
+        }
+    }
+
+    /// What became of it, once.
+    pub(crate) fn take(&mut self) -> Option<Outcome> {
+        let running = self.running.as_ref()?;
+        let outcome = running.work.take()?.unwrap_or_else(|panic| Outcome::Failed {
+            short: text::opening::failed(&running.source),
+            details: text::opening::stopped(&panic),
+        });
+        self.running = None;
+        Some(outcome)
+    }
+
+    /// What is being opened, what is being done, and how much of it is done where that is known.
+    pub(crate) fn progress(&self) -> Option<(&str, &'static str, Option<f32>)> {
+        let running = self.running.as_ref()?;
+        let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
+        let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
+        Some((&running.source, PHASES[phase], fraction.map(|fraction| fraction as f32)))
+    }
+}
+
+/// Endings of files that hold bare voxels.
+const BARE: [&str; 8] = [".raw", ".raw.gz", ".bin", ".dat", ".vol", ".img", ".bytes", ".u8"];
+
+/// Whether a file could be opened if it were said how it is stored.
+fn not_described(source: &str, err: &LoadError) -> Option<Outcome> {
+    let LoadError::BadInput(explanation) = err else { return None };
+    let name = source.to_lowercase();
+    let path = PathBuf::from(source);
+    let guess = RawLayout::guess(&path).ok()??;
+    let is_bare = BARE.iter().any(|ending| name.ends_with(ending));
+    is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
+}
+
+fn open(
+    (source, reading): (String, Reading),
+    (context, shaders): (&Context, ShaderLibrary),
+    options: &LoadOptions,
+    control: &LoadControl,
+    phase: &AtomicU8,
+) -> Outcome {
+    let volume = match load::open(&source, options, control) {
+        Ok(volume) => volume,
+        Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
+        Err(err) => {
+            if let Some(asked) = not_described(&source, &err) {
+                return asked;
+            }
+            let short =
+                err.explanation().map_or_else(|| err.to_string(), |why| format!("{}: {}", why.what, why.why));
+            return Outcome::Failed { short, details: err.to_string() };
+        }
+    };
+    phase.store(1, Ordering::Relaxed);
+    let not_shown = |err: &GpuError| Outcome::Failed {
+        short: text::opening::not_shown(&source),
+        details: err.to_string(),
+    };
+    let dims = volume.dims();
+    let volume = match fitted(context, volume) {
+        Ok(volume) => Arc::new(volume),
+        Err(err) => return not_shown(&err),
+    };
+    let too_many = (volume.dims() != dims).then_some(dims);
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    phase.store(2, Ordering::Relaxed);
+    let bricks = Arc::new(Bricks::of(&volume));
+    let histogram = Histogram::of(&volume, HISTOGRAM_BINS);
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    phase.store(3, Ordering::Relaxed);
+    let look = Renderer::with_shaders(context, shaders).and_then(|mut renderer| {
+        phase.store(4, Ordering::Relaxed);
+        let settings = first_look(&mut renderer, &volume, &bricks, &histogram)?;
+        Ok((renderer, settings))
+    });
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    match look {
+        Ok((renderer, settings)) => {
+            let opened = Opened { source, reading, volume, too_many, bricks, histogram, renderer, settings };
+            Outcome::Opened(Box::new(opened))
+        }
+        Err(err) => not_shown(&err),
+    }
+}

@@ -1,0 +1,320 @@
+//! The resolution controller: how coarse a preview must be to keep up with the user.
+//!
+//! Pure arithmetic. It predicts milliseconds from what earlier batches took and chooses the finest
+//! look that fits the frame budget; the viewport carries it out.
+
+use crate::math::SceneSpace;
+use crate::model::{Engine, Kernel, Resolution, Settings};
+use crate::plan::preview_slab;
+
+/// Milliseconds of a preview while something moves: a frame at 30 per second.
+const BUDGET_MS: f64 = 33.0;
+/// The same on a software adapter …
+const SOFTWARE_BUDGET_MS: f64 = 66.0;
+/// … where the window itself takes so much of each frame.
+const SOFTWARE_WINDOW_MS: f64 = 26.0;
+/// Bands into which a picture is cut on a software adapter, where one may take seconds: between
+/// them the painter looks whether something else is wanted.
+const SOFTWARE_BANDS: u32 = 16;
+/// Pixels of a band on a graphics card: far below what driver watchdogs allow.
+const BAND_PIXELS: u32 = 1 << 18;
+
+/// How a request is rendered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Look {
+    /// Window pixels per rendered pixel along an axis.
+    pub scale: u32,
+    /// For light volumes that are not there yet.
+    pub coarse: Option<Resolution>,
+    /// Eye pass with the prefiltered kernel.
+    pub quick_eye: bool,
+    /// Light pass with the prefiltered kernel.
+    pub quick_light: bool,
+}
+
+impl Look {
+    /// What exports show too.
+    pub(crate) const FULL: Self = Self { scale: 1, coarse: None, quick_eye: false, quick_light: false };
+
+    /// Pixels to be rendered for a viewport.
+    pub(crate) fn size(self, viewport: [u32; 2]) -> [u32; 2] {
+        viewport.map(|n| n.div_ceil(self.scale).max(1))
+    }
+
+    /// The settings to be rendered for the wanted ones.
+    pub(crate) fn settings(self, wanted: &Settings, scene: &SceneSpace, viewport: [u32; 2]) -> Settings {
+        let mut settings = wanted.clone();
+        if self != Self::FULL {
+            // Nobody waits for every single splat while something moves.
+            settings.sampling.engine = Engine::Gather;
+        }
+        if self.quick_eye {
+            settings.sampling.kernel = Kernel::Prefiltered;
+            let slab = settings.sampling.slab;
+            settings.sampling.slab = preview_slab(&settings.camera, scene, self.size(viewport), slab);
+        }
+        if self.quick_light {
+            settings.shadows.kernel = Kernel::Prefiltered;
+        }
+        settings
+    }
+}
+
+/// Light volumes that a request needs and that are not there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Missing {
+    /// How many must be filled.
+    pub count: usize,
+    /// Whether others can be used as they are.
+    pub others: bool,
+}
+
+/// A running estimate, which the first measurement replaces.
+#[derive(Debug, Clone, Copy)]
+struct Estimate {
+    ms: f64,
+    measured: bool,
+}
+
+impl Estimate {
+    const fn guess(ms: f64) -> Self {
+        Self { ms, measured: false }
+    }
+
+    fn scale(&mut self, factor: f64) {
+        let factor = factor.clamp(0.02, 50.0);
+        // Halfway in the logarithm: a hiccup does not decide, a trend does.
+        self.ms = (self.ms * if self.measured { factor.sqrt() } else { factor }).clamp(1e-9, 1e5);
+        self.measured = true;
+    }
+
+    fn observe(&mut self, ms: f64) {
+        self.scale(ms / self.ms);
+    }
+}
+
+/// Learns what things cost here.
+#[derive(Debug, Clone)]
+pub(crate) struct Refine {
+    software: bool,
+    /// Milliseconds per frame that the user asked for.
+    frame_ms: Option<f64>,
+    /// By resolution and by quick kernel.
+    light_build: [[Estimate; 2]; 3],
+    /// Milliseconds per pixel of whole pictures: exact and quick, by scale. Neighbouring rays share
+    /// less of what they read in small pictures, whose pixels cost more.
+    eye_pixel: [[Estimate; 3]; 2],
+    /// Exact and quick: a first picture was seen, whose time was that of compiling, too.
+    warm: [bool; 2],
+}
+
+fn resolution_index(coarse: Option<Resolution>) -> usize {
+    match coarse.unwrap_or(Resolution::Full) {
+        Resolution::Full => 0,
+        Resolution::Half => 1,
+        Resolution::Quarter => 2,
+    }
+}
+
+fn scale_index(scale: u32) -> usize {
+    scale.ilog2().min(2) as usize
+}
+
+impl Refine {
+    /// Cautious guesses for an adapter.
+    pub(crate) fn new(software: bool) -> Self {
+        let slow = if software { 20.0 } else { 1.0 };
+        let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
+        Self {
+            software,
+            frame_ms: None,
+            light_build: [build(400.0), build(60.0), build(10.0)],
+            eye_pixel: [[1.0, 1.5, 2.3], [0.4, 0.6, 0.9]]
+                .map(|row| row.map(|ms| Estimate::guess(ms * slow * 2e-5))),
+            warm: [false; 2],
+        }
+    }
+
+    /// Milliseconds per frame while something moves, instead of what suits the adapter.
+    pub(crate) fn set_frame_ms(&mut self, frame_ms: Option<f64>) {
+        self.frame_ms = frame_ms;
+    }
+
+    /// Milliseconds of a preview.
+    fn budget_ms(&self) -> f64 {
+        let usual = if self.software { SOFTWARE_BUDGET_MS } else { BUDGET_MS };
+        let window = if self.software { SOFTWARE_WINDOW_MS } else { 0.0 };
+        (self.frame_ms.unwrap_or(usual) - window).max(1.0)
+    }
+
+    /// Pieces into which a chunk of the light pass is cut.
+    pub(crate) fn light_parts(&self, look: Look) -> u32 {
+        // Half a chunk of a 256³ volume takes a software adapter some 20 ms.
+        if look == Look::FULL && self.software { 2 } else { 1 }
+    }
+
+    /// Rows of a band of a picture of some size.
+    pub(crate) fn rows(&self, look: Look, [width, height]: [u32; 2]) -> u32 {
+        // A preview is finished whatever happens.
+        let whole =
+            if self.software && look == Look::FULL { height.div_ceil(SOFTWARE_BANDS) } else { height };
+        whole.min(BAND_PIXELS / width.max(1)).max(1)
+    }
+
+    /// Learns what the eye pass of a whole picture took.
+    pub(crate) fn learn_picture(&mut self, look: Look, pixels: f64, ms: f64) {
+        let quick = usize::from(look.quick_eye);
+        let warm = std::mem::replace(&mut self.warm[quick], true);
+        if !(warm && ms.is_finite() && pixels > 0.0) {
+            return;
+        }
+        let at = scale_index(look.scale);
+        let before = self.eye_pixel[quick][at].ms;
+        self.eye_pixel[quick][at].observe(ms.max(0.05) / pixels);
+        let factor = self.eye_pixel[quick][at].ms / before;
+        // A new view or another transfer function makes pictures of all sizes cheaper or dearer.
+        for (other, estimate) in self.eye_pixel[quick].iter_mut().enumerate() {
+            if other != at {
+                estimate.ms = (estimate.ms * factor).clamp(1e-9, 1e5);
+            }
+        }
+    }
+
+    /// Learns what filling one light volume took in all.
+    pub(crate) fn learn_build(&mut self, look: Look, ms: f64) {
+        let quick = usize::from(look.quick_light);
+        let at = resolution_index(look.coarse);
+        self.light_build[at][quick].observe(ms.max(0.05));
+        // A resolution that was never tried: eight times the voxels, a little less than the time.
+        for finer in (0..at).rev() {
+            if !self.light_build[finer][quick].measured {
+                self.light_build[finer][quick].ms = self.light_build[finer + 1][quick].ms * 6.0;
+            }
+        }
+    }
+
+    /// The look of a preview: the finest that keeps the frame budget.
+    pub(crate) fn preview(&self, viewport: [u32; 2], missing: Missing) -> Look {
+        let budget = self.budget_ms();
+        let pixels = f64::from(viewport[0]) * f64::from(viewport[1]);
+        let quick_light = self.software && missing.count > 0 && !missing.others;
+        let (mut coarse, mut light_ms) = (None, 0.0);
+        if missing.count > 0 {
+            // Up to two thirds of the frame go to the light that moves.
+            let room = budget * 0.66;
+            for choice in [None, Some(Resolution::Half), Some(Resolution::Quarter)] {
+                coarse = choice;
+                let quick = usize::from(quick_light && choice.is_some());
+                light_ms = self.light_build[resolution_index(choice)][quick].ms * missing.count as f64;
+                if light_ms <= room {
+                    break;
+                }
+            }
+        }
+        let exact_ms = self.eye_pixel[0][0].ms * pixels;
+        if coarse.is_none() && exact_ms + light_ms <= budget {
+            return Look::FULL;
+        }
+        let quick_eye = self.software;
+        let eye = &self.eye_pixel[usize::from(quick_eye)];
+        let eye_ms = |scale: u32| eye[scale_index(scale)].ms * pixels / f64::from(scale * scale);
+        let fits = |scale: u32| eye_ms(scale) + light_ms <= budget;
+        let scale = [1, 2].into_iter().find(|&scale| fits(scale)).unwrap_or(4);
+        // A light volume of the full resolution may have been forgotten: then rather a coarse one.
+        let fallback = if self.software { Resolution::Quarter } else { Resolution::Half };
+        let quick_light = quick_light && coarse.is_some();
+        Look { scale, coarse: coarse.or((missing.count == 0).then_some(fallback)), quick_eye, quick_light }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured(software: bool, eye_ms_per_megapixel: f64, full_build_ms: f64) -> Refine {
+        let mut refine = Refine::new(software);
+        for look in [Look::FULL, Look { quick_eye: true, ..Look::FULL }] {
+            let factor = if look.quick_eye { 0.3 } else { 1.0 };
+            for _ in 0..8 {
+                refine.learn_picture(look, 1e6, eye_ms_per_megapixel * factor);
+            }
+        }
+        for (coarse, share) in
+            [(None, 1.0), (Some(Resolution::Half), 0.15), (Some(Resolution::Quarter), 0.03)]
+        {
+            refine.learn_build(Look { coarse, ..Look::FULL }, full_build_ms * share);
+            refine.learn_build(Look { coarse, quick_light: true, ..Look::FULL }, full_build_ms * share * 0.4);
+        }
+        refine
+    }
+
+    const ONE: Missing = Missing { count: 1, others: false };
+
+    #[test]
+    fn a_fast_card_previews_at_full_quality() {
+        let refine = measured(false, 2.0, 5.0);
+        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL);
+    }
+
+    #[test]
+    fn a_slow_one_goes_coarse_in_steps() {
+        let refine = measured(false, 20.0, 60.0);
+        let still = refine.preview([1000, 1000], Missing::default());
+        assert_eq!((still.scale, still.quick_eye), (1, false));
+        let moving = refine.preview([1000, 1000], ONE);
+        assert_eq!(moving.coarse, Some(Resolution::Half));
+        let software = measured(true, 600.0, 1000.0);
+        let moving = software.preview([1000, 700], ONE);
+        assert_eq!(moving.coarse, Some(Resolution::Quarter));
+        assert!(moving.quick_eye && moving.quick_light && moving.scale >= 2, "{moving:?}");
+    }
+
+    #[test]
+    fn a_larger_budget_makes_sharper_previews() {
+        let mut software = measured(true, 600.0, 1000.0);
+        let usual = software.preview([1000, 700], ONE);
+        software.set_frame_ms(Some(400.0));
+        let sharp = software.preview([1000, 700], ONE);
+        assert!(sharp.scale < usual.scale, "{sharp:?}");
+        software.set_frame_ms(Some(5.0));
+        assert_eq!(software.preview([1000, 700], ONE).scale, 4, "as little as there is");
+        software.set_frame_ms(None);
+        assert_eq!(software.preview([1000, 700], ONE), usual);
+    }
+
+    #[test]
+    fn a_usable_light_volume_keeps_its_kernel() {
+        let software = measured(true, 600.0, 1000.0);
+        assert!(!software.preview([800, 600], Missing { count: 1, others: true }).quick_light);
+        assert!(!software.preview([800, 600], Missing::default()).quick_light);
+    }
+
+    #[test]
+    fn estimates_follow_what_is_measured() {
+        let mut refine = Refine::new(false);
+        for _ in 0..20 {
+            refine.learn_picture(Look::FULL, 1e6, 200.0);
+            refine.learn_build(Look::FULL, 500.0);
+        }
+        let slow = refine.preview([1000, 1000], ONE);
+        assert!(slow.scale > 1 && slow.coarse.is_some(), "{slow:?}");
+        for _ in 0..20 {
+            refine.learn_picture(Look::FULL, 1e6, 2.0);
+            refine.learn_build(Look::FULL, 1.0);
+        }
+        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL);
+        refine.learn_picture(Look::FULL, 1e6, f64::INFINITY);
+        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL, "a lost device teaches nothing");
+    }
+
+    #[test]
+    fn bands_cover_pictures_and_respect_watchdogs() {
+        for software in [false, true] {
+            let refine = Refine::new(software);
+            for size in [[1, 1], [800, 600], [7680, 4320], [32768, 10]] {
+                let rows = refine.rows(Look::FULL, size);
+                assert!(rows >= 1 && (rows == 1 || rows * size[0] <= BAND_PIXELS), "{size:?}: {rows}");
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Times on the GPU itself, where the adapter can tell them.
+
+use crate::gpu::{Context, GpuError};
+
+/// Two time stamps and where they are read.
+#[derive(Debug)]
+pub(crate) struct Clock {
+    stamps: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    read: wgpu::Buffer,
+    ms_per_tick: f64,
+}
+
+/// Bytes of two time stamps.
+const STAMPS: u64 = 16;
+
+impl Clock {
+    /// What the adapter must have.
+    pub(crate) const FEATURES: wgpu::Features =
+        wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
+
+    /// A clock, if the device has one. Software drivers stamp the time at which they read a command, not that
+    /// at which its work is done.
+    pub(crate) fn new(context: &Context) -> Option<Self> {
+        let device = &context.device;
+        if context.is_software() || !device.features().contains(Self::FEATURES) {
+            return None;
+        }
+        let buffer = |label, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: STAMPS,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        Some(Self {
+            stamps: device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("Clock::stamps"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            }),
+            resolved: buffer(
+                "Clock::resolved",
+                wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+            ),
+            read: buffer("Clock::read", wgpu::BufferUsages::MAP_READ),
+            ms_per_tick: f64::from(context.queue.get_timestamp_period()) / 1e6,
+        })
+    }
+
+    /// Notes the time before what is recorded next.
+    pub(crate) fn start(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.write_timestamp(&self.stamps, 0);
+    }
+
+    /// Notes the time after what was recorded.
+    pub(crate) fn stop(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.write_timestamp(&self.stamps, 1);
+        encoder.resolve_query_set(&self.stamps, 0..2, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read, 0, STAMPS);
+    }
+
+    /// Milliseconds between the two; waits for them.
+    pub(crate) fn read_ms(&self, context: &Context) -> Result<f64, GpuError> {
+        self.read.map_async(wgpu::MapMode::Read, .., |result| {
+            if let Err(err) = result {
+                log::error!("reading back failed: {err}");
+            }
+        });
+        context.wait()?;
+        let view = self.read.get_mapped_range(..).map_err(|err| GpuError::Refused(err.to_string()))?;
+        let stamp = |at: usize| {
+            let mut bytes = [0; 8];
+            bytes.copy_from_slice(&view[8 * at..8 * at + 8]);
+            u64::from_le_bytes(bytes)
+        };
+        let ticks = stamp(1).saturating_sub(stamp(0));
+        drop(view);
+        self.read.unmap();
+        Ok(ticks as f64 * self.ms_per_tick)
+    }
+}

@@ -1,0 +1,263 @@
+//! The device, what it can do, and what it complains about.
+
+pub(super) mod clock;
+pub(super) mod error;
+pub(super) mod pipeline_cache;
+pub(super) mod shader;
+pub(super) mod shader_files;
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use self::clock::Clock;
+use super::GpuError;
+
+/// Said when there is no adapter.
+const ADAPTER_HELP: &str =
+    "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)";
+
+/// A device with its queue and what we need to know about it. Cheap to clone.
+#[derive(Debug, Clone)]
+pub struct Context {
+    adapter: wgpu::Adapter,
+    /// Makes resources.
+    pub device: wgpu::Device,
+    /// Takes work.
+    pub queue: wgpu::Queue,
+    /// Name, driver, kind.
+    pub info: wgpu::AdapterInfo,
+    /// Format of attenuation volumes, sheets and pyramid: 16-bit floats where they can be stored.
+    pub storage_format: wgpu::TextureFormat,
+    /// Whether light volumes can have one byte per voxel.
+    pub byte_volumes: bool,
+    /// Whether 16-bit normalised textures are available for density.
+    pub unorm16: bool,
+    /// The first complaint that nobody caught, kept until it is taken.
+    complaint: Arc<Mutex<Option<GpuError>>>,
+}
+
+/// Features that we use where an adapter has them.
+const WANTED: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
+    .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
+    .union(wgpu::Features::FLOAT32_FILTERABLE)
+    .union(wgpu::Features::PIPELINE_CACHE)
+    .union(Clock::FEATURES);
+
+/// What to ask of an adapter: the features we can use and its real limits instead of the defaults
+/// (which refuse a 2049-voxel axis and a 9000-pixel window on any card).
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("chiaroscuro"),
+        required_features: adapter.features() & WANTED,
+        required_limits: adapter.limits(),
+        ..Default::default()
+    }
+}
+
+impl Context {
+    /// Opens a device without a window: the one named by `WGPU_ADAPTER_NAME`, else the fastest.
+    ///
+    /// # Errors
+    /// When there is no adapter or it cannot store the textures that we need.
+    pub fn headless() -> Result<Self, GpuError> {
+        let no_adapter = |why: String| GpuError::NoAdapter { why, help: ADAPTER_HELP };
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            // Vulkan, Metal, DX12; `WGPU_BACKEND` narrows it.
+            backends: wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY),
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        let wanted = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default().to_lowercase();
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+        adapters.retain(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted));
+        adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu => 2,
+            wgpu::DeviceType::Cpu => 3,
+            wgpu::DeviceType::Other => 4,
+        });
+        let adapter =
+            adapters.into_iter().next().ok_or_else(|| no_adapter("no driver offers one".to_owned()))?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
+            .map_err(|err| no_adapter(err.to_string()))?;
+        Self::new(&adapter, device, queue)
+    }
+
+    /// Takes over a device that somebody else opened with [`device_descriptor`].
+    ///
+    /// # Errors
+    /// When the adapter cannot store the textures that we need.
+    pub fn new(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        let features = device.features();
+        let usable = |format: wgpu::TextureFormat| {
+            let can = format.guaranteed_format_features(features);
+            let can = if features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
+                adapter.get_texture_format_features(format)
+            } else {
+                can
+            };
+            can.allowed_usages.contains(wgpu::TextureUsages::STORAGE_BINDING)
+                && can.flags.contains(wgpu::TextureFormatFeatureFlags::FILTERABLE)
+        };
+        let storage_format = [wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R32Float]
+            .into_iter()
+            .find(|&format| usable(format))
+            .ok_or_else(|| GpuError::NoAdapter {
+                why: format!(
+                    "{} can neither store 16-bit nor filter 32-bit float volumes",
+                    adapter.get_info().name
+                ),
+                help: ADAPTER_HELP,
+            })?;
+        let byte_volumes = usable(wgpu::TextureFormat::R8Unorm);
+        let complaint = Arc::new(Mutex::new(None));
+        let keep = |complaint: &Arc<Mutex<Option<GpuError>>>, err: GpuError| {
+            log::error!("{err}");
+            complaint.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(err);
+        };
+        let for_errors = Arc::clone(&complaint);
+        device.on_uncaptured_error(Arc::new(move |err: wgpu::Error| {
+            let err = match err {
+                wgpu::Error::OutOfMemory { .. } => {
+                    GpuError::OutOfMemory { what: "a resource".to_owned(), mebibytes: 0 }
+                }
+                other => GpuError::Refused(other.to_string()),
+            };
+            keep(&for_errors, err);
+        }));
+        let for_loss = Arc::clone(&complaint);
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                keep(&for_loss, GpuError::Lost(message));
+            }
+        });
+        let unorm16 = features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
+        let (adapter, info) = (adapter.clone(), adapter.get_info());
+        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaint })
+    }
+
+    /// The same device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
+    /// checks that must not see the rounding of 16-bit floats.
+    #[must_use]
+    pub fn with_full_precision(mut self) -> Self {
+        if self.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) {
+            self.storage_format = wgpu::TextureFormat::R32Float;
+        }
+        self
+    }
+
+    /// The adapter and its driver, in words.
+    pub fn description(&self) -> String {
+        let info = &self.info;
+        format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info).trim().to_owned()
+    }
+
+    /// Another device on the same adapter, for work beside a window: long work on the window's own
+    /// queue would hold up its frames, and a surface cannot be resized while others submit to it.
+    ///
+    /// # Errors
+    /// When the adapter gives no second device.
+    pub fn sibling(&self) -> Result<Self, GpuError> {
+        // Mesa's software driver takes a fence of one device for passed only when what others of the
+        // same instance have drawn is done, too: every wait would last a frame of the window longer.
+        let adapter = if self.is_software() { self.same_adapter_elsewhere() } else { None };
+        let adapter = adapter.as_ref().unwrap_or(&self.adapter);
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
+            .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
+        let sibling = Self::new(adapter, device, queue)?;
+        Ok(Self { storage_format: self.storage_format, ..sibling })
+    }
+
+    /// This adapter as an instance of its own sees it.
+    fn same_adapter_elsewhere(&self) -> Option<wgpu::Adapter> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: self.info.backend.into(),
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        let adapters = pollster::block_on(instance.enumerate_adapters(self.info.backend.into()));
+        adapters.into_iter().find(|adapter| adapter.get_info() == self.info)
+    }
+
+    /// Whether the adapter is the CPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Waits until everything submitted is done, and reports what went wrong since the last call.
+    ///
+    /// # Errors
+    /// What the device complained about.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|err| GpuError::Refused(err.to_string()))?;
+        self.check()
+    }
+
+    /// Reports what went wrong since the last call.
+    ///
+    /// # Errors
+    /// What the device complained about.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let complaint = self.complaint.lock().unwrap_or_else(PoisonError::into_inner).take();
+        complaint.map_or(Ok(()), Err)
+    }
+
+    /// Makes a texture, or says that memory is out.
+    ///
+    /// # Errors
+    /// When an axis is over the adapter's limit or memory is out.
+    pub fn texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> Result<wgpu::Texture, GpuError> {
+        let what = descriptor.label.unwrap_or("a texture").to_owned();
+        let limits = self.device.limits();
+        let limit = match descriptor.dimension {
+            wgpu::TextureDimension::D3 => limits.max_texture_dimension_3d,
+            wgpu::TextureDimension::D2 | wgpu::TextureDimension::D1 => limits.max_texture_dimension_2d,
+        };
+        let wgpu::Extent3d { width, height, depth_or_array_layers } = descriptor.size;
+        // Layers have a limit of their own, below that of the axes.
+        let most_layers = limits.max_texture_array_layers;
+        let (size, limit) = match descriptor.dimension {
+            wgpu::TextureDimension::D3 => (width.max(height).max(depth_or_array_layers), limit),
+            _ if depth_or_array_layers > most_layers => (depth_or_array_layers, most_layers),
+            _ => (width.max(height), limit),
+        };
+        if size > limit {
+            let help = "a smaller picture or a volume with fewer voxels helps";
+            return Err(GpuError::OverLimit { what, size: u64::from(size), limit: u64::from(limit), help });
+        }
+        let texels = u64::from(width) * u64::from(height) * u64::from(depth_or_array_layers);
+        let bytes = texels * u64::from(descriptor.format.block_copy_size(None).unwrap_or(16));
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let texture = self.device.create_texture(descriptor);
+        match pollster::block_on(scope.pop()) {
+            None => Ok(texture),
+            Some(_) => Err(GpuError::OutOfMemory { what, mebibytes: bytes >> 20 }),
+        }
+    }
+
+    /// A uniform or storage buffer with these contents.
+    pub fn buffer<T: bytemuck::NoUninit>(
+        &self,
+        label: &str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        use wgpu::util::DeviceExt as _;
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents: bytemuck::cast_slice(contents),
+            usage,
+        })
+    }
+
+    /// A sampler that filters linearly and clamps.
+    pub fn sampler(&self, label: &str) -> wgpu::Sampler {
+        self.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some(label),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        })
+    }
+}

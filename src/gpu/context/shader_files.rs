@@ -1,0 +1,54 @@
+//! The text of every shader, embedded in the program.
+
+/// Names and texts of files below `shaders/`.
+macro_rules! shader_files {
+    ($($name:literal),+ $(,)?) => {
+        [$(($name, include_str!(concat!("../../../shaders/", $name)))),+]
+    };
+}
+
+/// Every shader file: its path below `shaders/`, and its text.
+pub const SHADERS: [(&str, &str); 42] = shader_files![
+    "common/listed_bricks.wgsl",
+    "common/space.wgsl",
+    "density/cells.wgsl",
+    "density/classify.wgsl",
+    "density/cut.wgsl",
+    "density/gradient.wgsl",
+    "density/kernel.wgsl",
+    "density/table.wgsl",
+    "density/volume.wgsl",
+    "eye/floor.wgsl",
+    "eye/gather.wgsl",
+    "light/backproject.wgsl",
+    "light/clear_margin.wgsl",
+    "light/combine.wgsl",
+    "light/march.wgsl",
+    "light/raycast.wgsl",
+    "output/display.wgsl",
+    "output/display_deep.wgsl",
+    "output/srgb.wgsl",
+    "output/tone_map.wgsl",
+    "output/window.wgsl",
+    "scatter/eye.wgsl",
+    "scatter/footprint.wgsl",
+    "scatter/footprints.wgsl",
+    "scatter/light.wgsl",
+    "scatter/normalise.wgsl",
+    "scatter/resolve.wgsl",
+    "scatter/reverse.wgsl",
+    "scatter/slab.wgsl",
+    "scatter/splat.wgsl",
+    "scatter/voxels.wgsl",
+    "shading/lights.wgsl",
+    "shading/looked_up_light.wgsl",
+    "shading/shade.wgsl",
+    "shading/shadow_ray.wgsl",
+    "sheets/march.wgsl",
+    "sheets/sheet_frame.wgsl",
+    "sheets/tiles.wgsl",
+    "volume/downsample.wgsl",
+    "volume/gradients.wgsl",
+    "volume/prefilter.wgsl",
+    "volume/resample.wgsl",
+];

@@ -1,0 +1,106 @@
+//! The floor pass: the light on the ground under the volume.
+
+use super::gather::{EyePass, pack_light};
+use crate::gpu::light::raycast as light_raycast;
+use crate::gpu::resources::pass;
+use crate::gpu::resources::uniforms;
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
+use crate::gpu::volume::{Gpu, Levels, entry};
+use crate::gpu::{GpuError, RenderOptions};
+use crate::math::SceneSpace;
+use crate::model::{Ground, Light, MAX_LIGHTS, Settings, linear_from_srgb};
+use crate::plan::ray_reach;
+
+/// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
+/// from the eye.
+pub(crate) const COST: u32 = 2;
+
+/// Draws some rows of the floor, where the picture of the volume does not cover it.
+pub(crate) fn draw(
+    gpu: Gpu<'_>,
+    tables: &Tables,
+    (eye, settings): (&EyePass, &Settings),
+    options: &RenderOptions,
+    (picture, floor): (&wgpu::TextureView, &wgpu::TextureView),
+    rows: std::ops::Range<u32>,
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), GpuError> {
+    let Gpu { context, shaders, volume, .. } = gpu;
+    let frame = eye.frame();
+    let attenuates = settings.shadows.algorithm.is_on();
+    let mut lights: Vec<Light> = settings
+        .lights
+        .iter()
+        .filter(|light| light.on)
+        .map(|light| light.in_world(&settings.camera))
+        .collect();
+    lights.truncate(MAX_LIGHTS);
+    lights.sort_by_key(|light| !(attenuates && light.needs_volume()));
+    let shadowed = lights.iter().filter(|light| attenuates && light.needs_volume()).count();
+    let pipeline = shaders.pipeline("eye/floor.wgsl", &constants(settings, (lights.len(), shadowed)))?;
+    let tiles = pass::tiles([frame.size[0], rows.end - rows.start]);
+    let runs = pass::runs(context, tiles);
+    let uniform = uniforms::Ground {
+        first_row: rows.start,
+        end_row: rows.end,
+        runs,
+        ..uniform(eye, &volume.scene, settings, &lights)
+    };
+    let uniform = gpu.uniform("Ground::uniform", uniform);
+    let own = gpu.bind(
+        "Ground::bind_group",
+        &pipeline,
+        0,
+        &[
+            entry(0, uniform.as_entire_binding()),
+            entry(1, tables.lighting.buffer.as_entire_binding()),
+            view_entry(2, &tables.light_distances),
+            view_entry(3, picture),
+            view_entry(4, floor),
+        ],
+    );
+    let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
+    let dilation = if options.leaping { seen } else { EVERYWHERE };
+    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
+    pass::dispatch(encoder, "Ground::pass", &pipeline, &[&own, &of_volume], tiles);
+    Ok(())
+}
+
+/// The variant of the shader for so many lights, of which so many are attenuated; rays to them are those from the
+/// voxels of a light volume.
+pub(crate) fn constants(settings: &Settings, (lights, shadowed): (usize, usize)) -> Vec<(&'static str, f64)> {
+    let mut constants = light_raycast::constants(settings).to_vec();
+    constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
+    constants
+}
+
+/// What the shader knows of the eye, the floor and the lights; no rows yet.
+fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lights: &[Light]) -> uniforms::Ground {
+    let uniforms::Eye { frame, shading, space, shading_cut, .. } = eye.uniform();
+    let Ground { on: _, height, radius, color, opacity, shadow_only } = settings.ground;
+    // z of a scene point is this row of the map from index space.
+    let [a, b, c, offset] = space.scene_from_index_z;
+    let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
+    let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
+    for (slot, light) in packed.iter_mut().zip(lights) {
+        *slot = pack_light(light, None, scene, settings);
+    }
+    uniforms::Ground {
+        frame,
+        space,
+        shading,
+        shading_cut,
+        plane: [a, b, c, height as f32 - offset],
+        color: color.map(|c| linear_from_srgb(f64::from(c)) as f32),
+        opacity: opacity as f32,
+        radius: radius as f32,
+        fade: (radius * (1.0 - Ground::WHOLE)) as f32,
+        light_share: (1.0 / balance.max(1e-9)) as f32,
+        shadow_only: f32::from(u8::from(shadow_only)),
+        first_row: 0,
+        end_row: frame.size[1],
+        runs: 1,
+        pad0: 0,
+        lights: packed,
+    }
+}

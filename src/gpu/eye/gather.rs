@@ -1,0 +1,262 @@
+//! The eye pass: from density and attenuation to linear light.
+
+use crate::gpu::light::combine::CollapsedLight;
+use crate::gpu::light::volume::{LightVolume, light_bind_group};
+use crate::gpu::resources::kernel::{
+    classification_constant, cut_constant, kernel_constants, quadrature_constant,
+};
+use crate::gpu::resources::pass;
+use crate::gpu::resources::uniforms;
+use crate::gpu::scatter::eye::scatter_dilation;
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
+use crate::gpu::volume::{Gpu, Levels, entry};
+use crate::gpu::{Context, GpuError, RenderOptions};
+use crate::math::SceneSpace;
+use crate::model::{
+    Deposit, Gradients, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm,
+    Shadows,
+};
+use crate::plan::eye_frame;
+use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach};
+
+/// Everything that the eye pass of one picture needs besides the volume.
+#[derive(Debug)]
+pub(crate) struct EyePass {
+    frame: SheetFrame,
+    uniform: uniforms::Eye,
+    /// Cells around a sample's own that it sees.
+    dilation: i32,
+    /// Whether normals may come from the texture of gradients.
+    takes_gradients: bool,
+    /// What kernels reach of the pyramid.
+    levels: Levels,
+    constants: Vec<(&'static str, f64)>,
+}
+
+impl EyePass {
+    /// Sets up the pass. `lights` gives, for each light of the settings, its attenuation volume, unless
+    /// they are collapsed.
+    pub(crate) fn new(
+        scene: &SceneSpace,
+        settings: &Settings,
+        window: PixelWindow,
+        lights: &[Option<&LightVolume>],
+        collapsed: Option<&CollapsedLight>,
+        options: &RenderOptions,
+    ) -> Self {
+        let frame = eye_frame(&settings.camera, scene, window, settings.sampling.slab);
+        let direct = settings.shadows.algorithm == ShadowAlgorithm::Direct;
+        let mut on: Vec<(Light, Option<&LightVolume>)> = settings
+            .lights
+            .iter()
+            .map(|light| light.in_world(&settings.camera))
+            .zip(lights.iter().copied().chain(std::iter::repeat(None)))
+            // The diffuse light of those that cast shadows is in one volume.
+            .filter(|(light, _)| light.on && !(collapsed.is_some() && light.needs_volume()))
+            .take(MAX_LIGHTS)
+            .collect();
+        let is_shadowed =
+            |light: &Light, volume: Option<&LightVolume>| volume.is_some() || direct && light.needs_volume();
+        on.sort_by_key(|(light, volume)| !is_shadowed(light, *volume));
+        let shadowed = on.iter().filter(|(light, volume)| is_shadowed(light, *volume)).count();
+        let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
+        for (slot, (light, volume)) in packed.iter_mut().zip(&on) {
+            *slot = pack_light(light, *volume, scene, settings);
+        }
+        let stretch_level = frame.max_stretch_level();
+        let mut constants =
+            constants(&settings.sampling, &settings.shadows, stretch_level > 0.0, (on.len(), shadowed));
+        if collapsed.is_some() {
+            constants.push(("COLLAPSED", 1.0));
+        }
+        let (remains, shading_cut) = (settings.cuts.seen(), settings.cuts.shading());
+        // Rays to lights are the eye pass's own.
+        constants.push(cut_constant(if direct && remains.is_everything() { shading_cut } else { remains }));
+        let (eye, w) = match settings.camera.projection {
+            Projection::Perspective => (settings.camera.eye(), 1.0),
+            Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
+        };
+        let (gradient_pixels, gradient_slabs) = frame.gradient_steps();
+        let uniform = uniforms::Eye {
+            frame: uniforms::SheetFrame::new(&frame),
+            shading: pack_shading(settings, scene, options),
+            space: uniforms::Space::new(scene),
+            eye: eye.as_vec3().extend(w).into(),
+            first_row: 0,
+            end_row: window.size[1],
+            dilation: if options.leaping { scatter_dilation(&frame) } else { EVERYWHERE },
+            dark: options.dark,
+            gradient_pixels: gradient_pixels as i32,
+            gradient_slabs: gradient_slabs as i32,
+            runs: 1,
+            pad1: 0,
+            collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
+            pad2: 0.0,
+            seen: uniforms::Cut::new(&remains.region(scene)),
+            shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
+            lights: packed,
+        };
+        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
+        if direct {
+            seen = seen.max(ray_reach(&settings.shadows, scene));
+        }
+        let dilation = if options.leaping { i32::from(seen) } else { EVERYWHERE };
+        // Between levels of the pyramid differences and interpolation do not commute exactly.
+        let takes_gradients = stretch_level <= 0.0 || options.preview;
+        let levels = Levels::of(stretch_level > 0.0);
+        Self { frame, uniform, dilation, takes_gradients, levels, constants }
+    }
+
+    /// Slabs of the stack.
+    pub(crate) fn slab_count(&self) -> u32 {
+        self.frame.slab_count
+    }
+
+    /// The eye's rays and slabs.
+    pub(crate) fn frame(&self) -> &SheetFrame {
+        &self.frame
+    }
+
+    /// What the shaders know about the eye, for the whole picture from scattered sheets.
+    pub(crate) fn uniform_buffer(&self, context: &Context, gradient_slabs: u32) -> wgpu::Buffer {
+        let uniform = uniforms::Eye { gradient_slabs: gradient_slabs as i32, ..self.uniform };
+        context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// What shaders know about the eye and the lights.
+    pub(crate) fn uniform(&self) -> uniforms::Eye {
+        self.uniform
+    }
+
+    /// The variant of shaders that only shade: the number of lights.
+    pub(crate) fn scatter_constants(&self) -> Vec<(&'static str, f64)> {
+        self.constants
+            .iter()
+            .filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED" | "COLLAPSED" | "CUT"))
+            .copied()
+            .collect()
+    }
+
+    /// Draws some rows of the picture. `attenuation` holds the volumes of the shadowed lights, in
+    /// the order in which the settings list those lights.
+    pub(crate) fn draw(
+        &self,
+        gpu: Gpu<'_>,
+        tables: &Tables,
+        attenuation: &[&wgpu::TextureView],
+        picture: &wgpu::TextureView,
+        rows: std::ops::Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, volume, .. } = gpu;
+        let gradients = volume.gradients_views.as_ref().filter(|_| self.takes_gradients);
+        let mut constants = self.constants.clone();
+        constants.push(gradient_constant(gradients.is_some()));
+        let pipeline = shaders.pipeline("eye/gather.wgsl", &constants)?;
+        let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
+        let runs = pass::runs(context, tiles);
+        let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
+        let uniform = gpu.uniform("Eye::uniform", uniform);
+        let own = gpu.bind(
+            "Eye::bind_group",
+            &pipeline,
+            0,
+            &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, tables.eye.buffer.as_entire_binding()),
+                view_entry(2, &tables.eye_distances),
+                view_entry(3, picture),
+                entry(4, tables.lighting.buffer.as_entire_binding()),
+                view_entry(5, &tables.light_distances),
+                view_entry(6, gradients.map_or(gpu.nothing, |views| self.levels.choose(views))),
+            ],
+        );
+        let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels);
+        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
+        pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
+        Ok(())
+    }
+}
+
+/// The variant of the shader for a kernel, for pixels wider than voxels or not, and for so many
+/// lights, of which some are attenuated.
+pub(crate) fn constants(
+    sampling: &Sampling,
+    shadows: &Shadows,
+    stretch: bool,
+    (lights, shadowed): (usize, usize),
+) -> Vec<(&'static str, f64)> {
+    let flag = |on: bool| f64::from(u8::from(on));
+    let mut constants = kernel_constants(sampling.kernel).to_vec();
+    constants.push(quadrature_constant(sampling.quadrature));
+    constants.push(("STRETCH", flag(stretch)));
+    constants.push(classification_constant(sampling.classification));
+    constants.push(("SHEET_GRADIENTS", flag(sampling.gradients == Gradients::Sheets)));
+    constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
+    if shadows.algorithm == ShadowAlgorithm::Direct {
+        constants.push(("DIRECT", 1.0));
+        constants.push(("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)));
+    }
+    constants
+}
+
+/// `GRADIENT_TEXTURE`.
+pub(crate) fn gradient_constant(takes_gradients: bool) -> (&'static str, f64) {
+    ("GRADIENT_TEXTURE", f64::from(u8::from(takes_gradients)))
+}
+
+/// A light whose position refers to the scene, for the shaders.
+pub(crate) fn pack_light(
+    light: &Light,
+    volume: Option<&LightVolume>,
+    scene: &SceneSpace,
+    settings: &Settings,
+) -> uniforms::Light {
+    // Balance makes up for the light that shadows take away; without shadows there is none.
+    let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
+    let cone = light.cone();
+    let linear = |c: f32| crate::model::linear_from_srgb(f64::from(c));
+    let to_index = &scene.index_from_scene;
+    let (place, place_in_index, perspective) = match light.kind {
+        LightKind::Parallel => (light.direction(), to_index.transform_vector3(light.direction()), 0.0),
+        LightKind::Perspective => {
+            let position = light.position.into();
+            (position, to_index.transform_point3(position), 1.0)
+        }
+    };
+    uniforms::Light {
+        place: place.as_vec3().into(),
+        perspective,
+        color: light.color.map(|c| (linear(c) * light.intensity * balance) as f32),
+        extinction_scale: light.density_scale as f32,
+        lookup: volume.map_or([0.0; 3], |volume| volume.dims.map(|n| 1.0 / (n * volume.divisor) as f32)),
+        hood_inner: cone.cos_inner as f32,
+        hood_axis: cone.axis.as_vec3().into(),
+        hood_outer: cone.cos_outer as f32,
+        place_in_index: place_in_index.as_vec3().into(),
+        pad0: 0.0,
+    }
+}
+
+pub(crate) fn pack_shading(
+    settings: &Settings,
+    scene: &SceneSpace,
+    options: &RenderOptions,
+) -> uniforms::Shading {
+    let (shading, shadows) = (&settings.shading, &settings.shadows);
+    let unit = settings.opacity_unit.in_scene(scene).max(1e-9);
+    uniforms::Shading {
+        emission: shading.emission as f32,
+        ambient: shading.ambient as f32,
+        diffuse: shading.diffuse as f32,
+        specular: shading.specular as f32,
+        shininess: shading.shininess as f32,
+        surface_gradient: (shading.surface_gradient / unit) as f32,
+        strength: shadows.strength as f32,
+        ambient_offset: shadows.ambient_offset as f32,
+        gain: shadows.gain as f32,
+        bias: (shadows.bias_voxels * scene.smallest_edge()) as f32,
+        ray_step: shadows.ray_step(scene) as f32,
+        dark_depth: options.dark_depth(),
+    }
+}

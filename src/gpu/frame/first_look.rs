@@ -1,0 +1,104 @@
+//! What happens once when a volume is opened: automatic settings, and *Balance*.
+
+use std::sync::Arc;
+
+use crate::data::{Bricks, Histogram, Volume};
+use crate::gpu::{GpuError, RenderOptions, Renderer};
+use crate::model::{Settings, ShadowAlgorithm, auto};
+
+/// Size of the pictures from which brightness is measured: means over some thousand pixels.
+const MEASURED_SIZE: [u32; 2] = [160, 120];
+
+/// Opacity from which a pixel counts as seen.
+const SEEN: f32 = 0.5;
+
+/// Balance stays within this factor: beyond it the settings are at fault, not the shadows.
+const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
+
+/// Settings for a volume that nobody has touched: automatic, and balanced so that shadows do not
+/// make the picture darker. Uploads the volume and fills the light volumes on the way.
+///
+/// # Errors
+/// When the GPU cannot do it.
+pub fn first_look(
+    renderer: &mut Renderer,
+    volume: &Arc<Volume>,
+    bricks: &Arc<Bricks>,
+    histogram: &Histogram,
+) -> Result<Settings, GpuError> {
+    let mut settings = auto::first_settings(volume, histogram);
+    settings.shadows.balance = balance(renderer, volume, bricks, &settings)?;
+    Ok(settings)
+}
+
+/// The factor for the lights that makes the picture with shadows as bright as without.
+///
+/// Mean linear luminance over what is seen is `ambient + factor · direct`; three small pictures
+/// give the parts: with shadows, without, and without lights. The plain ratio of the first two
+/// would fall short by the ambient share.
+///
+/// # Errors
+/// When the GPU cannot do it.
+pub fn balance(
+    renderer: &mut Renderer,
+    volume: &Arc<Volume>,
+    bricks: &Arc<Bricks>,
+    settings: &Settings,
+) -> Result<f64, GpuError> {
+    let mut shadowed = settings.clone();
+    shadowed.shadows.balance = 1.0;
+    let mut unshadowed = shadowed.clone();
+    unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
+    let mut dark = unshadowed.clone();
+    for light in &mut dark.lights {
+        light.intensity = 0.0;
+    }
+    let mut brightness = |settings: &Settings| -> Result<f64, GpuError> {
+        let picture = renderer.render(volume, bricks, settings, MEASURED_SIZE, &RenderOptions::default())?;
+        Ok(mean_luminance(&picture.light))
+    };
+    let with = brightness(&shadowed)?;
+    let (without, ambient) = (brightness(&unshadowed)?, brightness(&dark)?);
+    let factor = (without - ambient) / (with - ambient);
+    Ok(if factor.is_finite() { factor.clamp(BALANCE_RANGE.0, BALANCE_RANGE.1) } else { 1.0 })
+}
+
+/// Linear luminance below which material counts as nearly black: a tenth of the way to white as
+/// displayed (25 of 255), where details can no longer be told apart beside bright parts.
+const NEARLY_BLACK: f64 = 0.01;
+
+/// Mean linear luminance (Rec. 709) of the pixels that show something; 0 when none does.
+pub fn mean_luminance(light: &[[f32; 4]]) -> f64 {
+    mean(light, luminance)
+}
+
+/// The share of the pixels that show something in which that is nearly black; 0 when none shows any.
+pub fn dark_share(light: &[[f32; 4]]) -> f64 {
+    mean(light, |texel| f64::from(u8::from(luminance(texel) < NEARLY_BLACK * f64::from(texel[3]))))
+}
+
+/// The mean over the pixels that show something.
+fn mean(light: &[[f32; 4]], value: impl Fn(&[f32; 4]) -> f64) -> f64 {
+    let seen = light.iter().filter(|texel| texel[3] > SEEN);
+    let (sum, count) = seen.fold((0.0, 0usize), |(sum, count), texel| (sum + value(texel), count + 1));
+    if count == 0 { 0.0 } else { sum / count as f64 }
+}
+
+fn luminance([r, g, b, _]: &[f32; 4]) -> f64 {
+    0.2126 * f64::from(*r) + 0.7152 * f64::from(*g) + 0.0722 * f64::from(*b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn darkness_is_the_share_of_what_is_seen() {
+        let texel = |grey: f32, alpha: f32| [grey * alpha, grey * alpha, grey * alpha, alpha];
+        // Lit, dark, dark but hardly there, lit haze, nothing.
+        let light = [texel(0.5, 1.0), texel(0.009, 0.9), texel(0.0, 0.4), texel(0.3, 0.6), [0.0; 4]];
+        assert!((dark_share(&light) - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!(dark_share(&[[0.0; 4]; 3]), 0.0);
+        assert_eq!(dark_share(&[texel(0.011, 0.9)]), 0.0, "it is the material's darkness, not its thinness");
+    }
+}

@@ -1,0 +1,184 @@
+//! Reverse half of the light pass: splats the sheets back into the light volume.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::march::Sheets;
+use super::volume::LightVolume;
+use crate::data::BRICK_EDGE;
+use crate::gpu::resources::kernel::{kernel_constants, quadrature_constant};
+use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::resources::pass;
+use crate::gpu::resources::uniforms::{self, rows};
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, view_entry};
+use crate::gpu::volume::{Gpu, entry};
+use crate::gpu::{Context, GpuError};
+use crate::math::SceneSpace;
+use crate::model::{Quadrature, Shadows};
+use crate::plan::{LightView, ReadTiles};
+
+/// What each chunk of slabs has to do.
+#[derive(Debug)]
+pub(crate) struct Schedule {
+    /// The bricks of a light volume, by the chunk that completes them.
+    chunks: Vec<Vec<Listed>>,
+    /// The tiles of the sheets that are marched.
+    tiles: ReadTiles,
+}
+
+impl Schedule {
+    /// Finds for every brick to be filled the chunks in which any of its voxels gets its last sheet, and the
+    /// tiles in which sheets are read: all of them if `reach` is [`EVERYWHERE`].
+    ///
+    /// `reach`: cells beyond those to be filled that the reverse kernel reads.
+    pub(crate) fn new(
+        scene: &SceneSpace,
+        view: &LightView,
+        light: &LightVolume,
+        (chunk, reach): (u32, i32),
+    ) -> Self {
+        let count = view.frame.slab_count.div_ceil(chunk).max(1);
+        let mut chunks = vec![Vec::new(); count as usize];
+        for (brick, cells) in light.filled.bricks() {
+            let (first, last) = final_slabs(scene, view, light, brick);
+            for list in &mut chunks[(first / chunk) as usize..=(last / chunk) as usize] {
+                list.push(listed_bricks::listed((brick, cells)));
+            }
+        }
+        let tiles = if reach == EVERYWHERE {
+            ReadTiles::all(view, chunk)
+        } else {
+            ReadTiles::behind(view, scene, chunk, read_boxes(light, reach))
+        };
+        Self { chunks, tiles }
+    }
+
+    /// The tiles that part `part.0` of `part.1` of a chunk marches.
+    pub(crate) fn tiles(&self, chunk: usize, part: (u32, u32)) -> &[u32] {
+        cut(self.tiles.of_chunk(chunk), part)
+    }
+}
+
+/// Part `part.0` of `part.1` of a list.
+fn cut<T>(list: &[T], part: (u32, u32)) -> &[T] {
+    let end_of = |parts: u32| list.len() * parts as usize / part.1 as usize;
+    &list[end_of(part.0)..end_of(part.0 + 1)]
+}
+
+/// Where sheets are read for the bricks of a light volume: around each, in index space.
+fn read_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+    // Cells are pairs of voxels, and samples belong to the cell in which they lie (`density/cells.wgsl`).
+    let beyond = DVec3::splat(2.0 * f64::from(reach));
+    let edge = (BRICK_EDGE * light.divisor) as f64;
+    light.filled.bricks().map(move |(brick, _)| {
+        let low = edge * DVec3::from(brick.map(|at| at as f64));
+        [low - beyond, low + edge + beyond]
+    })
+}
+
+/// The first and the last slab that completes any voxel of a brick.
+fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick: [usize; 3]) -> (u32, u32) {
+    let step = light.divisor as f64;
+    let corner = |side: usize| {
+        let at = |axis: usize| {
+            let voxel = brick[axis] * BRICK_EDGE + if side >> axis & 1 == 0 { 0 } else { BRICK_EDGE - 1 };
+            (voxel as f64 + 0.5) * step - 0.5
+        };
+        scene.scene_from_index.transform_point3(DVec3::new(at(0), at(1), at(2)))
+    };
+    let frame = &view.frame;
+    let depths = (0..8).map(|side| (corner(side) - view.anchor).dot(view.axes.z_axis));
+    let (near, far) =
+        depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
+    // One slab of slack each for the quadrature points and the rounding of the shader.
+    let final_slab = |depth: f64| (depth - frame.first_depth) / frame.slab + 2.0 * view.kernel_slabs() - 0.5;
+    let last = f64::from(frame.slab_count.max(1) - 1);
+    let clamp = |slab: f64| slab.clamp(0.0, last) as u32;
+    (clamp(final_slab(near).floor() - 1.0), clamp(final_slab(far).floor() + 1.0))
+}
+
+/// Light axes from index space: x and y in pixels of the anchor plane, z in scene units.
+fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
+    let to_light = DMat3::from_diagonal(DVec3::new(1.0 / view.frame.pitch, 1.0 / view.frame.pitch, 1.0))
+        * view.axes.transpose();
+    DAffine3 { matrix3: to_light, translation: -(to_light * view.anchor) } * scene.scene_from_index
+}
+
+/// The variant of the shader for a kernel, anywhere wider than a pixel or a slab or not.
+pub(crate) fn constants(context: &Context, shadows: &Shadows, wide: bool) -> [(&'static str, f64); 6] {
+    let [kernel, sigma] = kernel_constants(shadows.kernel);
+    let flag = |on: bool| f64::from(u8::from(on));
+    [
+        kernel,
+        sigma,
+        quadrature_constant(shadows.quadrature),
+        ("FIRST_TOUCH", flag(shadows.first_touch)),
+        ("WIDE", flag(wide)),
+        // A software driver's vector does a whole brick, and what comes before its first voxel once.
+        ("LANES", if context.is_software() { 8.0 } else { 64.0 }),
+    ]
+}
+
+/// Writes the voxels that the slabs `begin .. end` complete: those in part `part.0` of `part.1` of
+/// the bricks.
+pub(crate) fn backproject(
+    gpu: Gpu<'_>,
+    shadows: &Shadows,
+    view: &LightView,
+    (sheets, schedule): &(Sheets, Schedule),
+    light: &LightVolume,
+    (slabs, part): ((u32, u32), (u32, u32)),
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), GpuError> {
+    let Gpu { context, shaders, volume, .. } = gpu;
+    let bricks = cut(&schedule.chunks[(slabs.0 / sheets.chunk) as usize], part);
+    if bricks.is_empty() {
+        return Ok(());
+    }
+    let is_wide = !view.kernel_is_narrow() || shadows.quadrature == Quadrature::Two;
+    let pipeline = shaders.pipeline_into(
+        "light/backproject.wgsl",
+        &constants(context, shadows, is_wide),
+        light.texture.format(),
+    )?;
+    let [x, y, z] = rows(&light_from_index(&volume.scene, view));
+    let uniform = uniforms::Backprojection {
+        frame: uniforms::SheetFrame::new(&view.frame),
+        light_from_index_x: x,
+        light_from_index_y: y,
+        light_from_index_z: z,
+        first_pixel: view.first_pixel.as_vec2().into(),
+        kernel_edge: view.kernel_edge as f32,
+        voxel_step: light.divisor as f32,
+        dims: light.dims.map(|n| n as u32),
+        cube_face: u32::from(view.cube_face),
+        begin: slabs.0,
+        end: slabs.1,
+        layers: sheets.layers,
+        bricks: bricks.len() as u32,
+        ring_scale: [sheets.ring.width(), sheets.ring.height()].map(|n| 1.0 / n as f32),
+        pad0: 0.0,
+        pad1: 0.0,
+    };
+    let uniform = gpu.uniform("Backprojection::uniform", uniform);
+    let list = listed_bricks::upload(gpu, bricks);
+    let bind_group = gpu.bind(
+        "Backprojection::bind_group",
+        &pipeline,
+        0,
+        &[
+            entry(0, uniform.as_entire_binding()),
+            entry(1, list.as_entire_binding()),
+            view_entry(2, &sheets.ring_view),
+            entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
+            view_entry(4, &light.view),
+        ],
+    );
+    pass::dispatch(
+        encoder,
+        "Backprojection::pass",
+        &pipeline,
+        &[&bind_group],
+        listed_bricks::single_workgroups(bricks.len() as u32),
+    );
+    Ok(())
+}

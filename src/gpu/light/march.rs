@@ -1,0 +1,246 @@
+//! Forward half of the light pass: fills sheets with the transmittance that they deposit.
+
+use crate::gpu::context::shader::ring_format;
+use crate::gpu::resources::kernel::{
+    classification_constant, cut_constant, kernel_constants, quadrature_constant,
+};
+use crate::gpu::resources::listed_bricks::single_workgroups;
+use crate::gpu::resources::pass;
+use crate::gpu::resources::pool::Recycled;
+use crate::gpu::resources::uniforms;
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
+use crate::gpu::volume::{Gpu, Levels, entry};
+use crate::gpu::{Context, GpuError, RenderOptions};
+use crate::math::Region;
+use crate::model::{Deposit, Light, Settings};
+use crate::plan::{LightView, sample_reach};
+
+/// Slabs that share a texel of the ring.
+pub(crate) const SLABS_PER_TEXEL: u32 = 4;
+
+/// Bytes of a list of tiles: for 1024 × 1024 pixels, so that hardly any light needs a longer one.
+const TILE_ROOM: u64 = 64 << 10;
+
+/// Columns and rows of the ring come in so many, because sheets get larger and smaller as the light moves.
+const ROOM: u32 = 32;
+
+/// A ring has at most so many times the texels that are needed …
+const MOST_ROOM: u64 = 2;
+/// … or so many, 8 MiB: coarse previews and small volumes.
+const SMALL_RING: u64 = 1 << 20;
+
+/// The sheets of one view of a light: a ring of layers through which the slabs stream.
+#[derive(Debug)]
+pub(crate) struct Sheets {
+    /// Layers of the ring, of [`SLABS_PER_TEXEL`] slabs each.
+    pub layers: u32,
+    /// Slabs marched at a time.
+    pub chunk: u32,
+    /// Light is followed until less than this is left.
+    pub dark: f32,
+    /// For a preview.
+    pub preview: bool,
+    /// Deposited transmittance, four sheets in a texel.
+    pub ring: wgpu::Texture,
+    /// The same.
+    pub ring_view: wgpu::TextureView,
+    transmittance: wgpu::Buffer,
+    /// Cells beyond those that the transfer functions show whose sheets are read.
+    pub reach: i32,
+}
+
+impl Sheets {
+    /// A ring that streams `chunk` slabs at a time and keeps what the reverse kernel still needs of the ones
+    /// before: one that was left behind, if it is large enough.
+    ///
+    /// Sheets are read up to `reach` cells from what either transfer function shows.
+    pub(crate) fn new(
+        context: &Context,
+        recycled: &Recycled,
+        view: &LightView,
+        chunk: u32,
+        reach: i32,
+    ) -> Result<Self, GpuError> {
+        let frame = &view.frame;
+        // Radius 2 on both sides of a voxel, rounded outwards, and one for the quadrature points; the first
+        // of them may be the last of its texel.
+        let kept = ((4.0 * view.kernel_slabs()).ceil() as u32 + 2).div_ceil(SLABS_PER_TEXEL) + 1;
+        let chunk = chunk.min(frame.slab_count).next_multiple_of(SLABS_PER_TEXEL).max(SLABS_PER_TEXEL);
+        let layers = chunk / SLABS_PER_TEXEL + kept;
+        let needed = [frame.size[0].next_multiple_of(ROOM), frame.size[1].next_multiple_of(ROOM), layers];
+        let dark = RenderOptions::default().dark;
+        let size = match recycled.take_sheets().map(|known| known.or_larger(needed)) {
+            Some(Ok(known)) => return Ok(Self { chunk, reach, dark, preview: false, ..known }),
+            Some(Err(larger)) => larger,
+            None => needed,
+        };
+        recycled.made_sheets();
+        let [width, height, layers] = size;
+        let ring = context.texture(&wgpu::TextureDescriptor {
+            label: Some("Sheets::ring"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: ring_format(context.storage_format),
+            usage: wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        })?;
+        let transmittance = context.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("Sheets::transmittance"),
+            size: u64::from(width) * u64::from(height) * 4,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        Ok(Self {
+            layers,
+            chunk,
+            dark,
+            preview: false,
+            // An array even where it has one layer.
+            ring_view: ring.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            }),
+            ring,
+            transmittance,
+            reach,
+        })
+    }
+
+    /// The same, if so many columns, rows and layers fit and are not much less; otherwise the size of sheets to
+    /// take their place, which hold both if they can.
+    fn or_larger(self, needed: [u32; 3]) -> Result<Self, [u32; 3]> {
+        let size = self.ring.size();
+        let held = [size.width, size.height, size.depth_or_array_layers];
+        let texels = |[a, b, c]: [u32; 3]| u64::from(a) * u64::from(b) * u64::from(c);
+        let both = [0, 1, 2].map(|axis| held[axis].max(needed[axis]));
+        if texels(both) > (MOST_ROOM * texels(needed)).max(SMALL_RING) {
+            Err(needed)
+        } else if both == held {
+            Ok(self)
+        } else {
+            Err(both)
+        }
+    }
+
+    /// What the passes that march bind to group 0.
+    pub(crate) fn march_entries<'a>(
+        &'a self,
+        uniform: &'a wgpu::Buffer,
+        table: &'a wgpu::Buffer,
+        distances: &'a wgpu::TextureView,
+    ) -> [wgpu::BindGroupEntry<'a>; 5] {
+        [
+            entry(0, uniform.as_entire_binding()),
+            entry(1, table.as_entire_binding()),
+            view_entry(2, distances),
+            entry(3, self.transmittance.as_entire_binding()),
+            view_entry(4, &self.ring_view),
+        ]
+    }
+
+    /// Bytes of the ring and of the running transmittance.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.ring.size();
+        let pixels = u64::from(size.width) * u64::from(size.height);
+        pixels
+            * (4 + u64::from(self.layers) * u64::from(self.ring.format().block_copy_size(None).unwrap_or(8)))
+    }
+}
+
+/// The variant of the shader for a kernel and deposit, for pixels wider than voxels or not.
+pub(crate) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f64); 7] {
+    let shadows = &settings.shadows;
+    let [kernel, sigma] = kernel_constants(shadows.kernel);
+    let flag = |on: bool| f64::from(u8::from(on));
+    [
+        kernel,
+        sigma,
+        quadrature_constant(shadows.quadrature),
+        classification_constant(settings.sampling.classification),
+        ("STRETCH", flag(stretch)),
+        cut_constant(settings.cuts.shading()),
+        ("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)),
+    ]
+}
+
+/// What the shaders know about the light, what attenuates it and the slabs `slabs.0 .. slabs.1` of a view.
+pub(crate) fn march_uniform(
+    light: &Light,
+    shading_cut: &Region,
+    view: &LightView,
+    sheets: &Sheets,
+    slabs: (u32, u32),
+) -> uniforms::March {
+    let cone = light.cone();
+    uniforms::March {
+        frame: uniforms::SheetFrame::new(&view.frame),
+        begin: slabs.0,
+        end: slabs.1,
+        layers: sheets.layers,
+        tiles: 0,
+        extinction_scale: light.density_scale as f32,
+        hood_inner: cone.cos_inner as f32,
+        hood_outer: cone.cos_outer as f32,
+        hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
+        dark: sheets.dark,
+        reach: sheets.reach,
+        shading_cut: uniforms::Cut::new(shading_cut),
+    }
+}
+
+/// Marches the listed tiles through the slabs `begin .. end` of a view.
+pub(crate) fn march(
+    gpu: Gpu<'_>,
+    tables: &Tables,
+    (light, settings): (&Light, &Settings),
+    view: &LightView,
+    sheets: &Sheets,
+    (slabs, tiles): ((u32, u32), &[u32]),
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), GpuError> {
+    let Gpu { context, shaders, volume, .. } = gpu;
+    if tiles.is_empty() {
+        return Ok(());
+    }
+    // Slabs near a perspective light have narrower pixels than those behind.
+    let is_stretched = view.frame.max_stretch_level_of(slabs.0..slabs.1) > 0.0;
+    let pipeline = shaders.pipeline("light/march.wgsl", &constants(settings, is_stretched))?;
+    let cut = settings.cuts.shading().region(&volume.scene);
+    let count = tiles.len() as u32;
+    let uniform = uniforms::March { tiles: count, ..march_uniform(light, &cut, view, sheets, slabs) };
+    let uniform = gpu.uniform("March::uniform", uniform);
+    let list = gpu.list_with_room("March::tiles", &shared_out(tiles, pass::threads(context)), TILE_ROOM);
+    let mut entries =
+        sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances).to_vec();
+    entries.push(entry(5, list.as_entire_binding()));
+    let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
+    let leaping = sheets.reach != EVERYWHERE;
+    let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
+    let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
+    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::of(is_stretched));
+    pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], single_workgroups(count));
+    Ok(())
+}
+
+/// The list in another order: a software driver gives each thread a run of workgroups, and so gets neighbours
+/// for all of them at any time, and for each the same share of what is costly.
+fn shared_out(tiles: &[u32], threads: u32) -> Vec<u32> {
+    let threads = threads as usize;
+    (0..threads).flat_map(|thread| tiles.iter().skip(thread).step_by(threads).copied()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_tile_is_shared_out_once() {
+        assert_eq!(shared_out(&[1, 2, 3, 4, 5], 2), [1, 3, 5, 2, 4]);
+        assert_eq!(shared_out(&[1, 2, 3], 1), [1, 2, 3]);
+        assert_eq!(shared_out(&[1, 2], 3), [1, 2]);
+    }
+}

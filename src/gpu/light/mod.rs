@@ -1,0 +1,10 @@
+//! The light pass: from density to the attenuation of each light.
+//!
+//! March (density seen from the light to sheets of transmittance) and back-projection (sheets to voxels) fill a
+//! light volume; rays from its voxels are the other way.
+
+pub(super) mod backproject;
+pub(super) mod combine;
+pub(super) mod march;
+pub(super) mod raycast;
+pub(super) mod volume;

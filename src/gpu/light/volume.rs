@@ -1,0 +1,187 @@
+//! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::data::BRICK_EDGE;
+use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::resources::pass;
+use crate::gpu::volume::transfer_tables::view_entry;
+use crate::gpu::volume::{Gpu, GpuVolume, entry, texture_3d};
+use crate::gpu::{Context, GpuError};
+use crate::model::{MAX_LIGHTS, Precision};
+use crate::plan::{BrickSet, CellSet, LightKey, LightView, reverse_reach_voxels};
+
+/// One light's attenuation volume, complete or being filled.
+#[derive(Debug)]
+pub(crate) struct LightVolume {
+    /// What it is made from.
+    pub key: LightKey,
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// Data voxels per light voxel along an axis.
+    pub divisor: usize,
+    /// Attenuation, 0 … 1.
+    pub texture: wgpu::Texture,
+    /// The same.
+    pub view: wgpu::TextureView,
+    /// Cells (of light voxels) that hold, or will hold, values.
+    pub filled: Arc<CellSet>,
+    /// Data cells, beyond those that either transfer function shows, for whose lookups they suffice.
+    pub reach: u8,
+    /// Cells around what is filled, which only previews look up: they are to be lit fully …
+    around: CellSet,
+    /// … and these are, by this volume or the one that had its texture before.
+    lit: Option<CellSet>,
+    /// Whether everything in `filled` is there.
+    pub complete: bool,
+    /// When the first of its steps was recorded …
+    started: Option<Instant>,
+    /// … and how long it took from there until the last was.
+    pub fill_ms: Option<f64>,
+    /// Counts up with every use; the least recently used goes first.
+    pub last_used: u64,
+}
+
+impl LightVolume {
+    /// Makes the texture, or takes that of a volume that is not wanted any more; nothing is filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(
+        context: &Context,
+        volume: &GpuVolume,
+        key: LightKey,
+        (filled, reach): (Arc<CellSet>, u8),
+        around: CellSet,
+        unwanted: &mut Vec<Self>,
+    ) -> Result<Self, GpuError> {
+        let divisor = key.resolution().divisor();
+        let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
+        let format = match key.precision() {
+            // An adapter that cannot store bytes keeps what it can.
+            Precision::Byte if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
+            Precision::Byte | Precision::Half => context.storage_format,
+        };
+        let fresh = |texture, view, lit: Option<CellSet>| Self {
+            key,
+            dims,
+            divisor,
+            texture,
+            view,
+            around,
+            lit,
+            filled,
+            reach,
+            complete: false,
+            started: None,
+            fill_ms: None,
+            last_used: 0,
+        };
+        let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
+        if let Some(at) = unwanted.iter().position(fits) {
+            let Self { texture, view, lit, .. } = unwanted.swap_remove(at);
+            return Ok(fresh(texture, view, lit));
+        }
+        let texture = attenuation_texture(context, dims, format)?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(fresh(texture, view, None))
+    }
+
+    /// What is still to be lit around it: nothing, while a light is dragged.
+    pub(crate) fn dark_around(&self) -> Vec<Listed> {
+        let list = |cells: &CellSet| cells.bricks().map(listed_bricks::listed).collect();
+        self.lit.as_ref().map_or_else(|| list(&self.around), |lit| list(&self.around.without(lit)))
+    }
+
+    /// Lights the listed cells fully.
+    pub(crate) fn light_up(
+        &self,
+        gpu: Gpu<'_>,
+        bricks: &[Listed],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if bricks.is_empty() {
+            return Ok(());
+        }
+        let Gpu { shaders, .. } = gpu;
+        let pipeline = shaders.pipeline_into("light/clear_margin.wgsl", &[], self.texture.format())?;
+        let list = listed_bricks::upload(gpu, bricks);
+        let own = gpu.bind(
+            "LightVolume::around",
+            &pipeline,
+            0,
+            &[entry(0, listed_bricks::exactly(&list, bricks)), view_entry(1, &self.view)],
+        );
+        pass::dispatch(
+            encoder,
+            "LightVolume::around",
+            &pipeline,
+            &[&own],
+            listed_bricks::workgroups(bricks.len() as u32),
+        );
+        Ok(())
+    }
+
+    /// The first of its steps is recorded.
+    pub(crate) fn begin(&mut self) {
+        self.started.get_or_insert_with(Instant::now);
+
+        self.lit = Some(self.around.clone());
+    }
+
+    /// Everything is there.
+    pub(crate) fn finish(&mut self) {
+        self.complete = true;
+        self.fill_ms = self.started.map(|started| started.elapsed().as_secs_f64() * 1000.0);
+    }
+
+    /// Bytes of its texture.
+    pub(crate) fn bytes(&self) -> u64 {
+        let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
+        texel * self.dims.iter().map(|&n| n as u64).product::<u64>()
+    }
+}
+
+/// The texture of a light volume.
+///
+/// # Errors
+/// When memory is out.
+pub(crate) fn attenuation_texture(
+    context: &Context,
+    dims: [usize; 3],
+    format: wgpu::TextureFormat,
+) -> Result<wgpu::Texture, GpuError> {
+    context.texture(&texture_3d(
+        "LightVolume::attenuation",
+        dims,
+        format,
+        wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+    ))
+}
+
+/// Bind group 2 of the passes that shade: the light volumes, in the order of their lights.
+pub(crate) fn light_bind_group(
+    gpu: Gpu<'_>,
+    pipeline: &wgpu::ComputePipeline,
+    attenuation: &[&wgpu::TextureView],
+) -> wgpu::BindGroup {
+    let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.nothing);
+    let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
+    gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
+}
+
+/// The data bricks whose scattered sheets are splatted back into `filled`: within the reverse kernel of
+/// radius two.
+pub(crate) fn read_bricks(
+    volume: &GpuVolume,
+    filled: &CellSet,
+    divisor: usize,
+    views: &[LightView],
+) -> BrickSet {
+    let reach_bricks = (reverse_reach_voxels(views, &volume.scene) / BRICK_EDGE as f64).ceil() as usize;
+    filled.to_bricks().refined(divisor, volume.bricks.dims).dilated(reach_bricks)
+}

@@ -1,0 +1,111 @@
+//! Light volumes as files: the whole as NRRD, a slice of it in false colours.
+
+use std::path::Path;
+
+use crate::data::Volume;
+use crate::export::{ExportError, encode_png, write_atomically};
+use crate::gpu::resources::readback::Attenuation;
+use crate::math::false_color;
+
+/// Values in a plane of a light volume.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightSlice {
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// 0 (dark) … 1 (fully lit), row by row; the last rows of the grid come first, so that up is up.
+    pub values: Vec<f32>,
+}
+
+impl Attenuation {
+    /// The slice `index` across an axis (0 for x): the other two axes run to the right and up. `None`
+    /// beyond the grid.
+    pub fn slice(&self, axis: usize, index: usize) -> Option<LightSlice> {
+        if index >= *self.dims.get(axis)? {
+            return None;
+        }
+        let [right, up] = [[1, 2], [0, 2], [0, 1]][axis];
+        let strides = [1, self.dims[0], self.dims[0] * self.dims[1]];
+        let size = [self.dims[right], self.dims[up]];
+        let row = |v: usize| {
+            let start = index * strides[axis] + v * strides[up];
+            (0..size[0]).map(move |u| start + u * strides[right])
+        };
+        let values = (0..size[1]).rev().flat_map(row).map(|at| self.values[at]).collect();
+        Some(LightSlice { size, values })
+    }
+}
+
+impl LightSlice {
+    /// sRGB bytes in false colours, three per value.
+    pub fn colors(&self) -> Vec<u8> {
+        self.values.iter().flat_map(|&value| false_color(value)).collect()
+    }
+}
+
+/// Writes a slice as PNG, in false colours.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn export_slice(slice: &LightSlice, path: &Path) -> Result<(), ExportError> {
+    let png = encode_png(slice.size.map(|n| n as u32), png::ColorType::Rgb, &slice.colors(), None)?;
+    write_atomically(path, &png)
+}
+
+/// The attenuation volume as an attached NRRD, in the place of the data (right-anterior-superior).
+pub fn light_volume_nrrd(volume: &Volume, attenuation: &Attenuation) -> Vec<u8> {
+    let world = volume.world_from_index();
+    let step = attenuation.divisor as f64;
+    let vector = |v: glam::DVec3| format!("({},{},{})", v.x, v.y, v.z);
+    let origin = world.transform_point3(glam::DVec3::splat(step / 2.0 - 0.5));
+    let [nx, ny, nz] = attenuation.dims;
+    let header = format!(
+        "NRRD0005\ncontent: light attenuation\ntype: float\ndimension: 3\nspace: right-anterior-superior\n\
+         sizes: {nx} {ny} {nz}\nspace directions: {} {} {}\nspace origin: {}\n\
+         endian: little\nencoding: raw\n\n",
+        vector(world.matrix3.x_axis * step),
+        vector(world.matrix3.y_axis * step),
+        vector(world.matrix3.z_axis * step),
+        vector(origin),
+    );
+    let mut bytes = header.into_bytes();
+    bytes.extend(attenuation.values.iter().flat_map(|value| value.to_le_bytes()));
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::load::{LoadControl, LoadOptions, load};
+    use crate::data::synthetic::builtin;
+
+    #[test]
+    fn the_nrrd_can_be_read_back_in_its_place() {
+        let volume = builtin("box", Some(16)).unwrap();
+        let attenuation =
+            Attenuation { dims: [8; 3], divisor: 2, values: (0..512).map(|i| i as f32 / 512.0).collect() };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("light.nrrd");
+        std::fs::write(&path, light_volume_nrrd(&volume, &attenuation)).unwrap();
+        let back = load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap();
+        assert_eq!(back.dims(), [8; 3]);
+        assert_eq!(back.spacing_mm(), volume.spacing_mm() * 2.0);
+        assert!((back.value(1, 0, 0) - 1.0 / 512.0).abs() < 1e-9);
+        // The box around the voxels is the same.
+        let corner = |volume: &Volume| volume.world_from_index().transform_point3(glam::DVec3::splat(-0.5));
+        assert!((corner(&back) - corner(&volume)).length() < 1e-9);
+    }
+
+    #[test]
+    fn slices_are_cut_across_any_axis_and_stand_upright() {
+        let attenuation =
+            Attenuation { dims: [2, 3, 4], divisor: 1, values: (0..24).map(|i| i as f32).collect() };
+        let at = |x: usize, y: usize, z: usize| (x + 2 * (y + 3 * z)) as f32;
+        let z = attenuation.slice(2, 1).unwrap();
+        assert_eq!((z.size, z.values[0], z.values[5]), ([2, 3], at(0, 2, 1), at(1, 0, 1)));
+        let x = attenuation.slice(0, 1).unwrap();
+        assert_eq!((x.size, x.values[0], x.values[11]), ([3, 4], at(1, 0, 3), at(1, 2, 0)));
+        let y = attenuation.slice(1, 2).unwrap();
+        assert_eq!((y.size, y.values[1]), ([2, 4], at(1, 2, 3)));
+        assert_eq!((attenuation.slice(2, 4), attenuation.slice(3, 0)), (None, None));
+    }
+}

@@ -1,0 +1,6 @@
+//! What is made of finished pictures and light volumes: display colours, slices, distances, the window.
+
+pub(super) mod display;
+pub(super) mod distance;
+pub(super) mod light_slice;
+pub(super) mod window;

@@ -1,0 +1,8 @@
+//! What every pass is made of: buffers and textures that are used again, lists, uniforms, dispatches.
+
+pub(super) mod kernel;
+pub(super) mod listed_bricks;
+pub(super) mod pass;
+pub(super) mod pool;
+pub(super) mod readback;
+pub mod uniforms;

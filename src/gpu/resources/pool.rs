@@ -1,0 +1,193 @@
+//! What one picture leaves for the next: small buffers, bind groups and the sheets of light. While a light or
+//! the camera is dragged, nothing is made anew.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
+
+use super::pass;
+use crate::gpu::Context;
+use crate::gpu::light::march::Sheets;
+
+/// Bind groups that are kept at most. What they bind is as many as buffers and textures: a few dozen.
+const MOST_GROUPS: usize = 1024;
+
+/// Smallest buffer; sizes are powers of two, so that lists of changing lengths find one.
+const SMALLEST_BUFFER: u64 = 256;
+
+/// Buffers, bind groups and sheets of one renderer.
+#[derive(Debug, Default)]
+pub(crate) struct Recycled(RefCell<Inner>);
+
+#[derive(Debug, Default)]
+struct Inner {
+    /// By label, size and usage.
+    shelves: BTreeMap<(&'static str, u64, u32), Shelf>,
+    groups: HashMap<GroupKey, wgpu::BindGroup>,
+    sheets: Option<Sheets>,
+    /// Groups may hold on to sheets.
+    binds_sheets: bool,
+    made: u64,
+}
+
+/// Buffers of a kind; the first `taken` are in use by what is being recorded.
+#[derive(Debug, Default)]
+struct Shelf {
+    buffers: Vec<wgpu::Buffer>,
+    taken: usize,
+}
+
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct GroupKey {
+    pipeline: wgpu::ComputePipeline,
+    group: u32,
+    bound: Vec<(u32, Bound)>,
+}
+
+#[derive(Debug, PartialEq, Eq, Hash)]
+enum Bound {
+    Buffer(wgpu::Buffer, u64, Option<wgpu::BufferSize>),
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+impl Bound {
+    /// `None` of kinds that no pass binds.
+    fn of(resource: &wgpu::BindingResource<'_>) -> Option<Self> {
+        match resource {
+            wgpu::BindingResource::Buffer(part) => {
+                Some(Self::Buffer(part.buffer.clone(), part.offset, part.size))
+            }
+            wgpu::BindingResource::TextureView(view) => Some(Self::View((*view).clone())),
+            wgpu::BindingResource::Sampler(sampler) => Some(Self::Sampler((*sampler).clone())),
+            _ => None,
+        }
+    }
+}
+
+impl Recycled {
+    /// Forgets all bind groups: they would keep alive what has been dropped.
+    pub(crate) fn forget_groups(&self) {
+        self.0.borrow_mut().groups.clear();
+    }
+
+    /// Begins a submission. All buffers are free: what is written to them from now on comes after what was
+    /// submitted before.
+    pub(crate) fn next_submission(&self) {
+        for shelf in self.0.borrow_mut().shelves.values_mut() {
+            shelf.taken = 0;
+        }
+    }
+
+    /// Forgets everything, as with another volume.
+    pub(crate) fn clear(&self) {
+        let inner = &mut *self.0.borrow_mut();
+        inner.shelves.clear();
+        inner.groups.clear();
+        inner.sheets = None;
+    }
+
+    /// A buffer that begins with `contents`, for one submission. It may be longer.
+    pub(crate) fn buffer<T: bytemuck::NoUninit>(
+        &self,
+        context: &Context,
+        label: &'static str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        self.buffer_with_room(context, label, contents, usage, SMALLEST_BUFFER)
+    }
+
+    /// The same, of at least `room` bytes.
+    pub(crate) fn buffer_with_room<T: bytemuck::NoUninit>(
+        &self,
+        context: &Context,
+        label: &'static str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+        room: u64,
+    ) -> wgpu::Buffer {
+        let bytes: &[u8] = bytemuck::cast_slice(contents);
+        let size = (bytes.len() as u64).max(room).next_power_of_two();
+        let inner = &mut *self.0.borrow_mut();
+        let shelf = inner.shelves.entry((label, size, usage.bits())).or_default();
+        if shelf.taken == shelf.buffers.len() {
+            inner.made += 1;
+            shelf.buffers.push(context.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }));
+        }
+        let buffer = shelf.buffers[shelf.taken].clone();
+        shelf.taken += 1;
+        context.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    }
+
+    /// As [`pass::bind`], once for the same resources.
+    pub(crate) fn bind(
+        &self,
+        context: &Context,
+        label: &str,
+        pipeline: &wgpu::ComputePipeline,
+        group: u32,
+        entries: &[wgpu::BindGroupEntry<'_>],
+    ) -> wgpu::BindGroup {
+        let bound = entries.iter().map(|entry| Some((entry.binding, Bound::of(&entry.resource)?)));
+        let Some(bound) = bound.collect() else {
+            return pass::bind(context, label, pipeline, group, entries);
+        };
+        let key = GroupKey { pipeline: pipeline.clone(), group, bound };
+        let inner = &mut *self.0.borrow_mut();
+        if inner.groups.len() >= MOST_GROUPS {
+            inner.groups.clear();
+        }
+        let made = &mut inner.made;
+        let kept = inner.groups.entry(key).or_insert_with(|| {
+            *made += 1;
+            pass::bind(context, label, pipeline, group, entries)
+        });
+        kept.clone()
+    }
+
+    /// The sheets that were left behind.
+    pub(crate) fn take_sheets(&self) -> Option<Sheets> {
+        self.0.borrow_mut().sheets.take()
+    }
+
+    /// Leaves sheets to the next light volume, unless larger ones are there.
+    pub(crate) fn leave_sheets(&self, sheets: Sheets) {
+        let inner = &mut *self.0.borrow_mut();
+        if inner.sheets.as_ref().is_none_or(|known| known.bytes() < sheets.bytes()) {
+            inner.sheets = Some(sheets);
+        }
+    }
+
+    /// Takes note that sheets are made: groups that bind those before would keep them alive.
+    pub(crate) fn made_sheets(&self) {
+        let inner = &mut *self.0.borrow_mut();
+        inner.made += 1;
+        inner.groups.clear();
+        inner.binds_sheets = true;
+    }
+
+    /// Drops the sheets, because a picture fills no light volume.
+    pub(crate) fn drop_sheets(&self) {
+        let inner = &mut *self.0.borrow_mut();
+        inner.sheets = None;
+        if std::mem::take(&mut inner.binds_sheets) {
+            inner.groups.clear();
+        }
+    }
+
+    /// Bytes of sheets that wait.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.0.borrow().sheets.as_ref().map_or(0, Sheets::bytes)
+    }
+
+    /// How many buffers and bind groups were made so far, and sheets.
+    pub(crate) fn made(&self) -> u64 {
+        self.0.borrow().made
+    }
+}

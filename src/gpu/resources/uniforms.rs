@@ -1,0 +1,361 @@
+//! Every struct that a shader mirrors, field by field. `tests/shaders.rs` compares names, offsets
+//! and sizes with what the shaders declare.
+
+#![expect(missing_docs, reason = "each field is documented where the shader declares it")]
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DAffine3, DVec2, DVec3};
+
+use crate::math::{Region, SceneSpace};
+use crate::plan::SheetFrame as Frame;
+
+fn vec3(v: DVec3) -> [f32; 3] {
+    v.as_vec3().into()
+}
+
+fn vec2(v: DVec2) -> [f32; 2] {
+    v.as_vec2().into()
+}
+
+/// The three rows of an affine map, the translation in w.
+pub(crate) fn rows(map: &DAffine3) -> [[f32; 4]; 3] {
+    let transposed = map.matrix3.transpose();
+    let row = |linear: DVec3, offset: f64| [linear.x as f32, linear.y as f32, linear.z as f32, offset as f32];
+    [
+        row(transposed.x_axis, map.translation.x),
+        row(transposed.y_axis, map.translation.y),
+        row(transposed.z_axis, map.translation.z),
+    ]
+}
+
+/// `sheets/sheet_frame.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SheetFrame {
+    pub origin: [f32; 3],
+    pub first_depth: f32,
+    pub origin_di: [f32; 3],
+    pub slab: f32,
+    pub origin_dj: [f32; 3],
+    pub pitch: f32,
+    pub direction: [f32; 3],
+    pub inverse_distance: f32,
+    pub direction_di: [f32; 3],
+    pub voxel_edge: f32,
+    pub direction_dj: [f32; 3],
+    pub slab_count: u32,
+    pub slope: [f32; 2],
+    pub slope_di: [f32; 2],
+    pub slope_dj: [f32; 2],
+    pub size: [u32; 2],
+}
+
+impl SheetFrame {
+    pub fn new(frame: &Frame) -> Self {
+        Self {
+            origin: vec3(frame.origin.base),
+            first_depth: frame.first_depth as f32,
+            origin_di: vec3(frame.origin.per_i),
+            slab: frame.slab as f32,
+            origin_dj: vec3(frame.origin.per_j),
+            pitch: frame.pitch as f32,
+            direction: vec3(frame.direction.base),
+            inverse_distance: frame.inverse_distance as f32,
+            direction_di: vec3(frame.direction.per_i),
+            voxel_edge: frame.voxel_edge as f32,
+            direction_dj: vec3(frame.direction.per_j),
+            slab_count: frame.slab_count,
+            slope: vec2(frame.slope.base),
+            slope_di: vec2(frame.slope.per_i),
+            slope_dj: vec2(frame.slope.per_j),
+            size: frame.size,
+        }
+    }
+}
+
+/// `density/cut.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Cut {
+    pub low: [f32; 3],
+    pub pad0: f32,
+    pub high: [f32; 3],
+    pub pad1: f32,
+    pub plane: [f32; 4],
+}
+
+impl Cut {
+    /// Where nothing is cut, faces are so many voxels away: far from every volume, and far from overflow.
+    const AWAY: f64 = 1e9;
+
+    pub fn new(region: &Region) -> Self {
+        let near = |v: DVec3| vec3(v.clamp(DVec3::splat(-Self::AWAY), DVec3::splat(Self::AWAY)));
+        let plane =
+            region.plane.map_or(DVec3::ZERO.extend(Self::AWAY), |half| half.normal.extend(half.offset));
+        Self {
+            low: near(region.low),
+            pad0: 0.0,
+            high: near(region.high),
+            pad1: 0.0,
+            plane: plane.as_vec4().into(),
+        }
+    }
+}
+
+/// `density/volume.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Grid {
+    pub dims: [f32; 3],
+    pub dilation: i32,
+    pub density_scale: [f32; 3],
+    pub pad0: f32,
+    pub pyramid_scale: [f32; 3],
+    pub pad1: f32,
+    pub cell_scale: [f32; 3],
+    pub pad2: f32,
+}
+
+/// `volume/resample.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Resample {
+    pub bricks: u32,
+    pub spacing: f32,
+    pub pad0: u32,
+    pub pad1: u32,
+}
+
+/// `scatter/slab.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Scatter {
+    pub frame: SheetFrame,
+    pub sheets_from_index_x: [f32; 4],
+    pub sheets_from_index_y: [f32; 4],
+    pub sheets_from_index_z: [f32; 4],
+    pub half: [f32; 3],
+    pub stretch: f32,
+    pub dims: [f32; 3],
+    pub k: u32,
+    pub bricks: [i32; 3],
+    pub layers: u32,
+    pub first: u32,
+    pub count: u32,
+    pub pixel_share: f32,
+    pub voxel_step: f32,
+    pub light_dims: [u32; 3],
+    pub cube_face: u32,
+    pub first_pixel: [f32; 2],
+    pub sheet_count: u32,
+    pub first_slice: f32,
+    pub axis: [f32; 3],
+    pub slice_step: f32,
+    pub extinction_unit: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
+}
+
+/// `scatter/footprints.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Phase {
+    pub u: u32,
+    pub v: u32,
+    pub brick_u: u32,
+    pub brick_v: u32,
+    pub stride: u32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
+}
+
+/// `sheets/march.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct March {
+    pub frame: SheetFrame,
+    pub begin: u32,
+    pub end: u32,
+    pub layers: u32,
+    pub tiles: u32,
+    pub extinction_scale: f32,
+    pub hood_inner: f32,
+    pub hood_outer: f32,
+    pub reach: i32,
+    pub hood_axis: [f32; 3],
+    pub dark: f32,
+    pub shading_cut: Cut,
+}
+
+/// `light/backproject.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Backprojection {
+    pub frame: SheetFrame,
+    pub light_from_index_x: [f32; 4],
+    pub light_from_index_y: [f32; 4],
+    pub light_from_index_z: [f32; 4],
+    pub first_pixel: [f32; 2],
+    pub kernel_edge: f32,
+    pub voxel_step: f32,
+    pub dims: [u32; 3],
+    pub cube_face: u32,
+    pub begin: u32,
+    pub end: u32,
+    pub layers: u32,
+    pub bricks: u32,
+    pub ring_scale: [f32; 2],
+    pub pad0: f32,
+    pub pad1: f32,
+}
+
+/// `light/raycast.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Raycast {
+    pub light: Light,
+    pub space: Space,
+    pub dims: [u32; 3],
+    pub bricks: u32,
+    pub voxel_step: f32,
+    pub ray_step: f32,
+    pub dark: f32,
+    pub pad0: u32,
+    pub shading_cut: Cut,
+}
+
+/// `light/combine.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Collapse {
+    pub dims: [u32; 3],
+    pub bricks: u32,
+    pub voxel_step: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
+}
+
+/// `common/space.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Space {
+    pub scene_from_index_x: [f32; 4],
+    pub scene_from_index_y: [f32; 4],
+    pub scene_from_index_z: [f32; 4],
+    pub index_from_scene_x: [f32; 4],
+    pub index_from_scene_y: [f32; 4],
+    pub index_from_scene_z: [f32; 4],
+}
+
+impl Space {
+    pub fn new(scene: &SceneSpace) -> Self {
+        let [scene_from_index_x, scene_from_index_y, scene_from_index_z] = rows(&scene.scene_from_index);
+        let [index_from_scene_x, index_from_scene_y, index_from_scene_z] = rows(&scene.index_from_scene);
+        Self {
+            scene_from_index_x,
+            scene_from_index_y,
+            scene_from_index_z,
+            index_from_scene_x,
+            index_from_scene_y,
+            index_from_scene_z,
+        }
+    }
+}
+
+/// `shading/lights.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Light {
+    pub place: [f32; 3],
+    pub perspective: f32,
+    pub color: [f32; 3],
+    pub extinction_scale: f32,
+    pub lookup: [f32; 3],
+    pub hood_inner: f32,
+    pub hood_axis: [f32; 3],
+    pub hood_outer: f32,
+    pub place_in_index: [f32; 3],
+    pub pad0: f32,
+}
+
+/// `shading/lights.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Shading {
+    pub emission: f32,
+    pub ambient: f32,
+    pub diffuse: f32,
+    pub specular: f32,
+    pub shininess: f32,
+    pub surface_gradient: f32,
+    pub strength: f32,
+    pub ambient_offset: f32,
+    pub gain: f32,
+    pub bias: f32,
+    pub ray_step: f32,
+    pub dark_depth: f32,
+}
+
+/// `shading/shade.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Eye {
+    pub frame: SheetFrame,
+    pub shading: Shading,
+    pub space: Space,
+    pub eye: [f32; 4],
+    pub first_row: u32,
+    pub end_row: u32,
+    pub dilation: i32,
+    pub dark: f32,
+    pub gradient_pixels: i32,
+    pub gradient_slabs: i32,
+    pub runs: u32,
+    pub pad1: i32,
+    pub collapsed_lookup: [f32; 3],
+    pub pad2: f32,
+    pub seen: Cut,
+    pub shading_cut: Cut,
+    pub lights: [Light; crate::model::MAX_LIGHTS],
+}
+
+/// `eye/floor.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Ground {
+    pub frame: SheetFrame,
+    pub space: Space,
+    pub shading: Shading,
+    pub shading_cut: Cut,
+    pub plane: [f32; 4],
+    pub color: [f32; 3],
+    pub opacity: f32,
+    pub radius: f32,
+    pub fade: f32,
+    pub light_share: f32,
+    pub shadow_only: f32,
+    pub first_row: u32,
+    pub end_row: u32,
+    pub runs: u32,
+    pub pad0: u32,
+    pub lights: [Light; crate::model::MAX_LIGHTS],
+}
+
+/// `output/display.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Display {
+    pub top: [f32; 4],
+    pub bottom: [f32; 4],
+    pub transparent: u32,
+    pub clip: u32,
+    pub exposure: f32,
+    pub first_row: f32,
+    pub rows: f32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
+}

@@ -1,0 +1,221 @@
+//! The eye pass over scattered sheets.
+
+use std::ops::Range;
+
+use super::footprints::Footprints;
+use super::splat::{Scatterer, Splat, sums, widest_stretch};
+use super::voxels::ScatterVoxels;
+use crate::data::BRICK_EDGE;
+use crate::gpu::eye::gather::EyePass;
+use crate::gpu::light::volume::light_bind_group;
+use crate::gpu::resources::pass;
+use crate::gpu::volume::transfer_tables::{Tables, upload_distances, view_entry};
+use crate::gpu::volume::{Gpu, entry};
+use crate::gpu::{GpuError, RenderOptions};
+use crate::model::{Classification, Settings, SheetOrder};
+use crate::plan::{BrickSet, SheetFrame};
+
+/// Slabs per submission: each is splatted and composited, which takes a software adapter some
+/// milliseconds.
+pub(crate) const SLABS_PER_STEP: u32 = 2;
+
+/// The eye's sheets, and what its rays have gathered so far.
+#[derive(Debug)]
+pub(crate) struct EyeScatter {
+    scatterer: Scatterer,
+    /// In place of sheets, if every footprint is composited.
+    footprints: Option<Footprints>,
+    /// Distances in bricks to the nearest that the eye sees.
+    distances: wgpu::TextureView,
+    /// Colour and opacity so far.
+    rays: wgpu::Buffer,
+    clamped: wgpu::Sampler,
+    /// Slabs to either side between which gradients are differences.
+    ahead: u32,
+}
+
+impl EyeScatter {
+    /// Prepares the sheets of a picture.
+    pub(crate) fn new(
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        tables: &Tables,
+        frame: &SheetFrame,
+        settings: &Settings,
+        options: &RenderOptions,
+    ) -> Result<Self, GpuError> {
+        let sampling = &settings.sampling;
+        let order = sampling.order;
+        // Slices of voxels are a voxel apart.
+        let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().1 } else { 1 };
+        let kernel = (sampling.kernel, sampling.quadrature, order);
+        let seen = splatted_bricks(frame, &tables.eye.occupied, options);
+        let what = match sampling.classification {
+            Classification::Post => Splat::Density,
+            Classification::Pre => Splat::Material,
+        };
+        let what = (what, &tables.eye);
+        let scatterer = Scatterer::new(gpu, voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
+        let footprints =
+            (order == SheetOrder::EveryFootprint).then(|| Footprints::new(gpu, &scatterer)).transpose()?;
+        let occupied = &tables.eye.occupied;
+        let distances = occupied.distances();
+        let distances = upload_distances(
+            gpu.context,
+            "EyeScatter::distances",
+            occupied.dims,
+            &distances,
+            wgpu::TextureFormat::R8Uint,
+        )?;
+        Ok(Self {
+            scatterer,
+            footprints,
+            distances,
+            // Four 32-bit floats per ray.
+            rays: sums(gpu.context, "EyeScatter::rays", 4, frame.size)?,
+            clamped: gpu.context.sampler("EyeScatter::clamped"),
+            ahead,
+        })
+    }
+
+    /// Splats and composites some slabs. `attenuation` as for [`EyePass::draw`].
+    #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
+    pub(crate) fn draw(
+        &self,
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        counter: &wgpu::Buffer,
+        eye: &EyePass,
+        tables: &Tables,
+        attenuation: &[&wgpu::TextureView],
+        picture: &wgpu::TextureView,
+        slabs: Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let uniform = eye.uniform_buffer(context, self.ahead);
+        let is_last = slabs.end == self.scatterer.sheet_count();
+        if let Some(footprints) = &self.footprints {
+            let lit = (eye, attenuation);
+            let target = (&self.rays, &self.clamped);
+            for k in slabs {
+                footprints.draw(
+                    gpu,
+                    &self.scatterer,
+                    voxels,
+                    (counter, &uniform, &tables.eye.buffer),
+                    lit,
+                    target,
+                    k,
+                    encoder,
+                )?;
+            }
+            return if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) };
+        }
+        let mut constants = eye.scatter_constants();
+        constants.extend_from_slice(&self.scatterer.constants()[3..]);
+        let pipeline = shaders.pipeline("scatter/eye.wgsl", &constants)?;
+        let own = pass::bind(
+            context,
+            "EyeScatter::bind_group",
+            &pipeline,
+            0,
+            &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, tables.eye.buffer.as_entire_binding()),
+                view_entry(2, &self.distances),
+            ],
+        );
+        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
+        for k in slabs {
+            // The slabs ahead are there when their neighbours need them.
+            let from = if k == 0 { 0 } else { k + self.ahead };
+            for splatted in from..=k + self.ahead {
+                if self.scatterer.is_filled(splatted) {
+                    self.scatterer.splat(gpu, voxels, counter, splatted, encoder)?;
+                }
+            }
+            // Nothing to composite, and nothing to make room for.
+            let touched = tables.eye.shows_nothing()
+                || self.scatterer.is_filled(k)
+                || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
+            if !touched {
+                continue;
+            }
+            let slab = self.scatterer.uniform_buffer(context, k, 1.0);
+            let shared = pass::bind(
+                context,
+                "EyeScatter::sheets",
+                &pipeline,
+                1,
+                &[
+                    entry(0, slab.as_entire_binding()),
+                    entry(1, self.scatterer.sheets.as_entire_binding()),
+                    entry(3, self.rays.as_entire_binding()),
+                    entry(4, wgpu::BindingResource::Sampler(&self.clamped)),
+                ],
+            );
+            pass::dispatch(
+                encoder,
+                "EyeScatter::composite",
+                &pipeline,
+                &[&own, &shared, &of_lights],
+                pass::tiles(self.scatterer.frame.size),
+            );
+        }
+        if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) }
+    }
+
+    /// Writes the picture.
+    fn resolve(
+        &self,
+        gpu: Gpu<'_>,
+        picture: &wgpu::TextureView,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline("scatter/resolve.wgsl", &[])?;
+        let uniform = self.scatterer.uniform_buffer(context, 0, 1.0);
+        let own = pass::bind(
+            context,
+            "EyeScatter::picture",
+            &pipeline,
+            0,
+            &[entry(0, self.rays.as_entire_binding()), view_entry(1, picture)],
+        );
+        let shared =
+            pass::bind(context, "EyeScatter::frame", &pipeline, 1, &[entry(0, uniform.as_entire_binding())]);
+        pass::dispatch(
+            encoder,
+            "EyeScatter::resolve",
+            &pipeline,
+            &[&own, &shared],
+            pass::tiles(self.scatterer.frame.size),
+        );
+        Ok(())
+    }
+
+    /// Bytes of sheets and rays.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.scatterer.bytes() + self.rays.size()
+    }
+}
+
+/// Bricks whose voxels can reach a sample that shows anything, or one between which and that sample a
+/// gradient is taken.
+pub(crate) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: &RenderOptions) -> BrickSet {
+    if !options.leaping {
+        return BrickSet::full(occupied.dims);
+    }
+    let widest = widest_stretch(frame);
+    // A kernel's radius, at most √2 of it along a slanted axis, and a gradient's step of one pixel or voxel.
+    let reach = (2.0 * std::f64::consts::SQRT_2 + 1.5) * widest + frame.slab / frame.voxel_edge;
+    occupied.dilated((reach / BRICK_EDGE as f64).ceil() as usize)
+}
+
+/// Bricks beyond an occupied one whose samples a stretched kernel lets see it: brick ranges look three
+/// voxels beyond their brick.
+pub(crate) fn scatter_dilation(frame: &SheetFrame) -> i32 {
+    let widest = widest_stretch(frame);
+    ((2.0 * std::f64::consts::SQRT_2 * widest - 3.0).max(0.0) / BRICK_EDGE as f64).ceil() as i32
+}

@@ -1,0 +1,127 @@
+//! Every footprint composited by itself: voxels of a slice in turns, so that no two of one dispatch
+//! touch a pixel.
+
+use super::splat::Scatterer;
+use super::voxels::ScatterVoxels;
+use crate::data::BRICK_EDGE;
+use crate::gpu::GpuError;
+use crate::gpu::eye::gather::EyePass;
+use crate::gpu::light::volume::light_bind_group;
+use crate::gpu::resources::pass;
+use crate::gpu::resources::uniforms;
+use crate::gpu::resources::uniforms::Phase;
+use crate::gpu::volume::{Gpu, entry};
+
+/// The turns of a slice.
+#[derive(Debug)]
+pub(crate) struct Footprints {
+    phases: Vec<wgpu::Buffer>,
+}
+
+impl Footprints {
+    /// Lays out the turns.
+    ///
+    /// Two footprints of radius 2s (in voxels, s the stretch) are apart when their voxels are
+    /// 4s · √3 apart in a slice: the line of sight leans at most as far from its axis as a cube's
+    /// diagonal.
+    pub(crate) fn new(gpu: Gpu<'_>, scatterer: &Scatterer) -> Result<Self, GpuError> {
+        let apart = 4.0 * 3f64.sqrt() * scatterer.widest();
+        let stride = (apart / BRICK_EDGE as f64).ceil() as u32;
+        // A picture with pixels so wide is smaller than a thumbnail.
+        if stride > 4 {
+            return Err(GpuError::OverLimit {
+                what: "the width of footprints, in bricks,".to_owned(),
+                size: u64::from(stride),
+                limit: 4,
+                help: "a larger picture, or another order of sheets, helps",
+            });
+        }
+        let edge = BRICK_EDGE as u32;
+        let phases = (0..stride * stride * edge * edge)
+            .map(|at| {
+                let (within, brick) = (at % (edge * edge), at / (edge * edge));
+                let phase = Phase {
+                    u: within % edge,
+                    v: within / edge,
+                    brick_u: brick % stride,
+                    brick_v: brick / stride,
+                    stride,
+                    pad0: 0,
+                    pad1: 0,
+                    pad2: 0,
+                };
+                gpu.context.buffer("Footprints::phase", &[phase], wgpu::BufferUsages::UNIFORM)
+            })
+            .collect();
+        Ok(Self { phases })
+    }
+
+    /// Composites slice `k`.
+    #[expect(clippy::too_many_arguments, reason = "everything that a picture is made from")]
+    pub(crate) fn draw(
+        &self,
+        gpu: Gpu<'_>,
+        scatterer: &Scatterer,
+        voxels: &ScatterVoxels,
+        (counter, eye_uniform, table): (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer),
+        (eye, attenuation): (&EyePass, &[&wgpu::TextureView]),
+        (rays, clamped): (&wgpu::Buffer, &wgpu::Sampler),
+        k: u32,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if !scatterer.is_filled(k) {
+            return Ok(());
+        }
+        let Gpu { context, shaders, .. } = gpu;
+        let mut constants = eye.scatter_constants();
+        constants.extend_from_slice(scatterer.constants());
+        let pipeline = shaders.pipeline("scatter/footprints.wgsl", &constants)?;
+        let own = pass::bind(
+            context,
+            "Footprints::bind_group",
+            &pipeline,
+            0,
+            &[
+                entry(0, eye_uniform.as_entire_binding()),
+                entry(1, table.as_entire_binding()),
+                entry(3, voxels.first_words.as_entire_binding()),
+                entry(4, scatterer.bricks().as_entire_binding()),
+                entry(5, counter.as_entire_binding()),
+                entry(6, voxels.buffer.as_entire_binding()),
+            ],
+        );
+        let uniform: uniforms::Scatter = scatterer.uniform(k, 1.0);
+        let slab = context.buffer("Footprints::slice", &[uniform], wgpu::BufferUsages::UNIFORM);
+        let shared = pass::bind(
+            context,
+            "Footprints::rays",
+            &pipeline,
+            1,
+            &[
+                entry(0, slab.as_entire_binding()),
+                entry(2, scatterer.footprints().as_entire_binding()),
+                entry(3, rays.as_entire_binding()),
+                entry(4, wgpu::BindingResource::Sampler(clamped)),
+            ],
+        );
+        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
+        for phase in &self.phases {
+            let turn = pass::bind(
+                context,
+                "Footprints::phase",
+                &pipeline,
+                3,
+                &[entry(0, phase.as_entire_binding())],
+            );
+            let groups = [&own, &shared, &of_lights, &turn];
+            pass::dispatch(
+                encoder,
+                "Footprints::draw",
+                &pipeline,
+                &groups,
+                [uniform.count.div_ceil(64), 1, 1],
+            );
+        }
+        Ok(())
+    }
+}

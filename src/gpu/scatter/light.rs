@@ -1,0 +1,210 @@
+//! The light pass over scattered sheets: splats voxels, marches the light, splats the sheets back into
+//! the grid and divides by the weights.
+
+use std::ops::Range;
+
+use super::eye::{scatter_dilation, splatted_bricks};
+use super::splat::{Scatterer, Splat, sums};
+use super::voxels::ScatterVoxels;
+use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, constants as march_constants, march_uniform};
+use crate::gpu::light::volume::LightVolume;
+use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::resources::pass;
+use crate::gpu::volume::transfer_tables::{Tables, upload_distances, view_entry};
+use crate::gpu::volume::{Gpu, entry};
+use crate::gpu::{GpuError, RenderOptions};
+use crate::model::{Classification, Light, Settings, SheetOrder};
+use crate::plan::{BrickSet, LightView};
+
+/// The sheets of one view of a light, and what was splatted back into the grid.
+#[derive(Debug)]
+pub(crate) struct LightScatter {
+    scatterer: Scatterer,
+    /// Σ D·h per light voxel …
+    light: wgpu::Buffer,
+    /// … and the weight volume, Σ h.
+    weights: wgpu::Buffer,
+    /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
+    distances: wgpu::TextureView,
+    dilation: i32,
+    /// What the slabs that share a texel of the ring deposit.
+    deposits: wgpu::Buffer,
+    /// Data voxels per light voxel.
+    divisor: usize,
+}
+
+impl LightScatter {
+    /// Prepares a view; only sheets in the bricks of `read` will be splatted back, or all.
+    pub(crate) fn new(
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        tables: &Tables,
+        view: &LightView,
+        (settings, target): (&Settings, &LightVolume),
+        read: Option<&BrickSet>,
+        options: &RenderOptions,
+    ) -> Result<Self, GpuError> {
+        let seen = splatted_bricks(&view.frame, &tables.lighting.occupied, options);
+        let shadows = &settings.shadows;
+        let what = match settings.sampling.classification {
+            Classification::Post => Splat::Density,
+            Classification::Pre => Splat::Extinction,
+        };
+        let what = (what, &tables.lighting);
+        let kernel = (shadows.kernel, shadows.quadrature, SheetOrder::ImageAligned);
+        let [nx, ny, nz] = target.dims.map(|n| n as u32);
+        let dims = tables.lighting.occupied.dims;
+        let unread = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);
+        let thin = if options.leaping { tables.lighting.occupied.distances() } else { vec![0; unread.len()] };
+        let pairs: Vec<u8> = unread.into_iter().zip(thin).flat_map(|(r, g)| [r, g]).collect();
+        Ok(Self {
+            distances: upload_distances(
+                gpu.context,
+                "LightScatter::distances",
+                dims,
+                &pairs,
+                wgpu::TextureFormat::Rg8Uint,
+            )?,
+            scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, what, &seen, 1)?.towards_grid(
+                view.first_pixel.as_vec2().into(),
+                view.cube_face,
+                (target.dims, target.divisor),
+            ),
+            light: sums(gpu.context, "LightScatter::light", nz, [nx, ny])?,
+            weights: sums(gpu.context, "LightScatter::weights", nz, [nx, ny])?,
+            dilation: scatter_dilation(&view.frame),
+            deposits: sums(gpu.context, "LightScatter::deposits", SLABS_PER_TEXEL, view.frame.size)?,
+            divisor: target.divisor,
+        })
+    }
+
+    /// Splats some slabs and marches the light through them.
+    #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
+    pub(crate) fn march(
+        &self,
+        gpu: Gpu<'_>,
+        voxels: &ScatterVoxels,
+        counter: &wgpu::Buffer,
+        table: &wgpu::Buffer,
+        (lamp, settings): (&Light, &Settings),
+        view: &LightView,
+        sheets: &Sheets,
+        slabs: Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let [.., cut, deposit] = march_constants(settings, false);
+        let splat = self.scatterer.constants()[4];
+        let constants = [cut, deposit, splat, ("DILATION", f64::from(self.dilation))];
+        let pipeline = shaders.pipeline("scatter/light.wgsl", &constants)?;
+        let cut = settings.cuts.shading().region(&gpu.volume.scene);
+        let uniform = march_uniform(lamp, &cut, view, sheets, (slabs.start, slabs.end));
+        let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
+        let mut entries = sheets.march_entries(&uniform, table, &self.distances).to_vec();
+        entries.push(entry(5, self.deposits.as_entire_binding()));
+        let own = pass::bind(context, "LightScatter::march", &pipeline, 0, &entries);
+        for k in slabs {
+            if self.scatterer.is_filled(k) {
+                self.scatterer.splat(gpu, voxels, counter, k, encoder)?;
+            }
+            let slab = self.scatterer.uniform_buffer(context, k, 1.0);
+            let shared = pass::bind(
+                context,
+                "LightScatter::sheets",
+                &pipeline,
+                1,
+                &[entry(0, slab.as_entire_binding()), entry(1, self.scatterer.sheets.as_entire_binding())],
+            );
+            pass::dispatch(
+                encoder,
+                "LightScatter::march",
+                &pipeline,
+                &[&own, &shared],
+                pass::tiles(view.frame.size),
+            );
+        }
+        Ok(())
+    }
+
+    /// Splats some sheets back into the grid.
+    pub(crate) fn splat_back(
+        &self,
+        gpu: Gpu<'_>,
+        sheets: &Sheets,
+        slabs: Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline("scatter/reverse.wgsl", self.scatterer.constants())?;
+        let own = pass::bind(
+            context,
+            "LightScatter::grid",
+            &pipeline,
+            0,
+            &[
+                view_entry(0, &self.distances),
+                view_entry(1, &sheets.ring_view),
+                entry(2, self.light.as_entire_binding()),
+                entry(3, self.weights.as_entire_binding()),
+            ],
+        );
+        for k in slabs {
+            let slab = self.scatterer.uniform_buffer(context, k, self.divisor as f64);
+            let shared = self.scatterer.bind_group(context, &pipeline, &slab, false);
+            pass::dispatch(
+                encoder,
+                "LightScatter::splat_back",
+                &pipeline,
+                &[&own, &shared],
+                pass::tiles(self.scatterer.frame.size),
+            );
+        }
+        Ok(())
+    }
+
+    /// Divides light by weights into the listed bricks of the light volume.
+    pub(crate) fn normalise(
+        &self,
+        gpu: Gpu<'_>,
+        target: &LightVolume,
+        bricks: &[Listed],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if bricks.is_empty() {
+            return Ok(());
+        }
+        let Gpu { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline_into("scatter/normalise.wgsl", &[], target.texture.format())?;
+        let list = listed_bricks::upload(gpu, bricks);
+        let mut uniform = self.scatterer.uniform(0, 1.0);
+        uniform.count = bricks.len() as u32;
+        let uniform = context.buffer("LightScatter::normalise", &[uniform], wgpu::BufferUsages::UNIFORM);
+        let own = pass::bind(
+            context,
+            "LightScatter::normalise",
+            &pipeline,
+            0,
+            &[
+                entry(0, list.as_entire_binding()),
+                entry(1, self.light.as_entire_binding()),
+                entry(2, self.weights.as_entire_binding()),
+                view_entry(3, &target.view),
+            ],
+        );
+        let shared =
+            pass::bind(context, "LightScatter::slab", &pipeline, 1, &[entry(0, uniform.as_entire_binding())]);
+        pass::dispatch(
+            encoder,
+            "LightScatter::normalise",
+            &pipeline,
+            &[&own, &shared],
+            listed_bricks::workgroups(bricks.len() as u32),
+        );
+        Ok(())
+    }
+
+    /// Bytes of sheets, light and weights.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.scatterer.bytes() + self.light.size() + self.weights.size() + self.deposits.size()
+    }
+}

@@ -1,0 +1,64 @@
+//! Which bricks are splatted into which sheet.
+
+use glam::{DAffine3, DVec3};
+
+use crate::data::BRICK_EDGE;
+use crate::gpu::resources::listed_bricks;
+use crate::plan::{SheetFrame, SliceOrder};
+
+/// For every slab the bricks whose voxels reach it, with where their voxels begin; lists start at the
+/// first array's entries.
+pub(crate) fn slab_lists(
+    frame: &SheetFrame,
+    sheets_from_index: &DAffine3,
+    bricks: impl Iterator<Item = ([usize; 3], u32)>,
+    half_depth: f64,
+) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let count = frame.slab_count as usize;
+    let mut lists = vec![Vec::new(); count];
+    let last = (BRICK_EDGE - 1) as f64;
+    for (brick, first_word) in bricks {
+        let corner = DVec3::from(brick.map(|c| (c * BRICK_EDGE) as f64));
+        let depths = (0..8).map(|side| {
+            let step = DVec3::new(f64::from(side & 1), f64::from(side >> 1 & 1), f64::from(side >> 2));
+            sheets_from_index.transform_point3(corner + step * last).z
+        });
+        let (near, far) =
+            depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
+        let slab = |depth: f64| (depth - frame.first_depth) / frame.slab;
+        let first = slab(near - half_depth).floor().max(0.0) as usize;
+        let end = (slab(far + half_depth).floor() + 1.0).clamp(0.0, count as f64) as usize;
+        let packed = [listed_bricks::packed(brick), first_word];
+        for list in lists.iter_mut().take(end).skip(first) {
+            list.push(packed);
+        }
+    }
+    joined(lists)
+}
+
+/// For every slice the bricks that it cuts, as [`slab_lists`].
+pub(crate) fn slice_lists(
+    slices: &SliceOrder,
+    bricks: impl Iterator<Item = ([usize; 3], u32)>,
+) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let mut layers = vec![Vec::new(); (slices.count as usize).div_ceil(BRICK_EDGE)];
+    for (brick, first_word) in bricks {
+        layers[brick[slices.axis]].push([listed_bricks::packed(brick), first_word]);
+    }
+    joined((0..slices.count).map(|k| layers[slices.slice(k) / BRICK_EDGE].clone()).collect())
+}
+
+/// Lists behind each other, and where each begins; the last entry is where all end.
+fn joined(lists: Vec<Vec<[u32; 2]>>) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let mut starts = vec![0];
+    let mut all: Vec<[u32; 2]> = Vec::new();
+    for list in lists {
+        all.extend(list);
+        starts.push(all.len() as u32);
+    }
+    // A binding cannot be empty.
+    if all.is_empty() {
+        all.push([0; 2]);
+    }
+    (starts, all)
+}

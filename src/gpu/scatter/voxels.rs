@@ -1,0 +1,102 @@
+//! The voxels that scattering splats: a list, brick by brick, of everything that is not empty.
+
+use rayon::prelude::*;
+
+use crate::data::{BRICK_EDGE, Volume};
+use crate::gpu::volume::GpuVolume;
+use crate::gpu::{Context, GpuError};
+use crate::plan::BrickSet;
+
+/// Words of a brick: two voxels to each.
+const BRICK_WORDS: usize = BRICK_EDGE * BRICK_EDGE * BRICK_EDGE / 2;
+
+/// Densities of all bricks that hold any, or of all, as `scatter/splat.wgsl` reads them.
+#[derive(Debug)]
+pub(crate) struct ScatterVoxels {
+    /// Two 16-bit normalised densities per word, 8³ voxels per brick.
+    pub buffer: wgpu::Buffer,
+    /// For each brick of the volume the word where its voxels begin; `None` for empty ones.
+    pub first_word: Vec<Option<u32>>,
+    /// The same for shaders; −1 for empty ones.
+    pub first_words: wgpu::Buffer,
+    /// Whether empty bricks are listed, too.
+    pub holds_all: bool,
+}
+
+impl ScatterVoxels {
+    /// Lists a volume's voxels; with `all` also bricks of nothing but zeros, which a transfer function
+    /// may show.
+    ///
+    /// # Errors
+    /// When they are more than a buffer of the adapter can hold.
+    pub(crate) fn new(context: &Context, volume: &GpuVolume, all: bool) -> Result<Self, GpuError> {
+        let [nx, ny, nz] = volume.bricks.dims;
+        let layers: Vec<_> =
+            (0..nz).into_par_iter().map(|z| layer_words(&volume.volume, z, [nx, ny], all)).collect();
+        let bricks = layers.iter().flatten().filter(|words| words.is_some()).count();
+        let bytes = (bricks * BRICK_WORDS * 4) as u64;
+        let limit = context.device.limits().max_storage_buffer_binding_size;
+        if bytes > limit {
+            return Err(GpuError::OverLimit {
+                what: "the list of voxels to be scattered".to_owned(),
+                size: bytes,
+                limit,
+                help: "the gathering engine makes the same picture without it",
+            });
+        }
+        let mut listed = Vec::with_capacity(bricks.max(1) * BRICK_WORDS);
+        let mut first_word = Vec::with_capacity(nx * ny * nz);
+        for words in layers.into_iter().flatten() {
+            first_word.push(words.is_some().then_some(listed.len() as u32));
+            listed.extend(words.into_iter().flatten());
+        }
+        // A binding cannot be empty.
+        listed.resize(listed.len().max(1), 0);
+        let buffer = context.buffer("ScatterVoxels::buffer", &listed, wgpu::BufferUsages::STORAGE);
+        let words: Vec<i32> = first_word.iter().map(|word| word.map_or(-1, |word| word as i32)).collect();
+        let first_words = context.buffer("ScatterVoxels::first_words", &words, wgpu::BufferUsages::STORAGE);
+        Ok(Self { buffer, first_word, first_words, holds_all: all })
+    }
+
+    /// Bricks of a set that hold anything: coordinates and first word.
+    pub(crate) fn among<'a>(&'a self, set: &'a BrickSet) -> impl Iterator<Item = ([usize; 3], u32)> + 'a {
+        let [nx, ny, _] = set.dims;
+        set.positions()
+            .filter_map(move |[x, y, z]| Some(([x, y, z], self.first_word[x + nx * (y + ny * z)]?)))
+    }
+
+    /// Bytes of the list.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.buffer.size() + self.first_words.size()
+    }
+}
+
+/// The words of every brick of layer `z`, `None` for those without anything, unless `all` are wanted.
+fn layer_words(volume: &Volume, z: usize, [nx, ny]: [usize; 2], all: bool) -> Vec<Option<Vec<u32>>> {
+    let dims = volume.dims();
+    let first = z * BRICK_EDGE;
+    let slices: Vec<Vec<f32>> =
+        (first..(first + BRICK_EDGE).min(dims[2])).map(|z| volume.slice_densities(z)).collect();
+    let density = |x: usize, y: usize, z: usize| match slices.get(z) {
+        Some(slice) if x < dims[0] && y < dims[1] => slice[x + dims[0] * y],
+        _ => 0.0,
+    };
+    let word = |low: f32, high: f32| unorm16(low) | unorm16(high) << 16;
+    let brick = |bx: usize, by: usize| {
+        let (x, y) = (bx * BRICK_EDGE, by * BRICK_EDGE);
+        let words: Vec<u32> = (0..BRICK_WORDS)
+            .map(|at| {
+                let row = at * 2;
+                let (dx, dy, dz) =
+                    (row % BRICK_EDGE, row / BRICK_EDGE % BRICK_EDGE, row / (BRICK_EDGE * BRICK_EDGE));
+                word(density(x + dx, y + dy, dz), density(x + dx + 1, y + dy, dz))
+            })
+            .collect();
+        (all || words.iter().any(|&word| word != 0)).then_some(words)
+    };
+    (0..ny).flat_map(|by| (0..nx).map(move |bx| (bx, by))).map(|(bx, by)| brick(bx, by)).collect()
+}
+
+fn unorm16(density: f32) -> u32 {
+    (density.clamp(0.0, 1.0) * 65535.0).round() as u32
+}

@@ -1,0 +1,69 @@
+//! Gradients of the pyramid in a texture of their own, while memory allows.
+
+use std::ops::Range;
+
+use super::prefilter::{level_of, uniform_and_list};
+use super::{GpuVolume, entry};
+use crate::gpu::resources::listed_bricks;
+use crate::gpu::resources::pass;
+use crate::gpu::{Context, GpuError, ShaderLibrary};
+
+/// Most bytes that gradients may take: 512³ voxels need 1.29 GB, with coarser levels. Beyond that, a
+/// volume's gradients are six fetches of the pyramid each.
+const MAX_BYTES: u64 = 3 << 29;
+
+/// Makes the texture beside a pyramid; `None` where it would take too much memory.
+pub(crate) fn texture(context: &Context, pyramid: &wgpu::Texture) -> Option<wgpu::Texture> {
+    let size = pyramid.size();
+    let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
+    if bytes(texels) > MAX_BYTES {
+        return None;
+    }
+    let texture = context.texture(&wgpu::TextureDescriptor {
+        label: Some("Gradients::texture"),
+        size,
+        mip_level_count: pyramid.mip_level_count(),
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    });
+    // Pictures do without.
+    texture.inspect_err(|err| log::info!("no texture of gradients: {err}")).ok()
+}
+
+/// Bytes for so many texels of the finest level: 8 each, and a seventh for the coarser levels.
+pub(crate) fn bytes(texels: u64) -> u64 {
+    texels * 64 / 7
+}
+
+/// Fills some bricks of one level from the pyramid, which must be complete.
+pub(crate) fn fill(
+    context: &Context,
+    shaders: &ShaderLibrary,
+    volume: &GpuVolume,
+    level: u32,
+    range: &Range<usize>,
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), GpuError> {
+    let Some(gradients) = &volume.gradients else { return Ok(()) };
+    let bricks = &volume.filled_levels[level as usize][range.clone()];
+    let pipeline = shaders.pipeline("volume/gradients.wgsl", &[])?;
+    let (uniform, list) = uniform_and_list(context, level, bricks);
+    let bind_group = pass::bind(
+        context,
+        "Gradients::bind_group",
+        &pipeline,
+        0,
+        &[
+            entry(0, wgpu::BindingResource::TextureView(&level_of(&volume.pyramid, level))),
+            entry(3, uniform.as_entire_binding()),
+            entry(4, wgpu::BindingResource::TextureView(&level_of(gradients, level))),
+            entry(5, list.as_entire_binding()),
+        ],
+    );
+    let groups = listed_bricks::workgroups(bricks.len().max(1) as u32);
+    pass::dispatch(encoder, "Gradients::fill", &pipeline, &[&bind_group], groups);
+    Ok(())
+}

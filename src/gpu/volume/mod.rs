@@ -1,0 +1,372 @@
+//! The volume on the GPU: density with a border of nothing, and the pyramid made from it.
+
+pub(super) mod fit;
+pub(super) mod gradients;
+pub(super) mod prefilter;
+pub(super) mod transfer_tables;
+
+use std::sync::Arc;
+
+use half::f16;
+
+use super::resources::pool::Recycled;
+use super::resources::uniforms::Grid;
+use super::{Context, GpuError};
+use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
+use crate::math::SceneSpace;
+use crate::plan::MAX_STRETCH_LEVEL;
+
+/// Voxels of nothing before the data in the pyramid: one texel of its coarsest level.
+const PYRAMID_PADDING: usize = 4;
+
+/// Voxels along an axis: brick coordinates are packed into ten bits each, and the pyramid has a brick more.
+const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
+
+/// Upload block: small enough that one takes a few milliseconds.
+const UPLOAD_BYTES: usize = 2 << 20;
+
+/// What every pass works with.
+#[derive(Clone, Copy)]
+pub(super) struct Gpu<'a> {
+    pub context: &'a Context,
+    pub shaders: &'a super::ShaderLibrary,
+    pub volume: &'a GpuVolume,
+    /// Bound where a light has no volume.
+    pub nothing: &'a wgpu::TextureView,
+    pub recycled: &'a Recycled,
+}
+
+impl Gpu<'_> {
+    /// A uniform for what is being recorded.
+    pub(super) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
+        self.recycled.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// A list for what is being recorded; the buffer may be longer.
+    pub(super) fn list<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
+        self.recycled.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// The same in a buffer of so many bytes at least: lists of any length up to that use one.
+    pub(super) fn list_with_room<T: bytemuck::NoUninit>(
+        &self,
+        label: &'static str,
+        values: &[T],
+        room: u64,
+    ) -> wgpu::Buffer {
+        self.recycled.buffer_with_room(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
+    }
+
+    /// Binds resources to a group of a pipeline.
+    pub(super) fn bind(
+        &self,
+        label: &str,
+        pipeline: &wgpu::ComputePipeline,
+        group: u32,
+        entries: &[wgpu::BindGroupEntry<'_>],
+    ) -> wgpu::BindGroup {
+        self.recycled.bind(self.context, label, pipeline, group, entries)
+    }
+
+    /// Bind group 1 of passes that look at the pyramid alone.
+    pub(super) fn bind_pyramid(&self, pipeline: &wgpu::ComputePipeline) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(0));
+        self.bind(
+            "Volume::pyramid_bind_group",
+            pipeline,
+            1,
+            &[
+                entry(0, grid.as_entire_binding()),
+                entry(2, wgpu::BindingResource::TextureView(&volume.pyramid_views.all)),
+                entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
+            ],
+        )
+    }
+
+    /// Bind group 1 of the passes that sample density.
+    pub(super) fn bind_volume(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        dilation: i32,
+        levels: Levels,
+    ) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(dilation));
+        self.bind(
+            "Volume::bind_group",
+            pipeline,
+            1,
+            &[
+                entry(0, grid.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&volume.density_view)),
+                entry(2, wgpu::BindingResource::TextureView(levels.choose(&volume.pyramid_views))),
+                entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
+                entry(4, wgpu::BindingResource::Sampler(&volume.nearest)),
+            ],
+        )
+    }
+}
+
+/// The levels of the pyramid that a pass may read.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Levels {
+    /// No kernel is stretched.
+    Finest,
+    /// Kernels are stretched.
+    All,
+}
+
+impl Levels {
+    /// What kernels need that are stretched or not.
+    pub(super) fn of(is_stretched: bool) -> Self {
+        if is_stretched { Self::All } else { Self::Finest }
+    }
+
+    /// The view that has these levels.
+    pub(super) fn choose(self, views: &LevelViews) -> &wgpu::TextureView {
+        match self {
+            Self::Finest => &views.finest,
+            Self::All => &views.all,
+        }
+    }
+}
+
+/// A texture of the pyramid as a whole, and its finest level alone: a software driver works out the sizes of
+/// levels for each lane and fetch where there are several.
+#[derive(Debug)]
+pub(super) struct LevelViews {
+    /// Every level.
+    pub all: wgpu::TextureView,
+    /// Level 0.
+    finest: wgpu::TextureView,
+}
+
+impl LevelViews {
+    fn new(texture: &wgpu::Texture) -> Self {
+        let all = wgpu::TextureViewDescriptor::default();
+        let finest = wgpu::TextureViewDescriptor { mip_level_count: Some(1), ..all.clone() };
+        Self { all: texture.create_view(&all), finest: texture.create_view(&finest) }
+    }
+}
+
+/// A volume's textures and bricks.
+#[derive(Debug)]
+pub(super) struct GpuVolume {
+    /// What is on the GPU; kept for re-upload and for the CPU side of the passes.
+    pub volume: Arc<Volume>,
+    /// Density ranges of 8³ bricks.
+    pub bricks: Arc<Bricks>,
+    /// How the grid lies in scene space.
+    pub scene: SceneSpace,
+    density: wgpu::Texture,
+    pub density_view: wgpu::TextureView,
+    pub pyramid: wgpu::Texture,
+    pub pyramid_views: LevelViews,
+    /// The bricks of its levels that hold anything.
+    pub filled_levels: Vec<Vec<u32>>,
+    /// Its gradients, while memory allows.
+    pub gradients: Option<wgpu::Texture>,
+    /// The same.
+    pub gradients_views: Option<LevelViews>,
+    pub clamped: wgpu::Sampler,
+    nearest: wgpu::Sampler,
+    unorm: bool,
+    grid: Grid,
+}
+
+impl GpuVolume {
+    /// Makes the textures; nothing is uploaded yet.
+    ///
+    /// # Errors
+    /// When the adapter cannot hold them.
+    pub(super) fn new(
+        context: &Context,
+        volume: &Arc<Volume>,
+        bricks: &Arc<Bricks>,
+    ) -> Result<Self, GpuError> {
+        let dims = volume.dims();
+        let (density, pyramid) = textures(context, volume, dims)?;
+        let padded = padded(dims);
+        let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
+        let grid = Grid {
+            dims: dims.map(|n| n as f32),
+            dilation: 0,
+            density_scale: reciprocal(dims.map(|n| n + 2)),
+            pad0: 0.0,
+            pyramid_scale: reciprocal(padded),
+            pad1: 0.0,
+            cell_scale: reciprocal(bricks.dims.map(|n| n * BRICK_EDGE / CELL_EDGE)),
+            pad2: 0.0,
+        };
+        let gradients = gradients::texture(context, &pyramid);
+        Ok(Self {
+            volume: Arc::clone(volume),
+            bricks: Arc::clone(bricks),
+            scene: volume.scene(),
+            density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
+            density,
+            filled_levels: prefilter::filled_levels(bricks, &pyramid),
+            gradients_views: gradients.as_ref().map(LevelViews::new),
+            gradients,
+            pyramid_views: LevelViews::new(&pyramid),
+            pyramid,
+            clamped: context.sampler("Volume::clamped"),
+            nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("Volume::nearest"),
+                ..Default::default()
+            }),
+            unorm: density_is_unorm(context, volume),
+            grid,
+        })
+    }
+
+    /// How many slices one upload step takes.
+    pub(super) fn slices_per_step(&self) -> usize {
+        let [nx, ny, _] = self.volume.dims();
+        (UPLOAD_BYTES / (nx * ny * 2)).max(1)
+    }
+
+    /// Uploads some z-slices.
+    pub(super) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
+        use rayon::prelude::*;
+        let [nx, ny, _] = self.volume.dims();
+        let encode =
+            |density: f32| if self.unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
+        let words: Vec<u16> = slices
+            .clone()
+            .into_par_iter()
+            .flat_map_iter(|z| self.volume.slice_densities(z).into_iter().map(encode))
+            .collect();
+        context.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture: &self.density,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: 1, y: 1, z: 1 + slices.start as u32 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytemuck::cast_slice(&words),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(2 * nx as u32),
+                rows_per_image: Some(ny as u32),
+            },
+            wgpu::Extent3d {
+                width: nx as u32,
+                height: ny as u32,
+                depth_or_array_layers: slices.len() as u32,
+            },
+        );
+    }
+
+    /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.
+    pub(super) fn grid(&self, dilation: i32) -> Grid {
+        Grid { dilation, ..self.grid }
+    }
+
+    /// Bytes of its textures.
+    pub(super) fn bytes(&self) -> u64 {
+        let texels = |texture: &wgpu::Texture| {
+            let size = texture.size();
+            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
+        };
+        // The coarser levels of the pyramid add a seventh.
+        let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
+        2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + gradients
+    }
+}
+
+/// Density and pyramid of a volume, if it had these dimensions.
+///
+/// # Errors
+/// When the adapter cannot hold them.
+pub(super) fn textures(
+    context: &Context,
+    volume: &Volume,
+    dims: [usize; 3],
+) -> Result<(wgpu::Texture, wgpu::Texture), GpuError> {
+    if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
+        return Err(GpuError::OverLimit {
+            what: "the volume".to_owned(),
+            size: size as u64,
+            limit: MAX_VOXELS as u64,
+            help: "a part of it, or fewer voxels, helps",
+        });
+    }
+    let unorm = density_is_unorm(context, volume);
+    let density = context.texture(&texture_3d(
+        "Volume::density",
+        dims.map(|n| n + 2),
+        if unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float },
+        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+    ))?;
+    let pyramid = context.texture(&wgpu::TextureDescriptor {
+        mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
+        ..texture_3d(
+            "Volume::pyramid",
+            padded(dims),
+            context.storage_format,
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        )
+    })?;
+    Ok((density, pyramid))
+}
+
+/// Texels of the pyramid: whole ones on every level, so that a level's texel is exactly 2³ of the finer one's.
+fn padded(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
+}
+
+/// One entry of a bind group.
+pub(super) fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource }
+}
+
+/// A 3D texture without mip levels.
+pub(super) fn texture_3d(
+    label: &'static str,
+    dims: [usize; 3],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: dims[0] as u32,
+            height: dims[1] as u32,
+            depth_or_array_layers: dims[2] as u32,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format,
+        usage,
+        view_formats: &[],
+    }
+}
+
+/// Bricks along each axis of a grid.
+pub(super) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| n.div_ceil(BRICK_EDGE))
+}
+
+fn unorm16(density: f32) -> u16 {
+    (density.clamp(0.0, 1.0) * 65535.0).round() as u16
+}
+
+/// 16-bit floats carry 11 bits and are quickest on software drivers: enough for 8-bit data. Anything
+/// finer goes to 16 normalised bits where the adapter has them.
+fn density_is_unorm(context: &Context, volume: &Volume) -> bool {
+    use crate::data::VoxelType;
+    let eight_bits = matches!(volume.samples().voxel_type(), VoxelType::U8 | VoxelType::I8);
+    context.unorm16 && !eight_bits
+}
+
+/// A density as the GPU will have it: the reference rounds the same way.
+pub fn stored_density(context: &Context, volume: &Volume, density: f32) -> f32 {
+    if density_is_unorm(context, volume) {
+        f32::from(unorm16(density)) / 65535.0
+    } else {
+        f16::from_f32(density).to_f32()
+    }
+}

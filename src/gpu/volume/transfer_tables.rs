@@ -1,0 +1,207 @@
+//! Transfer functions on the GPU, and the bricks that they show.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use super::{GpuVolume, brick_dims, entry};
+use crate::gpu::{Context, GpuError};
+use crate::model::{BakedTransfer, Settings};
+use crate::plan::{BrickSet, CellDistances, CellSet};
+
+/// A baked transfer function: its table and where it shows anything.
+#[derive(Debug)]
+pub(crate) struct Table {
+    /// What it was baked to.
+    pub baked: BakedTransfer,
+    /// The table as a storage buffer.
+    pub buffer: wgpu::Buffer,
+    /// Bricks with any extinction.
+    pub occupied: Arc<BrickSet>,
+    /// Distances to cells with any.
+    distances: Arc<CellDistances>,
+}
+
+impl Table {
+    /// Finds where a transfer function shows anything, unless one of the `known` shows the same.
+    fn new<'a>(
+        context: &Context,
+        volume: &GpuVolume,
+        baked: BakedTransfer,
+        bounded: bool,
+        known: impl IntoIterator<Item = &'a Self>,
+    ) -> Self {
+        let buffer = context.buffer("Table::entries", &baked.entries, wgpu::BufferUsages::STORAGE);
+        if let Some(known) = known.into_iter().find(|known| baked.shows_like(&known.baked)) {
+            let (occupied, distances) = (Arc::clone(&known.occupied), Arc::clone(&known.distances));
+            return Self { baked, buffer, occupied, distances };
+        }
+        let dims = volume.bricks.dims;
+        let occupied = BrickSet::new(dims, volume.bricks.occupancy(baked.visibility()));
+        let masks = if bounded {
+            volume.bricks.cell_masks(baked.visibility())
+        } else {
+            occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
+        };
+        let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
+        Self { baked, buffer, occupied: Arc::new(occupied), distances }
+    }
+
+    /// Whether the lowest density has any extinction.
+    pub(crate) fn shows_nothing(&self) -> bool {
+        self.baked.entries[0][3] > 0.0
+    }
+
+    /// The largest extinction of any density, per scene unit.
+    pub(crate) fn largest_extinction(&self) -> f32 {
+        self.baked.entries.iter().map(|[.., extinction]| *extinction).fold(0.0, f32::max)
+    }
+}
+
+/// Both transfer functions of the settings.
+#[derive(Debug)]
+pub(crate) struct Tables {
+    /// What the eye sees.
+    pub eye: Table,
+    /// What the light meets.
+    pub lighting: Table,
+    /// Distances in cells to the nearest that the eye sees.
+    pub eye_distances: wgpu::TextureView,
+    /// Distances in cells: r to the nearest that either shows, g to the nearest that attenuates light.
+    pub light_distances: wgpu::TextureView,
+    /// Whether the bounds of cells hold for all kernels in use.
+    bounded: bool,
+    /// Distances to what either shows: an eye sample looks up its light not far from there.
+    lit: Arc<CellDistances>,
+    /// Cells of light volumes up to a distance from there, by that distance and the volumes' divisor.
+    needed: RefCell<Vec<Needed>>,
+}
+
+/// Cells of a light volume up to a reach, for a divisor: ((reach, divisor), cells).
+type Needed = ((u8, usize), Arc<CellSet>);
+
+impl Tables {
+    /// Bakes both and finds their cells.
+    pub(crate) fn new(context: &Context, volume: &GpuVolume, settings: &Settings) -> Result<Self, GpuError> {
+        Self::after(None, context, volume, settings)
+    }
+
+    /// The same, with what tables of other settings know already.
+    fn after(
+        previous: Option<&Self>,
+        context: &Context,
+        volume: &GpuVolume,
+        settings: &Settings,
+    ) -> Result<Self, GpuError> {
+        let range = volume.volume.value_range();
+        let bounded = settings.cells_are_bounds();
+        let known = || {
+            let same = previous.filter(|previous| previous.bounded == bounded);
+            same.into_iter().flat_map(|previous| [&previous.eye, &previous.lighting])
+        };
+        let eye = Table::new(context, volume, settings.baked_eye(range, &volume.scene), bounded, known());
+        let lighting = settings.baked_lighting(range, &volume.scene);
+        let lighting = Table::new(context, volume, lighting, bounded, known().chain([&eye]));
+        if let Some(previous) = previous {
+            let is_same = |a: &Table, b: &Table| Arc::ptr_eq(&a.distances, &b.distances);
+            if is_same(&eye, &previous.eye) && is_same(&lighting, &previous.lighting) {
+                let (eye_distances, light_distances) =
+                    (previous.eye_distances.clone(), previous.light_distances.clone());
+                let (lit, needed) = (Arc::clone(&previous.lit), previous.needed.clone());
+                return Ok(Self { eye, lighting, eye_distances, light_distances, bounded, lit, needed });
+            }
+        }
+        let lit = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
+            Arc::clone(&eye.distances)
+        } else {
+            Arc::new(eye.distances.nearest(&lighting.distances))
+        };
+        let dims = lit.dims;
+        let pairs: Vec<u8> =
+            lit.values.iter().zip(&lighting.distances.values).flat_map(|(r, g)| [*r, *g]).collect();
+        let eye_distances = upload_distances(
+            context,
+            "Tables::eye_distances",
+            dims,
+            &eye.distances.values,
+            wgpu::TextureFormat::R8Unorm,
+        )?;
+        let light_distances = upload_distances(
+            context,
+            "Tables::light_distances",
+            dims,
+            &pairs,
+            wgpu::TextureFormat::Rg8Unorm,
+        )?;
+        let needed = RefCell::default();
+        Ok(Self { eye, lighting, eye_distances, light_distances, bounded, lit, needed })
+    }
+
+    /// The cells of a light volume, of `divisor` data voxels per voxel, that hold a cell at most `reach`
+    /// from what either transfer function shows.
+    pub(crate) fn cells_within(&self, volume: &GpuVolume, reach: u8, divisor: usize) -> Arc<CellSet> {
+        let key = (reach, divisor);
+        let mut needed = self.needed.borrow_mut();
+        if let Some((_, known)) = needed.iter().find(|(known, _)| *known == key) {
+            return Arc::clone(known);
+        }
+        let dims = brick_dims(volume.volume.dims().map(|n| n.div_ceil(divisor)));
+        let fresh = Arc::new(self.lit.within(reach, divisor, dims));
+        needed.push((key, Arc::clone(&fresh)));
+        fresh
+    }
+
+    /// Whether either shows the lowest density, which is also that of what lies around the grid.
+    pub(crate) fn show_nothing(&self) -> bool {
+        self.eye.shows_nothing() || self.lighting.shows_nothing()
+    }
+
+    /// Brings the tables up to date with changed settings. Whether there was anything to do.
+    pub(crate) fn refresh(
+        &mut self,
+        context: &Context,
+        volume: &GpuVolume,
+        settings: &Settings,
+    ) -> Result<bool, GpuError> {
+        let range = volume.volume.value_range();
+        let eye = settings.baked_eye(range, &volume.scene);
+        let lighting = settings.baked_lighting(range, &volume.scene);
+        let bounded = settings.cells_are_bounds();
+        let is_stale = eye != self.eye.baked || lighting != self.lighting.baked || bounded != self.bounded;
+        if is_stale {
+            *self = Self::after(Some(self), context, volume, settings)?;
+        }
+        Ok(is_stale)
+    }
+}
+
+/// A reach that no distance exceeds: nothing is leapt over.
+pub(crate) const EVERYWHERE: i32 = 255;
+
+/// A 3D texture of distances, a byte or two for each cell or brick. Shaders sample normalised formats and
+/// load integers.
+pub(crate) fn upload_distances(
+    context: &Context,
+    label: &'static str,
+    dims: [usize; 3],
+    distances: &[u8],
+    format: wgpu::TextureFormat,
+) -> Result<wgpu::TextureView, GpuError> {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = context.texture(&super::texture_3d(label, dims, format, usage))?;
+    context.queue.write_texture(
+        texture.as_image_copy(),
+        distances,
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some((distances.len() / dims[1].max(1) / dims[2].max(1)) as u32),
+            rows_per_image: Some(dims[1] as u32),
+        },
+        texture.size(),
+    );
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}
+
+/// A bind group entry for a texture view.
+pub(crate) fn view_entry(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+    entry(binding, wgpu::BindingResource::TextureView(view))
+}

@@ -1,0 +1,166 @@
+//! Lights, in scene space.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::model::Camera;
+
+/// As many lights as a picture can have; each has its own attenuation volume.
+pub const MAX_LIGHTS: usize = 8;
+
+/// How a light's rays run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LightKind {
+    /// From infinitely far away, along the line from `position` to the middle of the volume.
+    Parallel,
+    /// From the point `position`, in all directions.
+    Perspective,
+}
+
+/// What a light's position refers to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LightLock {
+    /// The scene: the light stays where it is when the camera turns.
+    World,
+    /// The camera's axes (right, up, back) around the origin: the light turns with it. At
+    /// `[0, 0, z]` it is a headlight.
+    Camera,
+}
+
+/// A lampshade: a perspective light shines only within a cone around the line to the origin (P §1,
+/// "with or without hood").
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Hood {
+    /// Whether there is one.
+    pub on: bool,
+    /// From the axis to where nothing is left of the light, in degrees.
+    pub half_angle_deg: f64,
+    /// The outer part of that in which the light fades, in degrees.
+    pub rim_deg: f64,
+}
+
+impl Default for Hood {
+    fn default() -> Self {
+        Self { on: false, half_angle_deg: 25.0, rim_deg: 5.0 }
+    }
+}
+
+/// One light.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Light {
+    /// What the user calls it.
+    pub name: String,
+    /// Parallel or perspective.
+    pub kind: LightKind,
+    /// In scene units. A parallel light uses only its direction as seen from the origin, so that
+    /// switching the kind back and forth loses nothing.
+    pub position: [f64; 3],
+    /// sRGB, 0 … 1.
+    pub color: [f32; 3],
+    /// Multiplies the colour in linear light.
+    pub intensity: f64,
+    /// Whether it shines.
+    pub on: bool,
+    /// Whether what it meets attenuates it; a fill light does without.
+    pub casts_shadows: bool,
+    /// What `position` refers to.
+    pub lock: LightLock,
+    /// Only for perspective lights.
+    pub hood: Hood,
+    /// Multiplies the extinction that this light meets.
+    pub density_scale: f64,
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Self {
+            name: "Light".to_owned(),
+            kind: LightKind::Parallel,
+            position: [2.0, -2.0, 2.5],
+            color: [1.0; 3],
+            intensity: 1.0,
+            on: true,
+            casts_shadows: true,
+            lock: LightLock::World,
+            hood: Hood::default(),
+            density_scale: 1.0,
+        }
+    }
+}
+
+/// The cone of a hood.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cone {
+    /// From the light to the middle of what it shines at; a unit vector in scene space.
+    pub axis: DVec3,
+    /// Cosine of the angle up to which it shines fully …
+    pub cos_inner: f64,
+    /// … and of that from which it does not.
+    pub cos_outer: f64,
+}
+
+impl Cone {
+    /// Shines everywhere: −1, the smallest cosine, lies beyond the rim.
+    const OPEN: Self = Self { axis: DVec3::NEG_Z, cos_inner: -2.0, cos_outer: -3.0 };
+
+    /// The share that passes at a cosine of the angle to the axis: 3t² − 2t³ across the rim.
+    pub fn share(&self, cosine: f64) -> f64 {
+        let t = ((cosine - self.cos_outer) / (self.cos_inner - self.cos_outer)).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    }
+}
+
+impl Light {
+    /// The same light with its position in the scene.
+    #[must_use]
+    pub fn in_world(&self, camera: &Camera) -> Self {
+        match self.lock {
+            LightLock::World => self.clone(),
+            LightLock::Camera => {
+                let position = camera.scene_from_view() * DVec3::from(self.position);
+                Self { position: position.into(), lock: LightLock::World, ..self.clone() }
+            }
+        }
+    }
+
+    /// Changes what the position refers to and leaves the light where it is.
+    pub fn set_lock(&mut self, lock: LightLock, camera: &Camera) {
+        let world = self.in_world(camera).position;
+        self.lock = lock;
+        self.set_world_position(world.into(), camera);
+    }
+
+    /// Moves the light to a position in the scene.
+    pub fn set_world_position(&mut self, world: DVec3, camera: &Camera) {
+        self.position = match self.lock {
+            LightLock::World => world.into(),
+            LightLock::Camera => (camera.scene_from_view().transpose() * world).into(),
+        };
+    }
+
+    /// The cone in which a light shines whose position refers to the scene.
+    pub fn cone(&self) -> Cone {
+        let Hood { on, half_angle_deg, rim_deg } = self.hood;
+        if !on || self.kind == LightKind::Parallel {
+            return Cone::OPEN;
+        }
+        let cos_outer = half_angle_deg.to_radians().cos();
+        let cos_inner = (half_angle_deg - rim_deg).max(0.0).to_radians().cos();
+        // No rim at all would divide by zero; a millionth is sharper than any pixel.
+        Cone { axis: -self.direction(), cos_inner: cos_inner.max(cos_outer + 1e-6), cos_outer }
+    }
+
+    /// Unit vector from the origin towards a parallel light.
+    pub fn direction(&self) -> DVec3 {
+        DVec3::from(self.position).normalize_or(DVec3::Z)
+    }
+
+    /// Whether this light needs an attenuation volume now.
+    pub fn needs_volume(&self) -> bool {
+        self.on && self.casts_shadows && self.intensity > 0.0
+    }
+}

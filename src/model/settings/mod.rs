@@ -1,0 +1,219 @@
+//! The one value that is the whole look of a picture.
+
+pub(super) mod camera;
+pub(super) mod cut;
+pub(super) mod floor;
+pub(super) mod length;
+pub(super) mod light;
+pub(super) mod sampling;
+pub(super) mod sanitise;
+pub(super) mod shadows;
+pub(super) mod variant;
+pub(super) mod view;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::transfer::unit_in_scene;
+use super::{
+    BakedTransfer, Camera, Classification, Cuts, Engine, Gradients, Ground, Kernel, Length, Light,
+    LightStorage, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
+};
+use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE};
+use crate::math::SceneSpace;
+
+/// Version of the JSON form. Older files are migrated, newer ones are read as far as possible.
+pub const SCHEMA: u32 = 1;
+
+/// Everything that decides what a picture of a volume looks like.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// See [`SCHEMA`].
+    pub schema: u32,
+    /// Where the eye is.
+    pub camera: Camera,
+    /// At most [`super::MAX_LIGHTS`].
+    pub lights: Vec<Light>,
+    /// What the eye sees: colour and opacity of every value.
+    pub transfer: TransferFunction,
+    /// What the light meets.
+    pub lighting: LightingTransfer,
+    /// The length to which opacities refer.
+    pub opacity_unit: Length,
+    /// How material answers to light.
+    pub shading: Shading,
+    /// How light is attenuated on its way to the material.
+    pub shadows: Shadows,
+    /// What of the volume is left out.
+    pub cuts: Cuts,
+    /// The floor under the volume.
+    pub ground: Ground,
+    /// How the eye's sheets are sampled.
+    pub sampling: Sampling,
+    /// What happens to the picture at the end.
+    pub output: Output,
+    /// Views that are kept, by their digit; they are no part of the picture.
+    pub views: BTreeMap<u8, Camera>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            schema: SCHEMA,
+            camera: Camera::default(),
+            lights: vec![Light::default()],
+            transfer: TransferFunction::default(),
+            lighting: LightingTransfer::default(),
+            opacity_unit: Length::Voxels(1.0),
+            shading: Shading::default(),
+            shadows: Shadows::default(),
+            cuts: Cuts::default(),
+            ground: Ground::default(),
+            sampling: Sampling::default(),
+            output: Output::default(),
+            views: BTreeMap::new(),
+        }
+    }
+}
+
+/// The opacity that attenuates light: the eye's, scaled, or a curve of its own (P §4: lower
+/// opacities here let light faintly pass thin opaque structures).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LightingTransfer {
+    /// Whether it follows the eye's opacity.
+    pub linked: bool,
+    /// Multiplies the extinction, linked or not.
+    pub scale: f64,
+    /// Used when not linked; its colours mean nothing.
+    pub curve: TransferFunction,
+}
+
+impl Default for LightingTransfer {
+    fn default() -> Self {
+        Self { linked: true, scale: 1.0, curve: TransferFunction::default() }
+    }
+}
+
+/// Phong's illumination equation (P eq. 2–4).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Shading {
+    /// Light that the material gives off, as a share of its colour (`C_e`).
+    pub emission: f64,
+    /// `k_a`.
+    pub ambient: f64,
+    /// `k_d`.
+    pub diffuse: f64,
+    /// `k_s`.
+    pub specular: f64,
+    /// `n_s`, the Phong exponent.
+    pub shininess: f64,
+    /// The density change per opacity unit at which a sample counts half as a surface: below it
+    /// the direction of the gradient is noise, and the sample is lit evenly from all sides.
+    pub surface_gradient: f64,
+}
+
+impl Default for Shading {
+    fn default() -> Self {
+        Self {
+            emission: 0.0,
+            ambient: 0.15,
+            diffuse: 0.85,
+            specular: 0.25,
+            shininess: 32.0,
+            surface_gradient: 0.02,
+        }
+    }
+}
+
+/// How linear light becomes a display colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ToneMap {
+    /// As is up to 0.8, then a smooth shoulder that keeps the hue.
+    Neutral,
+    /// Cut at 1.
+    Clip,
+}
+
+/// A vertical gradient behind the volume.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Background {
+    /// sRGB, 0 … 1.
+    pub top: [f32; 3],
+    /// sRGB, 0 … 1.
+    pub bottom: [f32; 3],
+}
+
+/// What happens to the picture at the end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Output {
+    /// Behind the volume; left out of transparent pictures.
+    pub background: Background,
+    /// Applied to the volume, never to the background.
+    pub tone_map: ToneMap,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        // #14161b … #262a33: dark, but not black, so that shadows can be told from it.
+        let bytes = |rgb: [u8; 3]| rgb.map(|c| f32::from(c) / 255.0);
+        let background = Background { top: bytes([0x14, 0x16, 0x1b]), bottom: bytes([0x26, 0x2a, 0x33]) };
+        Self { background, tone_map: ToneMap::Neutral }
+    }
+}
+
+impl Settings {
+    /// Whether voxels are scattered. Rays from every sample need the volume, so with them the
+    /// picture is gathered whatever the engine.
+    pub fn scatters(&self) -> bool {
+        self.sampling.engine == Engine::Scatter && self.shadows.algorithm != ShadowAlgorithm::Direct
+    }
+
+    /// Whether all light that material has attenuated is kept in one volume of colours. Left to
+    /// itself: when that takes less memory than a volume for each light, and no highlights would be
+    /// lost.
+    pub fn collapses_lights(&self) -> bool {
+        let shadowed = self.lights.iter().filter(|light| light.needs_volume()).count();
+        let wanted = match self.shadows.storage {
+            LightStorage::PerLight => false,
+            LightStorage::Collapsed => true,
+            // Four 16-bit colours and weights against one number for each light.
+            LightStorage::Auto => self.shading.specular == 0.0 && shadowed > 4,
+        };
+        wanted && shadowed > 0 && self.shadows.algorithm.has_volume()
+    }
+
+    /// Whether what is reconstructed in a cell of 2³ voxels stays within the bounds that are known of it
+    /// ([`crate::data::CellBounds`]): not where voxels are classified before they are spread, nor with
+    /// Gaussians that are much narrower or wider than the B-spline.
+    pub fn cells_are_bounds(&self) -> bool {
+        let is_bounded = |kernel: Kernel| match kernel {
+            Kernel::BSpline | Kernel::Prefiltered => true,
+            Kernel::Gaussian { sigma } => (sigma - BOUNDED_SIGMA).abs() <= SIGMA_TOLERANCE,
+        };
+        self.sampling.classification == Classification::Post
+            && is_bounded(self.sampling.kernel)
+            && is_bounded(self.shadows.kernel)
+    }
+
+    /// Whether normals come from sheets.
+    pub fn has_sheet_gradients(&self) -> bool {
+        self.scatters() || self.sampling.gradients == Gradients::Sheets
+    }
+
+    /// The eye's transfer function as a table for a volume of that value range.
+    pub fn baked_eye(&self, range: (f64, f64), scene: &SceneSpace) -> BakedTransfer {
+        self.transfer.bake(range, unit_in_scene(self.opacity_unit, scene), 1.0)
+    }
+
+    /// The lighting transfer function as a table for a volume of that value range.
+    pub fn baked_lighting(&self, range: (f64, f64), scene: &SceneSpace) -> BakedTransfer {
+        let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
+        function.bake(range, unit_in_scene(self.opacity_unit, scene), self.lighting.scale)
+    }
+}

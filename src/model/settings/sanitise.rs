@@ -1,0 +1,171 @@
+//! Bringing settings into range, so that nothing typed or loaded can reach a shader as NaN, as a
+//! negative extinction or as an endless loop.
+
+use crate::model::{
+    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Ground, Hood, Kernel, Light, MAX_BIAS_VOXELS,
+    MAX_GROUND_HEIGHT, MAX_GROUND_RADIUS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling, Settings, Shading,
+    Shadows,
+};
+
+impl Settings {
+    /// Brings every number into its documented range, so that nothing typed or loaded can reach a
+    /// shader as NaN, as a negative extinction or as an endless loop.
+    pub fn sanitise(&mut self) {
+        let number = |value: &mut f64, low: f64, high: f64, fallback: f64| {
+            *value = if value.is_finite() { value.clamp(low, high) } else { fallback };
+        };
+        let rgb = |color: &mut [f32; 3]| {
+            for c in color {
+                *c = if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 };
+            }
+        };
+        let point = |position: &mut [f64; 3], limit: f64| {
+            for c in position {
+                *c = if c.is_finite() { c.clamp(-limit, limit) } else { 0.0 };
+            }
+        };
+        let kernel = |kernel: &mut Kernel| {
+            if let Kernel::Gaussian { sigma } = kernel {
+                *sigma = if sigma.is_finite() { sigma.clamp(0.4, 0.8) } else { 0.6 };
+            }
+        };
+        let default = Self::default();
+        self.views.retain(|slot, _| (1..=9).contains(slot));
+        for camera in self.views.values_mut().chain([&mut self.camera]) {
+            let Camera { projection: _, azimuth_deg, elevation_deg, roll_deg, target, distance, fov_y_deg } =
+                camera;
+            number(azimuth_deg, -1e6, 1e6, default.camera.azimuth_deg);
+            number(elevation_deg, -1e6, 1e6, default.camera.elevation_deg);
+            number(roll_deg, -1e6, 1e6, 0.0);
+            point(target, 100.0);
+            number(distance, 0.05, 1e4, default.camera.distance);
+            number(fov_y_deg, 1.0, 120.0, default.camera.fov_y_deg);
+        }
+        self.lights.truncate(crate::model::MAX_LIGHTS);
+        for light in &mut self.lights {
+            let Light {
+                name: _,
+                kind: _,
+                position,
+                color,
+                intensity,
+                on: _,
+                casts_shadows: _,
+                lock: _,
+                hood: Hood { on: _, half_angle_deg, rim_deg },
+                density_scale,
+            } = light;
+            point(position, 1e6);
+            rgb(color);
+            number(intensity, 0.0, 1e3, 1.0);
+            number(half_angle_deg, 1.0, 89.0, Hood::default().half_angle_deg);
+            number(rim_deg, 0.0, 89.0, Hood::default().rim_deg);
+            number(density_scale, 0.0, 1e3, 1.0);
+        }
+        for function in [&mut self.transfer, &mut self.lighting.curve] {
+            function.points.retain(|point| point.value.is_finite());
+            for ControlPoint { value: _, color, opacity, easing: _ } in &mut function.points {
+                rgb(color);
+                number(opacity, 0.0, 1.0, 0.0);
+            }
+            function.sort();
+        }
+        number(&mut self.lighting.scale, 0.0, 1e3, 1.0);
+        let Cuts { crop, plane } = &mut self.cuts;
+        let CropBox { on: _, low, high, effect: _ } = crop;
+        for axis in 0..3 {
+            number(&mut low[axis], 0.0, 1.0 - MIN_CROP, 0.0);
+            number(&mut high[axis], low[axis] + MIN_CROP, 1.0, 1.0);
+        }
+        let ClipPlane { on: _, normal, offset, effect: _ } = plane;
+        point(normal, 1e6);
+        if *normal == [0.0; 3] {
+            *normal = ClipPlane::default().normal;
+        }
+        number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
+        let Ground { on: _, height, radius, color, opacity, shadow_only: _ } = &mut self.ground;
+        number(height, -MAX_GROUND_HEIGHT, MAX_GROUND_HEIGHT, default.ground.height);
+        number(radius, 0.1, MAX_GROUND_RADIUS, default.ground.radius);
+        rgb(color);
+        number(opacity, 0.0, 1.0, 1.0);
+        let length = self.opacity_unit.number();
+        if !(length.is_finite() && length > 0.0) {
+            self.opacity_unit = default.opacity_unit;
+        }
+        let Shading { emission, ambient, diffuse, specular, shininess, surface_gradient } = &mut self.shading;
+        number(emission, 0.0, 100.0, default.shading.emission);
+        number(ambient, 0.0, 10.0, default.shading.ambient);
+        number(diffuse, 0.0, 10.0, default.shading.diffuse);
+        number(specular, 0.0, 10.0, default.shading.specular);
+        number(shininess, 1.0, 1e3, default.shading.shininess);
+        number(surface_gradient, 1e-6, 10.0, default.shading.surface_gradient);
+        let Shadows {
+            algorithm: _,
+            strength,
+            ambient_offset,
+            gain,
+            bias_voxels,
+            balance,
+            first_touch: _,
+            deposit: _,
+            kernel: light_kernel,
+            slab,
+            quadrature: _,
+            resolution: _,
+            precision: _,
+            storage: _,
+        } = &mut self.shadows;
+        number(strength, 0.0, 1.0, default.shadows.strength);
+        number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);
+        number(gain, 0.0, 100.0, default.shadows.gain);
+        number(bias_voxels, 0.0, MAX_BIAS_VOXELS, default.shadows.bias_voxels);
+        number(balance, 0.01, 100.0, default.shadows.balance);
+        number(slab, 0.25, 2.0, default.shadows.slab);
+        kernel(light_kernel);
+        let Sampling {
+            kernel: eye_kernel,
+            slab,
+            quadrature: _,
+            gradients: _,
+            classification: _,
+            engine: _,
+            order: _,
+        } = &mut self.sampling;
+        number(slab, 0.25, 2.0, default.sampling.slab);
+        kernel(eye_kernel);
+        let Output { background: Background { top, bottom }, tone_map: _ } = &mut self.output;
+        rgb(top);
+        rgb(bottom);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Length;
+
+    #[test]
+    fn nonsense_becomes_usable() {
+        let mut settings = Settings::default();
+        settings.camera.distance = f64::NAN;
+        settings.shadows.slab = 0.0;
+        settings.lights = vec![Light { intensity: -3.0, ..Light::default() }; 20];
+        settings.transfer.points.push(ControlPoint::new(f64::NAN, [2.0; 3], 0.1));
+        settings.opacity_unit = Length::Mm(0.0);
+        settings.sanitise();
+        assert_eq!(settings.camera.distance, 5.2);
+        assert_eq!(settings.shadows.slab, 0.25);
+        assert_eq!(settings.lights.len(), 8);
+        assert_eq!(settings.lights[0].intensity, 0.0);
+        assert!(settings.transfer.points.is_empty());
+        assert_eq!(settings.opacity_unit, Length::Voxels(1.0));
+    }
+
+    #[test]
+    fn sane_settings_stay_as_they_are() {
+        let mut settings = Settings::default();
+        let before = settings.clone();
+        settings.sanitise();
+        assert_eq!(settings, before);
+    }
+}

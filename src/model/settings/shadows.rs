@@ -1,0 +1,155 @@
+//! How light is attenuated on its way.
+
+use serde::{Deserialize, Serialize};
+
+/// The largest light bias: the radius of the kernel.
+pub const MAX_BIAS_VOXELS: f64 = 2.0;
+
+use crate::math::SceneSpace;
+use crate::model::{Kernel, Quadrature};
+
+/// Where attenuated light comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShadowAlgorithm {
+    /// Light reaches everything.
+    Off,
+    /// A light volume filled by sheet-buffer splatting (P §3.5, the paper's variant 3).
+    Splat,
+    /// A light volume filled by a ray from every voxel to the light (P §3.4, eq. 8, variant 2).
+    Raycast,
+    /// No light volume: a ray to the light from every sample (P §3.3, eq. 7, variant 1).
+    Direct,
+}
+
+impl ShadowAlgorithm {
+    /// Whether light is attenuated on its way.
+    pub fn is_on(self) -> bool {
+        self != Self::Off
+    }
+
+    /// Whether attenuation is kept in a light volume.
+    pub fn has_volume(self) -> bool {
+        matches!(self, Self::Splat | Self::Raycast)
+    }
+}
+
+/// Which transmittance of a slab counts: in a sheet what it deposits in the light volume, on a ray
+/// to the light where the first slab lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Deposit {
+    /// In front of the slab: P eq. 7, 8 and 10 read literally; first order in the slab's thickness.
+    Front,
+    /// The mean over the slab, T·(1 − e^−τ)/τ; second order.
+    SlabMean,
+}
+
+/// Resolution of the light volume per axis, relative to the data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resolution {
+    /// One light voxel per voxel.
+    Full,
+    /// ½ per axis: an eighth of the memory and time.
+    Half,
+    /// ¼ per axis.
+    Quarter,
+}
+
+impl Resolution {
+    /// Data voxels per light voxel along an axis.
+    pub fn divisor(self) -> usize {
+        match self {
+            Self::Full => 1,
+            Self::Half => 2,
+            Self::Quarter => 4,
+        }
+    }
+}
+
+/// How the values of a light volume are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// 16-bit floats: 11 bits at full light, and as many in the dark.
+    Half,
+    /// A byte per voxel, as the paper has it: half the memory, 256 steps.
+    Byte,
+}
+
+/// What is kept of several lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LightStorage {
+    /// Whichever takes less memory and loses nothing.
+    Auto,
+    /// An attenuation volume for each light: highlights, and colours that can be changed at once.
+    PerLight,
+    /// One volume of the diffuse light of all (P §4): no highlights from lights that cast shadows, and
+    /// every change of one fills the volumes of all again.
+    Collapsed,
+}
+
+/// How light is attenuated on its way, and the cures for darkness (P §4).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Shadows {
+    /// Off, or how the light volume is filled.
+    pub algorithm: ShadowAlgorithm,
+    /// 0: no shadows, 1: full ones.
+    pub strength: f64,
+    /// Added to the attenuated light everywhere.
+    pub ambient_offset: f64,
+    /// Multiplies the attenuated light, which is then cut at 1.
+    pub gain: f64,
+    /// Moves the lookup towards the light, in voxels, 0 … 2 (the kernel's radius).
+    pub bias_voxels: f64,
+    /// Multiplies the lights while shadows are on, so that the picture is as bright as without.
+    pub balance: f64,
+    /// Each voxel takes the light of the first sheet that touches it (the paper's mode without
+    /// weight volume).
+    pub first_touch: bool,
+    /// Which transmittance a sheet deposits.
+    pub deposit: Deposit,
+    /// Kernel of the light pass.
+    pub kernel: Kernel,
+    /// Slab thickness of the light pass, in smallest edges of the light volume's voxels.
+    pub slab: f64,
+    /// Quadrature of the light pass.
+    pub quadrature: Quadrature,
+    /// Resolution of the light volumes.
+    pub resolution: Resolution,
+    /// How they are stored.
+    pub precision: Precision,
+    /// One for each light, or one for all.
+    pub storage: LightStorage,
+}
+
+impl Default for Shadows {
+    fn default() -> Self {
+        Self {
+            algorithm: ShadowAlgorithm::Splat,
+            strength: 1.0,
+            ambient_offset: 0.0,
+            gain: 1.0,
+            bias_voxels: 0.0,
+            balance: 1.0,
+            first_touch: false,
+            deposit: Deposit::SlabMean,
+            kernel: Kernel::BSpline,
+            slab: 1.0,
+            quadrature: Quadrature::One,
+            resolution: Resolution::Full,
+            precision: Precision::Half,
+            storage: LightStorage::Auto,
+        }
+    }
+}
+
+impl Shadows {
+    /// Distance between the samples of a ray to a light, in scene units: the slab's thickness.
+    pub fn ray_step(&self, scene: &SceneSpace) -> f64 {
+        self.slab * scene.smallest_edge()
+    }
+}

@@ -1,0 +1,94 @@
+//! Looks to compare with: the same scene and camera, with something else between them.
+
+use crate::model::{Engine, Settings, ShadowAlgorithm};
+
+/// How a look differs from the current one.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Variant {
+    /// Not at all.
+    Current,
+    /// Light reaches everything.
+    Off,
+    /// Shadows from a splatted light volume.
+    Splat,
+    /// Shadows from a light volume filled by rays.
+    Raycast,
+    /// Shadows by rays from every sample.
+    Direct,
+    /// Voxels are scattered instead of gathered.
+    Scatter,
+    /// Voxels take the light of the first sheet that touches them.
+    FirstTouch,
+    /// Another look altogether, under the current camera.
+    Look(Box<Settings>),
+}
+
+impl Variant {
+    /// All that need nothing else.
+    pub const PLAIN: [Self; 7] =
+        [Self::Current, Self::Off, Self::Splat, Self::Raycast, Self::Direct, Self::Scatter, Self::FirstTouch];
+
+    /// What the command line calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Current => "current",
+            Self::Off => "off",
+            Self::Splat => "splat",
+            Self::Raycast => "raycast",
+            Self::Direct => "direct",
+            Self::Scatter => "scatter",
+            Self::FirstTouch => "first-touch",
+            Self::Look(_) => "look",
+        }
+    }
+
+    /// The settings to be shown in place of the current ones.
+    #[must_use]
+    pub fn of(&self, current: &Settings) -> Settings {
+        let mut settings = current.clone();
+        let shadows = &mut settings.shadows;
+        match self {
+            Self::Current => {}
+            Self::Off => shadows.algorithm = ShadowAlgorithm::Off,
+            Self::Splat => {
+                (shadows.algorithm, shadows.first_touch) = (ShadowAlgorithm::Splat, false);
+                settings.sampling.engine = Engine::Gather;
+            }
+            Self::Raycast => shadows.algorithm = ShadowAlgorithm::Raycast,
+            Self::Direct => shadows.algorithm = ShadowAlgorithm::Direct,
+            Self::Scatter => {
+                (shadows.algorithm, shadows.first_touch) = (ShadowAlgorithm::Splat, false);
+                settings.sampling.engine = Engine::Scatter;
+            }
+            Self::FirstTouch => {
+                (shadows.algorithm, shadows.first_touch) = (ShadowAlgorithm::Splat, true);
+            }
+            Self::Look(look) => {
+                settings = Settings { camera: current.camera.clone(), ..Settings::clone(look) };
+            }
+        }
+        settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variants_differ_from_each_other_and_keep_the_camera() {
+        let mut current = Settings::default();
+        current.camera.azimuth_deg = 77.0;
+        let mut looks: Vec<Settings> = Variant::PLAIN.iter().map(|variant| variant.of(&current)).collect();
+        // The default look is a splatted one.
+        assert_eq!(looks[2], looks[0]);
+        looks.remove(2);
+        let mut other = Settings::default();
+        other.shading.ambient = 0.5;
+        looks.push(Variant::Look(Box::new(other)).of(&current));
+        for (at, look) in looks.iter().enumerate() {
+            assert_eq!(look.camera, current.camera);
+            assert!(looks[..at].iter().all(|earlier| earlier != look), "{at}");
+        }
+    }
+}

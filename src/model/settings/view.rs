@@ -1,0 +1,182 @@
+//! Ways to look that everybody expects: from the six sides, from a corner, all of it, nearer to the pointer.
+
+use glam::DVec3;
+
+use crate::model::{Camera, Projection};
+
+/// A side from which to look, along the axes of the scene. What the front of a thing is, only its owner knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StandardView {
+    /// From +x …
+    PlusX,
+    /// … and so on.
+    MinusX,
+    /// From +y.
+    PlusY,
+    /// From −y.
+    MinusY,
+    /// From +z: from above.
+    PlusZ,
+    /// From −z: from below.
+    MinusZ,
+    /// From a corner: all three axes are equally long.
+    Isometric,
+}
+
+impl StandardView {
+    /// All of them, in the order of menus.
+    pub const ALL: [Self; 7] =
+        [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ, Self::Isometric];
+
+    /// What menus call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PlusX => "From +x",
+            Self::MinusX => "From −x",
+            Self::PlusY => "From +y",
+            Self::MinusY => "From −y",
+            Self::PlusZ => "From above (+z)",
+            Self::MinusZ => "From below (−z)",
+            Self::Isometric => "Isometric",
+        }
+    }
+
+    /// Azimuth and elevation in degrees.
+    pub fn angles_deg(self) -> [f64; 2] {
+        match self {
+            Self::PlusX => [0.0, 0.0],
+            Self::MinusX => [180.0, 0.0],
+            Self::PlusY => [90.0, 0.0],
+            Self::MinusY => [270.0, 0.0],
+            // +y up, as on a map.
+            Self::PlusZ => [270.0, 90.0],
+            Self::MinusZ => [270.0, -90.0],
+            // Between +x and −y; atan(1/√2) is the angle between a cube's diagonal and its face.
+            Self::Isometric => [315.0, std::f64::consts::FRAC_1_SQRT_2.atan().to_degrees()],
+        }
+    }
+
+    /// The side that faces into a direction, of those along the axes.
+    pub fn facing(direction: DVec3) -> Self {
+        let size = direction.abs();
+        let side = |value: f64, plus, minus| if value > 0.0 { plus } else { minus };
+        if size.z >= size.x && size.z >= size.y {
+            side(direction.z, Self::PlusZ, Self::MinusZ)
+        } else if size.y >= size.x {
+            side(direction.y, Self::PlusY, Self::MinusY)
+        } else {
+            side(direction.x, Self::PlusX, Self::MinusX)
+        }
+    }
+}
+
+impl Camera {
+    /// Looks at the same target from a side, from as far as before.
+    pub fn look_from(&mut self, view: StandardView) {
+        [self.azimuth_deg, self.elevation_deg] = view.angles_deg();
+        self.roll_deg = 0.0;
+    }
+
+    /// Perspective or orthographic, whichever it is not.
+    pub fn toggle_projection(&mut self) {
+        self.projection = match self.projection {
+            Projection::Perspective => Projection::Orthographic,
+            Projection::Orthographic => Projection::Perspective,
+        };
+    }
+
+    /// Frames what another camera frames, from the direction of this one.
+    pub fn frame_as(&mut self, other: &Self) {
+        self.target = other.target;
+        // The same width at the target, whatever the angle of view.
+        let ratio = (other.fov_y_deg.to_radians() / 2.0).tan() / (self.fov_y_deg.to_radians() / 2.0).tan();
+        self.distance = other.distance * ratio;
+    }
+
+    /// Brings the eye nearer (`factor` below 1) or further, so that what is seen at a pixel of the target's
+    /// plane stays there.
+    pub fn zoom_at(&mut self, factor: f64, (x, y): (f64, f64), (width, height): (f64, f64)) {
+        let before = self.distance;
+        let unit = 2.0 * self.half_height_at_target() / height.max(1.0);
+        let view = self.scene_from_view();
+        let aside = view.x_axis * ((x - width / 2.0) * unit) + view.y_axis * ((height / 2.0 - y) * unit);
+        self.zoom(factor);
+        let share = 1.0 - self.distance / before;
+        self.target = (DVec3::from(self.target) + aside * share).into();
+    }
+
+    /// Makes a point the one to turn about, without moving the eye's line of sight: the picture stays, unless
+    /// the point is aside; then it comes to the middle.
+    pub fn turn_about(&mut self, point: DVec3) {
+        let view = self.scene_from_view();
+        let depth = (self.eye() - point).dot(view.z_axis);
+        if self.projection == Projection::Perspective && depth > 1e-3 {
+            self.distance = depth.clamp(0.05, 100.0);
+        }
+        self.target = point.into();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_are_seen_from_where_their_names_say() {
+        for (view, from) in [
+            (StandardView::PlusY, DVec3::Y),
+            (StandardView::MinusY, DVec3::NEG_Y),
+            (StandardView::PlusX, DVec3::X),
+            (StandardView::MinusX, DVec3::NEG_X),
+            (StandardView::PlusZ, DVec3::Z),
+            (StandardView::MinusZ, DVec3::NEG_Z),
+        ] {
+            let mut camera = Camera { roll_deg: 20.0, ..Camera::default() };
+            camera.look_from(view);
+            let axes = camera.scene_from_view();
+            assert!((axes.z_axis - from).length() < 1e-9, "{view:?}");
+            assert_eq!(StandardView::facing(from), view);
+            let up = if from.z == 0.0 { DVec3::Z } else { axes.y_axis };
+            assert!((axes.y_axis - up).length() < 1e-9, "{view:?} is upright");
+        }
+        let mut camera = Camera::default();
+        camera.look_from(StandardView::Isometric);
+        let towards = camera.scene_from_view().z_axis;
+        assert!((towards - DVec3::new(1.0, -1.0, 1.0).normalize()).length() < 1e-9);
+    }
+
+    #[test]
+    fn the_point_under_the_pointer_stays_when_zooming() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let mut camera = Camera { projection, target: [0.2, -0.1, 0.3], ..Camera::default() };
+            let view = camera.scene_from_view();
+            // In the plane through the target.
+            let point = DVec3::from(camera.target) + 0.4 * view.x_axis - 0.3 * view.y_axis;
+            let (x, y, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
+            camera.zoom_at(0.6, (x, y), (640.0, 480.0));
+            let (x1, y1, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
+            assert!((x1 - x).abs() < 1e-9 && (y1 - y).abs() < 1e-9, "{projection:?}: {x} {y} → {x1} {y1}");
+        }
+    }
+
+    #[test]
+    fn a_new_middle_keeps_the_size_of_what_is_seen_there() {
+        let mut camera = Camera::default();
+        let view = camera.scene_from_view();
+        let point = DVec3::from(camera.target) + 0.5 * view.z_axis + 0.1 * view.x_axis;
+        let eye = camera.eye();
+        camera.turn_about(point);
+        let (x, y, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
+        assert!((x - 320.0).abs() < 1e-9 && (y - 240.0).abs() < 1e-9);
+        assert!(((camera.eye() - eye).dot(view.z_axis)).abs() < 1e-9, "no nearer, no further");
+    }
+
+    #[test]
+    fn framing_as_another_keeps_the_direction() {
+        let other = Camera { distance: 4.0, fov_y_deg: 30.0, target: [0.1, 0.0, 0.0], ..Camera::default() };
+        let mut camera = Camera { azimuth_deg: 10.0, fov_y_deg: 60.0, distance: 9.0, ..Camera::default() };
+        camera.frame_as(&other);
+        assert!((camera.half_height_at_target() - other.half_height_at_target()).abs() < 1e-9);
+        assert_eq!((camera.azimuth_deg, camera.target), (10.0, other.target));
+    }
+}

@@ -1,0 +1,164 @@
+//! Presets that come with the program: transfer functions and materials by domain.
+//!
+//! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the volume's
+//! own range (`"_values": "relative"`). Camera, lights and shadows stay as they are.
+
+use serde_json::Value;
+
+use crate::model::{PresetError, Settings, apply_json};
+
+/// A preset of the library.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Preset {
+    /// `domain/name`, as `--preset` takes it.
+    pub name: &'static str,
+    text: &'static str,
+}
+
+macro_rules! presets {
+    ($($name:literal),+ $(,)?) => {
+        [$(Preset { name: $name, text: include_str!(concat!("../../../presets/", $name, ".json")) }),+]
+    };
+}
+
+/// All of them, domain by domain.
+pub const PRESETS: [Preset; 15] = presets![
+    "ct/bone",
+    "ct/muscle_and_skin",
+    "ct/angiography",
+    "ct/lung",
+    "mr/head",
+    "mr/angiography",
+    "microscopy/fluorescence",
+    "microscopy/stained_tissue",
+    "simulation/fuel",
+    "simulation/cloud",
+    "simulation/signed",
+    "paper/lobster",
+    "paper/fuel",
+    "paper/chair",
+    "bench/creature",
+];
+
+impl Preset {
+    /// The preset of a name.
+    pub fn find(name: &str) -> Option<Self> {
+        PRESETS.into_iter().find(|preset| preset.name == name)
+    }
+
+    /// Its JSON.
+    pub fn text(&self) -> &'static str {
+        self.text
+    }
+
+    /// The domain, for menus.
+    pub fn domain(&self) -> &'static str {
+        self.name.split_once('/').map_or("", |(domain, _)| domain)
+    }
+
+    /// What the domain is called: in short, and over a list.
+    pub fn domain_titles(&self) -> [&'static str; 2] {
+        match self.domain() {
+            "ct" => ["CT", "CT (Hounsfield units)"],
+            "mr" => ["MR", "Magnetic resonance"],
+            "microscopy" => ["Microscopy"; 2],
+            "simulation" => ["Simulation"; 2],
+            "paper" => ["Paper", "Splatting with shadows"],
+            other => [other; 2],
+        }
+    }
+
+    /// The name in its domain, for menus.
+    pub fn title(&self) -> String {
+        let title = self.name.split_once('/').map_or(self.name, |(_, title)| title).replace('_', " ");
+        let mut letters = title.chars();
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+
+    /// What it is for.
+    pub fn about(&self) -> String {
+        let value: Value = serde_json::from_str(self.text).unwrap_or_default();
+        value.get("_about").and_then(Value::as_str).unwrap_or_default().to_owned()
+    }
+
+    /// Lays it over settings, for a volume with these values.
+    ///
+    /// # Errors
+    /// As [`apply_json`]; a test proves that it does not happen.
+    pub fn apply(&self, settings: &Settings, range: (f64, f64)) -> Result<Settings, PresetError> {
+        let overlay: Value = serde_json::from_str(self.text).map_err(PresetError::Syntax)?;
+        apply_relative(settings, &overlay, range).map(|(settings, _)| settings)
+    }
+}
+
+/// As [`apply_json`], for presets whose values may be shares of the volume's range.
+///
+/// # Errors
+/// As [`apply_json`].
+pub fn apply_relative(
+    settings: &Settings,
+    overlay: &Value,
+    range: (f64, f64),
+) -> Result<(Settings, Vec<String>), PresetError> {
+    let (mut applied, warnings) = apply_json(settings, overlay)?;
+    if overlay.get("_values").and_then(Value::as_str) == Some("relative") {
+        let has = |path: &str| overlay.pointer(path).is_some();
+        let curves = [
+            (has("/transfer/points"), &mut applied.transfer),
+            (has("/lighting/curve/points"), &mut applied.lighting.curve),
+        ];
+        for (_, function) in curves.into_iter().filter(|(given, _)| *given) {
+            for point in &mut function.points {
+                point.value = range.0 + point.value * (range.1 - range.0);
+            }
+        }
+    }
+    Ok((applied, warnings))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_valid_understood_and_show_something() {
+        for preset in PRESETS {
+            let overlay: Value = serde_json::from_str(preset.text).unwrap();
+            let range = (-1000.0, 3000.0);
+            let (settings, warnings) = apply_relative(&Settings::default(), &overlay, range).unwrap();
+            assert!(warnings.is_empty(), "{}: {warnings:?}", preset.name);
+            assert_eq!(preset.apply(&Settings::default(), range).unwrap(), settings);
+            let points = &settings.transfer.points;
+            assert!(points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{}", preset.name);
+            assert!(points.iter().any(|point| point.opacity > 0.05), "{}", preset.name);
+            assert!(!preset.about().is_empty() && !preset.title().is_empty() && !preset.domain().is_empty());
+        }
+    }
+
+    #[test]
+    fn every_preset_of_the_folder_is_in_the_library() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
+        let mut found = 0;
+        for domain in std::fs::read_dir(folder).unwrap() {
+            let domain = domain.unwrap();
+            for file in std::fs::read_dir(domain.path()).unwrap() {
+                let file = file.unwrap().path();
+                let title = file.file_stem().unwrap().to_str().unwrap();
+                let name = format!("{}/{title}", domain.file_name().to_str().unwrap());
+                assert!(Preset::find(&name).is_some(), "{name}");
+                found += 1;
+            }
+        }
+        assert_eq!(found, PRESETS.len());
+    }
+
+    #[test]
+    fn relative_values_follow_the_range_and_others_do_not() {
+        let over = Settings::default();
+        let head = Preset::find("mr/head").unwrap().apply(&over, (100.0, 300.0)).unwrap();
+        assert!((head.transfer.points[0].value - 112.0).abs() < 1e-9);
+        let bone = Preset::find("ct/bone").unwrap().apply(&over, (100.0, 300.0)).unwrap();
+        assert_eq!(bone.transfer.points[0].value, 150.0);
+        assert_eq!((&bone.lights, &bone.camera, &bone.shadows), (&over.lights, &over.camera, &over.shadows));
+    }
+}

@@ -1,0 +1,183 @@
+//! A look together with what it is of: what a session file holds, and what an exported picture carries.
+//!
+//! Settings stand at the top, as in a preset; what is no setting has a name that begins with an underscore,
+//! which readers of presets pass over.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::model::{PresetError, Settings, Shot, apply_relative};
+
+/// The volume of a look.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VolumeRecord {
+    /// A file, relative to that of the record where it lies below it, or `builtin:NAME`.
+    pub source: String,
+    /// Identifies values and geometry, in hexadecimal digits.
+    pub content_id: String,
+}
+
+/// How a picture was made.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PictureRecord {
+    /// Size and fineness.
+    #[serde(flatten)]
+    pub shot: Shot,
+    /// Version of this program.
+    pub version: String,
+    /// The graphics adapter and its driver.
+    pub adapter: String,
+}
+
+/// What a file says beside the settings, and the settings as they are written there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Record {
+    overlay: Value,
+    /// What it is of.
+    pub volume: Option<VolumeRecord>,
+    /// How the picture that carries it was made.
+    pub picture: Option<PictureRecord>,
+}
+
+impl VolumeRecord {
+    /// A volume that was opened from `source`, for a record that is written to `folder`.
+    pub fn new(source: &str, content_id: u64, folder: Option<&Path>) -> Self {
+        let source =
+            if source.starts_with("builtin:") { source.to_owned() } else { relative(source, folder) };
+        Self { source, content_id: format!("{content_id:016x}") }
+    }
+
+    /// Where to open it, for a record that was read from `folder`.
+    pub fn source_from(&self, folder: Option<&Path>) -> String {
+        if self.source.starts_with("builtin:") {
+            return self.source.clone();
+        }
+        let beside = folder.map(|folder| folder.join(&self.source)).filter(|path| path.exists());
+        beside.map_or_else(|| self.source.clone(), |path| path.display().to_string())
+    }
+
+    /// Whether a volume has the values and the geometry that this one had.
+    pub fn is_of(&self, content_id: u64) -> bool {
+        self.content_id == format!("{content_id:016x}")
+    }
+}
+
+impl PictureRecord {
+    /// A picture that this version makes on an adapter.
+    pub fn new(shot: Shot, adapter: String) -> Self {
+        Self { shot, version: env!("CARGO_PKG_VERSION").to_owned(), adapter }
+    }
+}
+
+/// A path as seen from a folder, if it lies below it; else the whole of it.
+fn relative(source: &str, folder: Option<&Path>) -> String {
+    let whole = std::path::absolute(source).unwrap_or_else(|_| PathBuf::from(source));
+    let folder = folder.and_then(|folder| std::path::absolute(folder).ok());
+    let below = folder.and_then(|folder| whole.strip_prefix(folder).ok().map(Path::to_owned));
+    below.unwrap_or(whole).display().to_string()
+}
+
+impl Record {
+    /// The text of a record.
+    pub fn text(
+        settings: &Settings,
+        volume: Option<&VolumeRecord>,
+        picture: Option<&PictureRecord>,
+    ) -> String {
+        let mut tree = serde_json::to_value(settings).unwrap_or_default();
+        if let Value::Object(fields) = &mut tree {
+            let remarks = [
+                ("_volume", volume.and_then(|volume| serde_json::to_value(volume).ok())),
+                ("_picture", picture.and_then(|picture| serde_json::to_value(picture).ok())),
+            ];
+            for (name, value) in remarks {
+                fields.extend(value.map(|value| (name.to_owned(), value)));
+            }
+        }
+        serde_json::to_string_pretty(&tree).unwrap_or_default()
+    }
+
+    /// Reads a record. Any preset is one, of no volume.
+    ///
+    /// # Errors
+    /// When the text is not a JSON object, or its remarks have the wrong form.
+    pub fn read(text: &str) -> Result<Self, PresetError> {
+        let overlay: Value = serde_json::from_str(text).map_err(PresetError::Syntax)?;
+        if !overlay.is_object() {
+            return Err(PresetError::NotAnObject);
+        }
+        Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
+    }
+
+    /// Its settings laid over others, for a volume with these values, and warnings of what was not understood.
+    ///
+    /// # Errors
+    /// As [`apply_relative`].
+    pub fn apply(&self, over: &Settings, range: (f64, f64)) -> Result<(Settings, Vec<String>), PresetError> {
+        apply_relative(over, &self.overlay, range)
+    }
+}
+
+fn remark<T: serde::de::DeserializeOwned>(overlay: &Value, name: &str) -> Result<Option<T>, PresetError> {
+    let found = overlay.get(name).filter(|value| !value.is_null());
+    found.map(|value| T::deserialize(value).map_err(PresetError::Form)).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Depth;
+
+    #[test]
+    fn records_are_read_as_they_were_written() {
+        let mut settings = Settings::default();
+        settings.shadows.gain = 1.25;
+        settings.views.insert(3, settings.camera.clone());
+        let volume = VolumeRecord::new("builtin:chair", 0x1234, None);
+        let picture = PictureRecord {
+            shot: Shot { transparent: true, samples: 2, depth: Depth::Sixteen, ..Shot::new([640, 480]) },
+            version: "0.1.0".to_owned(),
+            adapter: "an adapter".to_owned(),
+        };
+        let text = Record::text(&settings, Some(&volume), Some(&picture));
+        let record = Record::read(&text).unwrap();
+        assert_eq!((record.volume.as_ref(), record.picture.as_ref()), (Some(&volume), Some(&picture)));
+        let (read, warnings) = record.apply(&Settings::default(), (0.0, 1.0)).unwrap();
+        assert_eq!((read, warnings), (settings, vec![]));
+        assert!(volume.is_of(0x1234) && !volume.is_of(0x1235));
+    }
+
+    #[test]
+    fn pictures_of_earlier_versions_have_eight_bits_and_a_sample_per_pixel() {
+        let text =
+            r#"{"_picture": {"size": [4, 3], "transparent": true, "version": "0.1.0", "adapter": "a"}}"#;
+        let picture = Record::read(text).unwrap().picture.unwrap();
+        assert_eq!(picture.shot, Shot { transparent: true, ..Shot::new([4, 3]) });
+    }
+
+    #[test]
+    fn presets_are_records_of_nothing_and_nonsense_is_refused() {
+        let record = Record::read(r#"{"shadows": {"gain": 2.0}}"#).unwrap();
+        assert_eq!((&record.volume, &record.picture), (&None, &None));
+        assert_eq!(record.apply(&Settings::default(), (0.0, 1.0)).unwrap().0.shadows.gain, 2.0);
+        assert!(Record::read("[1]").is_err() && Record::read("{").is_err());
+        assert!(Record::read(r#"{"_volume": {"source": 3}}"#).is_err());
+    }
+
+    #[test]
+    fn files_below_a_record_move_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("data/a.nrrd");
+        let volume = VolumeRecord::new(&file.display().to_string(), 7, Some(folder.path()));
+        assert_eq!(Path::new(&volume.source), Path::new("data/a.nrrd"));
+        // Not there: the path as it was written.
+        assert_eq!(volume.source_from(Some(folder.path())), volume.source);
+        std::fs::create_dir(folder.path().join("data")).unwrap();
+        std::fs::write(&file, "x").unwrap();
+        assert_eq!(Path::new(&volume.source_from(Some(folder.path()))), file);
+        let elsewhere = VolumeRecord::new(&file.display().to_string(), 7, Some(Path::new("/no/such/folder")));
+        assert_eq!(Path::new(&elsewhere.source), file);
+    }
+}

@@ -1,0 +1,59 @@
+//! Inviwo's transfer functions (`.itf`, XML): points at shares of the range of the data. Older files have
+//! their place as an attribute x, newer ones as a content.
+
+use std::fmt::Write as _;
+
+use roxmltree::{Document, Node};
+
+use super::{ExchangeError, form, rgb};
+use crate::model::{ControlPoint, TransferFunction};
+
+/// Reads points of either kind.
+pub(crate) fn from_itf(text: &str, (low, high): (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+    let document = Document::parse(text)?;
+    let mut points = Vec::new();
+    for point in document.descendants().filter(|node| node.tag_name().name().eq_ignore_ascii_case("point")) {
+        let child = |name: &str| {
+            let found = point.children().find(|node| node.has_tag_name(name));
+            found.ok_or_else(|| form(&format!("a point has no {name}")))
+        };
+        let (pos, rgba) = (child("pos")?, child("rgba")?);
+        let share = number(pos, "content").or_else(|_| number(pos, "x"))?;
+        let color = [number(rgba, "x")?, number(rgba, "y")?, number(rgba, "z")?];
+        let value = low + (high - low) * share;
+        points.push(ControlPoint::new(value, rgb(&color), number(rgba, "w")?.clamp(0.0, 1.0)));
+    }
+    if points.is_empty() {
+        return Err(form("there are no points in the file"));
+    }
+    Ok(TransferFunction { points, ..TransferFunction::default() })
+}
+
+/// The newer kind (version 3).
+pub(crate) fn to_itf(function: &TransferFunction, (low, high): (f64, f64)) -> String {
+    let mut text =
+        "<?xml version=\"1.0\" ?>\n<InviwoWorkspace version=\"3\">\n    <maskMin content=\"0\" />\n    \
+                    <maskMax content=\"1\" />\n    <type content=\"0\" />\n    <Points>\n"
+            .to_owned();
+    for ControlPoint { value, color: [r, g, b], opacity, easing: _ } in &function.points {
+        let share = (value - low) / (high - low).max(1e-300);
+        // Writing to a text cannot fail.
+        writeln!(text, "        <Point>\n            <pos content=\"{share}\" />").ok();
+        writeln!(
+            text,
+            "            <rgba x=\"{r}\" y=\"{g}\" z=\"{b}\" w=\"{opacity}\" />\n        </Point>"
+        )
+        .ok();
+    }
+    text.push_str("    </Points>\n</InviwoWorkspace>\n");
+    text
+}
+
+/// An attribute that is a number.
+pub(crate) fn number(node: Node<'_, '_>, attribute: &str) -> Result<f64, ExchangeError> {
+    let found = node.attribute(attribute).and_then(|text| text.trim().parse().ok());
+    let name = node.tag_name().name();
+    found
+        .filter(|number: &f64| number.is_finite())
+        .ok_or_else(|| form(&format!("{attribute} of <{name}> is no number")))
+}

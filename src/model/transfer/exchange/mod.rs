@@ -1,0 +1,215 @@
+//! Transfer functions in the files of other programs.
+//!
+//! Some say values of the data (ParaView, 3D Slicer, Voreen where it has a domain); others are laid over the
+//! range of the volume. What they cannot say, such as smooth ways between points, they get as more points.
+
+mod agave;
+mod inviwo;
+mod own;
+mod paraview;
+mod slicer;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod voreen;
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::model::{ControlPoint, Easing, Interpolation, Mixing, STEPS, TransferFunction};
+
+/// Endings of the files that [`import`] reads.
+pub const IMPORTED: [&str; 6] = ["json", "vp", "itf", "tfi", "clut", "lut"];
+
+/// Endings of the files that [`export`] writes.
+pub const EXPORTED: [&str; 5] = ["json", "vp", "itf", "clut", "lut"];
+
+/// Most points of a function that is used: those of the largest tables are 4096.
+const MOST_POINTS: usize = 4096;
+
+/// Largest value: that of data in 32-bit floats.
+const MOST_VALUE: f64 = f32::MAX as f64;
+
+/// Bytes of the longest XML files and tables that are read: a table of 4096 keys has as many.
+const MOST_XML: usize = 2 << 20;
+
+/// Bytes of the longest table of nodes: 256 of them have a tenth of it.
+const MOST_CLUT: usize = 1 << 16;
+
+/// Why a file is no transfer function.
+#[derive(Debug, thiserror::Error)]
+pub enum ExchangeError {
+    /// Not JSON.
+    #[error("not valid JSON: {0}")]
+    Syntax(#[from] serde_json::Error),
+    /// Not XML.
+    #[error("not valid XML: {0}")]
+    Xml(#[from] roxmltree::Error),
+    /// Something else than it should be.
+    #[error(
+        "{0}; a file that ParaView or AGAVE (.json), Slicer (.vp, .vp.json), Inviwo (.itf), Voreen (.tfi), MRIcroGL (.clut) or ImageJ (.lut) has written helps"
+    )]
+    Form(String),
+    /// Nothing that can be written.
+    #[error("{0} is no ending of a transfer function; .json, .vp, .vp.json, .itf, .clut and .lut are")]
+    Ending(String),
+}
+
+/// Reads the transfer function of a file with that name, for a volume with these values.
+///
+/// # Errors
+/// When the file is not what its name says.
+pub fn import(path: &Path, bytes: &[u8], range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+    let ending = ending(path);
+    if ending == "lut" && !bytes.is_ascii() {
+        return tables::from_bytes(bytes, range);
+    }
+    let text = std::str::from_utf8(bytes).map_err(|err| form(&format!("it is no text: {err}")))?;
+    let mut function = match ending.as_str() {
+        "vp" => slicer::from_vp(text)?,
+        "itf" => inviwo::from_itf(within(text, MOST_XML)?, range)?,
+        "tfi" => voreen::from_tfi(within(text, MOST_XML)?, range)?,
+        "clut" => tables::from_clut(within(text, MOST_CLUT)?, range)?,
+        "lut" => tables::from_rows(text, range)?,
+        _ => from_json(text, range)?,
+    };
+    if function.points.len() > MOST_POINTS {
+        return Err(form(&format!("{} points are more than anybody has set", function.points.len())));
+    }
+    if function.points.iter().any(|point| point.value.abs() > MOST_VALUE) {
+        return Err(form("a value is beyond all that data has"));
+    }
+    function.sort();
+    Ok(function)
+}
+
+/// The same, for files whose readers take long over many things.
+fn within(text: &str, most: usize) -> Result<&str, ExchangeError> {
+    if text.len() > most { Err(form("it is longer than any transfer function")) } else { Ok(text) }
+}
+
+/// A JSON file of whichever program writes what it holds.
+fn from_json(text: &str, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+    // ParaView itself ships a file with a comma too many.
+    let tree: Value = serde_json::from_str(text).or_else(|err| {
+        let trimmed = text.trim_end().strip_suffix(']').map(str::trim_end);
+        let Some(list) = trimmed.and_then(|list| list.strip_suffix(',')) else { return Err(err) };
+        serde_json::from_str(&format!("{list}]"))
+    })?;
+    if tree.get("volumeProperties").is_some() {
+        slicer::from_vp_json(&tree)
+    } else if tree.get("channels").is_some() {
+        agave::from_agave(&tree, range)
+    } else if tree.get("transfer").is_some() {
+        own::from_own(&tree, range)
+    } else {
+        paraview::from_paraview(&tree)
+    }
+}
+
+/// A transfer function as a file of that name, for a volume with these values.
+///
+/// # Errors
+/// When the name has no ending that says which program it is for.
+pub fn export(path: &Path, function: &TransferFunction, range: (f64, f64)) -> Result<Vec<u8>, ExchangeError> {
+    let stem = path.file_stem().map_or_else(|| "Chiaroscuro".into(), |stem| stem.to_string_lossy());
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let straight = straightened(function);
+    Ok(match ending(path).as_str() {
+        "json" if name.ends_with(".vp.json") => slicer::to_vp_json(&straight, range).into_bytes(),
+        "json" if name.ends_with(".preset.json") => own::to_own(function).into_bytes(),
+        "json" => paraview::to_paraview(&straight, &stem).into_bytes(),
+        "vp" => slicer::to_vp(&straight).into_bytes(),
+        "itf" => inviwo::to_itf(&straight, range).into_bytes(),
+        "clut" => tables::to_clut(&straight, range).into_bytes(),
+        "lut" => tables::to_lut(function, range),
+        other => return Err(ExchangeError::Ending(format!(".{other}"))),
+    })
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+/// The same function with nothing but straight ways, opacities that are linear, and colours mixed as light.
+fn straightened(function: &TransferFunction) -> TransferFunction {
+    let mut straight = function.clone();
+    for index in (0..straight.points.len().saturating_sub(1)).rev() {
+        let (point, next) = (straight.points[index], straight.points[index + 1]);
+        let bends = (function.mixing == Mixing::Seen && point.color != next.color)
+            || (function.interpolation == Interpolation::Extinction && point.opacity != next.opacity);
+        if bends && point.easing == Easing::Linear {
+            // Pieces of what a straight way is here, which others draw as a curve.
+            let share = |step: u32| f64::from(step) / f64::from(STEPS);
+            let value = |step: u32| point.value + (next.value - point.value) * share(step);
+            let between: Vec<_> = (1..STEPS).map(|step| function.point_at(value(step))).collect();
+            straight.points.splice(index + 1..=index, between);
+        } else {
+            straight.straighten(index);
+        }
+    }
+    TransferFunction { interpolation: Interpolation::Opacity, mixing: Mixing::Light, ..straight }
+}
+
+/// A transfer function from colours and opacities at different values; neither list is empty.
+fn merged(mut colors: Vec<(f64, [f32; 3])>, mut opacities: Vec<(f64, f64)>) -> TransferFunction {
+    colors.sort_by(|a, b| a.0.total_cmp(&b.0));
+    opacities.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+    let color = |value: f64| {
+        between(&colors, value, |a, b, t| {
+            std::array::from_fn(|c| mix(f64::from(a[c]), f64::from(b[c]), t) as f32)
+        })
+    };
+    // What jumps has two points at a value: the first opacity there belongs to the first colour there.
+    let mut points = Vec::new();
+    let mut before = 0;
+    for (at, &(value, opacity)) in opacities.iter().enumerate() {
+        before = if at > 0 && opacities[at - 1].0 == value { before + 1 } else { 0 };
+        let first = colors.partition_point(|other| other.0 < value);
+        let jump = &colors[first..colors.partition_point(|other| other.0 <= value)];
+        let color = jump.get(before).filter(|_| jump.len() > 1).map_or_else(|| color(value), |other| other.1);
+        points.push(ControlPoint::new(value, color, opacity));
+    }
+    for &(value, color) in &colors {
+        if opacities.binary_search_by(|at| at.0.total_cmp(&value)).is_err() {
+            points.push(ControlPoint::new(
+                value,
+                color,
+                between(&opacities, value, |a, b, t| mix(*a, *b, t)),
+            ));
+        }
+    }
+    let mut function = TransferFunction { points, ..TransferFunction::default() };
+    function.sort();
+    function
+}
+
+/// What stands at a value between the points of a list in ascending order.
+fn between<T: Copy>(points: &[(f64, T)], value: f64, mix: impl Fn(&T, &T, f64) -> T) -> T {
+    let upper = points.partition_point(|point| point.0 <= value);
+    match (upper.checked_sub(1).map(|at| points[at]), points.get(upper)) {
+        (Some((low, a)), Some((high, b))) => mix(&a, b, (value - low) / (high - low)),
+        (Some((_, a)), None) => a,
+        (None, Some((_, b))) => *b,
+        (None, None) => points[0].1,
+    }
+}
+
+fn form(what: &str) -> ExchangeError {
+    ExchangeError::Form(what.to_owned())
+}
+
+/// A list of numbers in a JSON file.
+fn numbers(list: Option<&Value>, name: &str) -> Result<Vec<f64>, ExchangeError> {
+    let list = list.and_then(Value::as_array).ok_or_else(|| form(&format!("there is no list {name}")))?;
+    let number = |value: &Value| value.as_f64().filter(|number| number.is_finite());
+    let found: Option<Vec<f64>> = list.iter().map(number).collect();
+    found.ok_or_else(|| form(&format!("{name} holds something that is no number")))
+}
+
+/// Shares of the whole as colours.
+fn rgb(shares: &[f64]) -> [f32; 3] {
+    std::array::from_fn(|c| shares.get(c).map_or(1.0, |share| share.clamp(0.0, 1.0) as f32))
+}

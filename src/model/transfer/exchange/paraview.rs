@@ -1,0 +1,48 @@
+//! ParaView's colour maps (JSON): `RGBPoints` (value, red, green, blue …) and `Points` (value, opacity,
+//! midpoint, sharpness …). Opacities refer to a unit distance of the data, as ours do to the opacity unit.
+
+use serde_json::{Value, json};
+
+use super::{ExchangeError, form, merged, numbers, rgb};
+use crate::model::TransferFunction;
+
+/// Reads the first colour map of a file.
+pub(crate) fn from_paraview(tree: &Value) -> Result<TransferFunction, ExchangeError> {
+    let map = tree.as_array().map_or(Some(tree), |maps| maps.first());
+    let map = map.and_then(Value::as_object).ok_or_else(|| form("there is no colour map in the file"))?;
+    let colors = numbers(map.get("RGBPoints"), "RGBPoints")?;
+    if colors.len() < 4 || !colors.len().is_multiple_of(4) {
+        return Err(form("RGBPoints does not hold a value and three colours for each point"));
+    }
+    let colors: Vec<_> = colors.chunks_exact(4).map(|at| (at[0], rgb(&at[1..]))).collect();
+    let opacities = match map.get("Points").filter(|points| !points.is_null()) {
+        Some(points) => {
+            let points = numbers(Some(points), "Points")?;
+            if points.is_empty() || !points.len().is_multiple_of(4) {
+                return Err(form("Points does not hold four numbers for each point"));
+            }
+            points.chunks_exact(4).map(|at| (at[0], at[1].clamp(0.0, 1.0))).collect()
+        }
+        // A map of colours alone: a ramp.
+        None => vec![(colors[0].0, 0.0), (colors[colors.len() - 1].0, 1.0)],
+    };
+    Ok(merged(colors, opacities))
+}
+
+/// A transfer function as ParaView reads it.
+pub(crate) fn to_paraview(function: &TransferFunction, name: &str) -> String {
+    let colors: Vec<f64> = function
+        .points
+        .iter()
+        .flat_map(|point| [point.value].into_iter().chain(point.color.map(f64::from)))
+        .collect();
+    let opacities: Vec<f64> =
+        function.points.iter().flat_map(|point| [point.value, point.opacity, 0.5, 0.0]).collect();
+    let map = json!([{
+        "ColorSpace": "RGB",
+        "Name": name,
+        "Points": opacities,
+        "RGBPoints": colors,
+    }]);
+    format!("{map:#}\n")
+}

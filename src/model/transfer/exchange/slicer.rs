@@ -1,0 +1,113 @@
+//! 3D Slicer's volume properties: `.vp`, lines of numbers, and `.vp.json` (schema 1.0.0). Values are those of
+//! the data, opacities per millimetre or whatever unit distance the file says.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::{ExchangeError, form, merged, numbers, rgb};
+use crate::model::TransferFunction;
+
+/// Numbers of the shading, then opacities by value, opacities by gradient, and colours by value, each list
+/// behind the count of its numbers.
+pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
+    let mut lists = Vec::new();
+    for line in text.lines() {
+        let numbers: Option<Vec<f64>> =
+            line.split_whitespace().map(|word| word.parse().ok().filter(|n: &f64| n.is_finite())).collect();
+        let numbers = numbers.ok_or_else(|| form("a line holds something that is no number"))?;
+        if numbers.len() > 1 {
+            if numbers[0] != (numbers.len() - 1) as f64 {
+                return Err(form("a list does not hold as many numbers as it says"));
+            }
+            lists.push(numbers[1..].to_vec());
+        }
+    }
+    let [opacities, _by_gradient, colors] = &lists[..] else {
+        return Err(form("a volume property has three lists: opacities, opacities by gradient, and colours"));
+    };
+    if opacities.is_empty() || opacities.len() % 2 != 0 || colors.is_empty() || colors.len() % 4 != 0 {
+        return Err(form("a list of the volume property is cut off"));
+    }
+    let opacities: Vec<_> = opacities.chunks_exact(2).map(|at| (at[0], at[1].clamp(0.0, 1.0))).collect();
+    let colors: Vec<_> = colors.chunks_exact(4).map(|at| (at[0], rgb(&at[1..]))).collect();
+    Ok(merged(colors, opacities))
+}
+
+/// The same with shading as Slicer's own presets for bone have it.
+pub(crate) fn to_vp(function: &TransferFunction) -> String {
+    let points = &function.points;
+    // Linear interpolation, shaded; diffuse, ambient, specular, power.
+    let mut text = "1\n1\n0.9\n0.1\n0.2\n10\n".to_owned();
+    let mut list = |count: usize, numbers: &mut dyn Iterator<Item = f64>| {
+        text.push_str(&count.to_string());
+        for number in numbers {
+            // Writing to a text cannot fail.
+            write!(text, " {number}").ok();
+        }
+        text.push('\n');
+    };
+    list(2 * points.len(), &mut points.iter().flat_map(|point| [point.value, point.opacity]));
+    // Opaque whatever the gradient.
+    list(4, &mut [0.0, 1.0, 255.0, 1.0].into_iter());
+    list(
+        4 * points.len(),
+        &mut points.iter().flat_map(|point| [point.value].into_iter().chain(point.color.map(f64::from))),
+    );
+    text
+}
+
+/// The first component of the first volume property.
+pub(crate) fn from_vp_json(tree: &Value) -> Result<TransferFunction, ExchangeError> {
+    let part = tree.pointer("/volumeProperties/0/components/0");
+    let part = part.ok_or_else(|| form("there is no component in the first volume property"))?;
+    let list = |name: &str| {
+        let points = part.pointer(&format!("/{name}/points")).and_then(Value::as_array);
+        points.filter(|points| !points.is_empty()).ok_or_else(|| form(&format!("{name} has no points")))
+    };
+    let number = |point: &Value, key: &str| {
+        let found = point.get(key).and_then(Value::as_f64).filter(|number| number.is_finite());
+        found.ok_or_else(|| form(&format!("a point has no number {key}")))
+    };
+    let opacities: Result<Vec<_>, ExchangeError> = list("scalarOpacity")?
+        .iter()
+        .map(|point| Ok((number(point, "x")?, number(point, "y")?.clamp(0.0, 1.0))))
+        .collect();
+    let colors: Result<Vec<_>, ExchangeError> = list("rgbTransferFunction")?
+        .iter()
+        .map(|point| Ok((number(point, "x")?, rgb(&numbers(point.get("color"), "color")?))))
+        .collect();
+    Ok(merged(colors?, opacities?))
+}
+
+/// The same.
+pub(crate) fn to_vp_json(function: &TransferFunction, (low, high): (f64, f64)) -> String {
+    let points = &function.points;
+    let opacities: Vec<Value> = points
+        .iter()
+        .map(|point| json!({ "x": point.value, "y": point.opacity, "midpoint": 0.5, "sharpness": 0.0 }))
+        .collect();
+    let colors: Vec<Value> = points
+        .iter()
+        .map(|point| json!({ "x": point.value, "color": point.color, "midpoint": 0.5, "sharpness": 0.0 }))
+        .collect();
+    let tree = json!({
+        "@schema": "https://raw.githubusercontent.com/slicer/slicer/main/Modules/Loadable/VolumeRendering/Resources/Schema/volume-property-schema-v1.0.0.json#",
+        "volumeProperties": [{
+            "effectiveRange": [low, high],
+            "isoSurfaceValues": [],
+            "interpolationType": "linear",
+            "useClippedVoxelIntensity": false,
+            "components": [{
+                "componentWeight": 1.0,
+                "shade": true,
+                "lighting": { "diffuse": 0.9, "ambient": 0.1, "specular": 0.2, "specularPower": 10.0 },
+                "disableGradientOpacity": true,
+                "scalarOpacityUnitDistance": 1.0,
+                "scalarOpacity": { "type": "piecewiseLinearFunction", "points": opacities },
+                "rgbTransferFunction": { "type": "colorTransferFunction", "points": colors },
+            }],
+        }],
+    });
+    format!("{tree:#}\n")
+}

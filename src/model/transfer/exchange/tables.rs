@@ -1,0 +1,132 @@
+//! Colour tables: nodes of `MRIcroGL` (`.clut`) and 256 colours of `ImageJ` (`.lut`), laid over the range of the
+//! volume.
+
+use std::fmt::Write as _;
+
+use super::{ExchangeError, form, rgb};
+use crate::model::{ControlPoint, TransferFunction, srgb_from_linear};
+
+/// Entries of a table of bytes.
+const TABLE: usize = 256;
+
+/// Entries of a table between the points that are taken from it: 17 points.
+const EVERY: usize = 16;
+
+/// `MRIcroGL`'s colour table: nodes with a place from 0 to 255 and red, green, blue and opacity as bytes.
+pub(crate) fn from_clut(text: &str, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+    let entry = |key: &str| {
+        text.lines().find_map(|line| {
+            let (name, value) = line.split_once('=')?;
+            name.trim().eq_ignore_ascii_case(key).then(|| value.trim())
+        })
+    };
+    let number = |key: &str| entry(key).and_then(|value| value.parse().ok()).filter(|n: &f64| n.is_finite());
+    let count = number("numnodes").filter(|count| (2.0..=TABLE as f64).contains(count));
+    let count = count.ok_or_else(|| form("numnodes must be a number from 2 to 256"))? as usize;
+    // Zeros stand for the range of the volume.
+    let (low, high) = match (number("min"), number("max")) {
+        (Some(low), Some(high)) if low < high => (low, high),
+        _ => range,
+    };
+    let mut points = Vec::with_capacity(count);
+    for node in 0..count {
+        let place = number(&format!("nodeintensity{node}"));
+        let place = place.ok_or_else(|| form(&format!("nodeintensity{node} is missing")))?;
+        let rgba: Option<Vec<f64>> = entry(&format!("nodergba{node}"))
+            .map(|value| value.split('|').map_while(|part| part.trim().parse().ok()).collect());
+        let Some(&[r, g, b, a]) = rgba.as_deref() else {
+            return Err(form(&format!("nodergba{node} must be four numbers with | between")));
+        };
+        let share = |byte: f64| (byte / 255.0).clamp(0.0, 1.0);
+        points.push(ControlPoint::new(
+            low + (high - low) * share(place),
+            rgb(&[r, g, b].map(share)),
+            share(a),
+        ));
+    }
+    Ok(TransferFunction { points, ..TransferFunction::default() })
+}
+
+/// The same: places are bytes, so that points closer than that fall together.
+pub(crate) fn to_clut(function: &TransferFunction, range: (f64, f64)) -> String {
+    let ends = function.points.first().zip(function.points.last()).map(|(a, b)| (a.value, b.value));
+    let (low, high) = ends.filter(|ends| ends.0 < ends.1).unwrap_or(range);
+    let byte = |share: f64| (share * 255.0).round().clamp(0.0, 255.0) as u8;
+    let mut nodes: Vec<(u8, [u8; 4])> = Vec::new();
+    for ControlPoint { value, color, opacity, easing: _ } in &function.points {
+        let [r, g, b] = color.map(|c| byte(f64::from(c)));
+        // Places ascend: what jumps does so between two of them, at the end between the last two.
+        let mut place = byte((value - low) / (high - low).max(1e-300));
+        if let Some(last) = nodes.last().map(|last| last.0).filter(|last| place <= *last) {
+            place = last.saturating_add(1);
+            if last == u8::MAX {
+                nodes.retain(|node| node.0 != u8::MAX - 1);
+                nodes.iter_mut().filter(|node| node.0 == u8::MAX).for_each(|node| node.0 -= 1);
+            }
+        }
+        nodes.push((place, [r, g, b, byte(*opacity)]));
+    }
+    // A table has two nodes at least.
+    if let [(0..=254, color)] = nodes[..] {
+        nodes.push((u8::MAX, color));
+    }
+    let mut text = format!("[FLT]\nmin={low}\nmax={high}\n[INT]\nnumnodes={}\n[BYT]\n", nodes.len());
+    for (at, (place, _)) in nodes.iter().enumerate() {
+        // Writing to a text cannot fail.
+        writeln!(text, "nodeintensity{at}={place}").ok();
+    }
+    text.push_str("[RGBA255]\n");
+    for (at, (_, [r, g, b, a])) in nodes.iter().enumerate() {
+        writeln!(text, "nodergba{at}={r}|{g}|{b}|{a}").ok();
+    }
+    text
+}
+
+/// `ImageJ`'s colour table: 256 reds, as many greens, and as many blues, perhaps behind a header.
+pub(crate) fn from_bytes(bytes: &[u8], range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+    let first = bytes.len().checked_sub(3 * TABLE).ok_or_else(|| form("a table has 768 bytes"))?;
+    let table = &bytes[first..];
+    let colors: Vec<_> = (0..TABLE).map(|at| [table[at], table[at + TABLE], table[at + 2 * TABLE]]).collect();
+    Ok(ramp(&colors, range))
+}
+
+/// The same as text: rows of red, green and blue, perhaps behind the entry's number.
+pub(crate) fn from_rows(text: &str, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+    let row = |line: &str| {
+        let numbers: Option<Vec<u8>> = line
+            .split([' ', '\t', ','])
+            .filter(|word| !word.is_empty())
+            .map(|word| word.parse().ok())
+            .collect();
+        let numbers = numbers?;
+        let first = numbers.len().checked_sub(3)?;
+        (first <= 1).then(|| [numbers[first], numbers[first + 1], numbers[first + 2]])
+    };
+    // A first line of words names the columns.
+    let colors: Vec<[u8; 3]> = text.lines().filter_map(row).collect();
+    if colors.len() != TABLE {
+        return Err(form(&format!("{} rows of three bytes were found, a table has 256", colors.len())));
+    }
+    Ok(ramp(&colors, range))
+}
+
+/// The colours of a table over a range, more and more opaque.
+fn ramp(colors: &[[u8; 3]], (low, high): (f64, f64)) -> TransferFunction {
+    let last = colors.len() - 1;
+    let point = |at: usize| {
+        let share = at as f64 / last as f64;
+        let color = colors[at].map(|byte| f32::from(byte) / 255.0);
+        ControlPoint::new(low + (high - low) * share, color, share)
+    };
+    let places = (0..last).step_by(EVERY).chain([last]);
+    TransferFunction { points: places.map(point).collect(), ..TransferFunction::default() }
+}
+
+/// 256 colours as bytes: reds, greens, blues. Opacities have no place in it.
+pub(crate) fn to_lut(function: &TransferFunction, (low, high): (f64, f64)) -> Vec<u8> {
+    let last = (TABLE - 1) as f64;
+    let colors: Vec<[f64; 3]> =
+        (0..TABLE).map(|at| function.at(low + (high - low) * at as f64 / last).0).collect();
+    let byte = |linear: f64| (srgb_from_linear(linear) * 255.0).round().clamp(0.0, 255.0) as u8;
+    (0..3).flat_map(|channel| colors.iter().map(move |color| byte(color[channel]))).collect()
+}

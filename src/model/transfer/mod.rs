@@ -1,0 +1,400 @@
+//! Transfer functions: from a value in data units to colour and opacity.
+//!
+//! Opacity is per opacity unit (a length in `Settings`): the extinction is
+//! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
+
+pub(super) mod color_map;
+pub(super) mod exchange;
+pub(super) mod oklab;
+
+use serde::{Deserialize, Serialize};
+
+use super::{linear_from_oklab, oklab_from_linear};
+use crate::math::SceneSpace;
+
+/// Entries of a baked table; values between are interpolated.
+pub const LUT_SIZE: usize = 1024;
+
+/// Opacities are cut here so that extinction stays finite: 0.9999 per unit is e^−9.2, opaque
+/// within one unit for every display.
+pub const MAX_OPACITY: f64 = 0.9999;
+
+/// Straight pieces that stand for a smooth way.
+pub const STEPS: u32 = 8;
+
+/// How opacity runs between two control points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// The opacity itself is linear: what editors show and users expect.
+    #[default]
+    Opacity,
+    /// The extinction −ln(1 − opacity) is linear: what makes closed-form checks exact.
+    Extinction,
+}
+
+/// How colours between two control points are mixed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mixing {
+    /// As light: linear RGB.
+    #[default]
+    Light,
+    /// As they are seen: Oklab, where lightness is even and mixtures stay clean.
+    Seen,
+}
+
+/// How a transfer function goes from one control point to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Easing {
+    /// Straight.
+    #[default]
+    Linear,
+    /// With level ends: 3t² − 2t³.
+    Smooth,
+    /// It stays as it is until the next point.
+    Step,
+}
+
+impl Easing {
+    /// How much of the next point there is at a share of the way to it.
+    fn share(self, t: f64) -> f64 {
+        match self {
+            Self::Linear => t,
+            Self::Smooth => t * t * (3.0 - 2.0 * t),
+            Self::Step => 0.0,
+        }
+    }
+}
+
+/// A point of a transfer function.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ControlPoint {
+    /// In data units.
+    pub value: f64,
+    /// sRGB, 0 … 1.
+    #[serde(default = "white")]
+    pub color: [f32; 3],
+    /// Per opacity unit, 0 … 1.
+    pub opacity: f64,
+    /// The way to the next point.
+    #[serde(default)]
+    pub easing: Easing,
+}
+
+impl ControlPoint {
+    /// A point from which it goes straight to the next.
+    pub fn new(value: f64, color: [f32; 3], opacity: f64) -> Self {
+        Self { value, color, opacity, easing: Easing::Linear }
+    }
+}
+
+fn white() -> [f32; 3] {
+    [1.0; 3]
+}
+
+/// Colour and opacity over the value axis; constant beyond the outermost points.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TransferFunction {
+    /// In ascending order of value ([`Self::sort`] restores it).
+    pub points: Vec<ControlPoint>,
+    /// How opacity runs between the points.
+    #[serde(default)]
+    pub interpolation: Interpolation,
+    /// How colours between the points are mixed.
+    #[serde(default)]
+    pub mixing: Mixing,
+}
+
+/// A transfer function as a table over a value range: linear RGB and extinction per scene unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedTransfer {
+    /// [`LUT_SIZE`] entries, evenly spaced over densities 0 … 1, both ends included.
+    pub entries: Vec<[f32; 4]>,
+}
+
+/// One sRGB component to linear light (IEC 61966-2-1).
+pub fn linear_from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The way back.
+pub fn srgb_from_linear(linear: f64) -> f64 {
+    if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// −ln(1 − α) with α cut at [`MAX_OPACITY`]: optical depth of one opacity unit.
+fn optical_depth(opacity: f64) -> f64 {
+    -(-opacity.clamp(0.0, MAX_OPACITY)).ln_1p()
+}
+
+impl TransferFunction {
+    /// Puts the points in ascending order of value; points at the same value keep their order,
+    /// which makes a step.
+    pub fn sort(&mut self) {
+        self.points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    }
+
+    /// Linear RGB and optical depth per opacity unit at a value.
+    pub fn at(&self, value: f64) -> ([f64; 3], f64) {
+        let color = |point: &ControlPoint| point.color.map(|c| linear_from_srgb(f64::from(c)));
+        let Some(first) = self.points.first() else { return ([1.0; 3], 0.0) };
+        let upper = self.points.partition_point(|point| point.value <= value);
+        if upper == 0 {
+            return (color(first), optical_depth(first.opacity));
+        }
+        let a = &self.points[upper - 1];
+        let Some(b) = self.points.get(upper) else { return (color(a), optical_depth(a.opacity)) };
+        let t = a.easing.share((value - a.value) / (b.value - a.value));
+        let mix = |x: f64, y: f64| x + (y - x) * t;
+        let depth = match self.interpolation {
+            Interpolation::Opacity => optical_depth(mix(a.opacity, b.opacity)),
+            Interpolation::Extinction => mix(optical_depth(a.opacity), optical_depth(b.opacity)),
+        };
+        let (ca, cb) = (color(a), color(b));
+        let mixed = |ca: [f64; 3], cb: [f64; 3]| std::array::from_fn(|i| mix(ca[i], cb[i]));
+        let rgb = match self.mixing {
+            Mixing::Light => mixed(ca, cb),
+            Mixing::Seen => linear_from_oklab(mixed(oklab_from_linear(ca), oklab_from_linear(cb))),
+        };
+        (rgb, depth)
+    }
+
+    /// A point on the curve.
+    pub fn point_at(&self, value: f64) -> ControlPoint {
+        let color = self.at(value).0.map(|c| srgb_from_linear(c) as f32);
+        ControlPoint::new(value, color, self.opacity_at(value))
+    }
+
+    /// How the function goes on at a value.
+    pub fn easing_at(&self, value: f64) -> Easing {
+        let index = self.points.partition_point(|point| point.value <= value);
+        index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing)
+    }
+
+    /// Replaces the way from a point to the next by straight ones, if it is not: a step by a jump, a smooth way by
+    /// [`STEPS`] pieces. Returns how many points there are more.
+    pub fn straighten(&mut self, index: usize) -> usize {
+        let (Some(&point), Some(&next)) = (self.points.get(index), self.points.get(index + 1)) else {
+            return 0;
+        };
+        let between: Vec<ControlPoint> = match point.easing {
+            Easing::Linear => Vec::new(),
+            Easing::Smooth => {
+                let share = |step: u32| f64::from(step) / f64::from(STEPS);
+                (1..STEPS)
+                    .map(|step| self.point_at(point.value + (next.value - point.value) * share(step)))
+                    .collect()
+            }
+            Easing::Step => vec![ControlPoint { value: next.value, easing: Easing::Linear, ..point }],
+        };
+        let count = between.len();
+        self.points[index].easing = Easing::Linear;
+        self.points.splice(index + 1..=index, between);
+        count
+    }
+
+    /// Adds a point on the curve, which stays as it is (a smooth way nearly so). Returns its index.
+    pub fn cut_at(&mut self, value: f64) -> usize {
+        let upper = self.points.partition_point(|point| point.value <= value);
+        if self.easing_at(value) == Easing::Smooth {
+            self.straighten(upper - 1);
+        }
+        self.insert_on_curve(value)
+    }
+
+    /// Adds a point on the curve, with ways as before to both sides. Returns its index.
+    pub fn insert_on_curve(&mut self, value: f64) -> usize {
+        let point = self.point_at(value);
+        let index = self.points.partition_point(|point| point.value <= value);
+        let easing = self.easing_at(value);
+        self.points.insert(index, ControlPoint { easing, ..point });
+        index
+    }
+
+    /// The opacity per opacity unit at a value, as an editor shows it.
+    pub fn opacity_at(&self, value: f64) -> f64 {
+        1.0 - (-self.at(value).1).exp()
+    }
+
+    /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene
+    /// units, `scale` multiplies the extinction.
+    pub fn bake(&self, range: (f64, f64), unit: f64, scale: f64) -> BakedTransfer {
+        let entries = (0..LUT_SIZE)
+            .map(|i| {
+                let value = range.0 + (range.1 - range.0) * i as f64 / (LUT_SIZE - 1) as f64;
+                let (rgb, depth) = self.at(value);
+                [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, (depth * scale / unit) as f32]
+            })
+            .collect();
+        BakedTransfer { entries }
+    }
+}
+
+impl BakedTransfer {
+    /// Whether both have extinction at the same densities: only how much, and of which colour, differs.
+    pub fn shows_like(&self, other: &Self) -> bool {
+        let pairs = self.entries.iter().zip(&other.entries);
+        self.entries.len() == other.entries.len()
+            && pairs.into_iter().all(|(a, b)| (a[3] > 0.0) == (b[3] > 0.0))
+    }
+
+    /// Whether any density in `[min, max]` has extinction. Looks at the table entries around the
+    /// range too, since values between entries are interpolated.
+    pub fn visibility(&self) -> impl Fn(f32, f32) -> bool + Sync + use<> {
+        // visible[i] counts the entries below i that have extinction.
+        let counts: Vec<u32> = std::iter::once(0)
+            .chain(self.entries.iter().scan(0, |seen, entry| {
+                *seen += u32::from(entry[3] > 0.0);
+                Some(*seen)
+            }))
+            .collect();
+        let last = LUT_SIZE - 1;
+        move |min, max| {
+            // One entry of slack on either side: densities are rounded when they are uploaded.
+            let low = ((min * last as f32).floor() as usize).saturating_sub(1).min(last);
+            let high = ((max * last as f32).ceil() as usize + 1).min(last);
+            counts[high + 1] > counts[low]
+        }
+    }
+
+    /// Linear RGB and extinction per scene unit at a density, interpolated in f64.
+    pub fn sample(&self, density: f64) -> [f64; 4] {
+        let at = density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
+        let low = (at as usize).min(LUT_SIZE - 2);
+        let t = at - low as f64;
+        std::array::from_fn(|i| {
+            let (a, b) = (f64::from(self.entries[low][i]), f64::from(self.entries[low + 1][i]));
+            a + (b - a) * t
+        })
+    }
+}
+
+/// The opacity unit of a scene, safe to divide by.
+pub(crate) fn unit_in_scene(unit: super::Length, scene: &SceneSpace) -> f64 {
+    unit.in_scene(scene).max(1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp(interpolation: Interpolation) -> TransferFunction {
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        TransferFunction {
+            points: vec![point(10.0, 0.0), point(20.0, 0.8)],
+            interpolation,
+            ..TransferFunction::default()
+        }
+    }
+
+    #[test]
+    fn opacity_is_linear_or_extinction_is() {
+        assert!((ramp(Interpolation::Opacity).opacity_at(15.0) - 0.4).abs() < 1e-12);
+        let (_, depth) = ramp(Interpolation::Extinction).at(15.0);
+        assert!((depth - -0.5 * 0.2f64.ln()).abs() < 1e-12);
+        assert_eq!(ramp(Interpolation::Opacity).opacity_at(5.0), 0.0);
+        assert!((ramp(Interpolation::Opacity).opacity_at(99.0) - 0.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ways_between_points_have_their_shapes() {
+        let mut function = ramp(Interpolation::Opacity);
+        for (easing, quarter, half) in
+            [(Easing::Linear, 0.2, 0.4), (Easing::Smooth, 0.8 * 0.15625, 0.4), (Easing::Step, 0.0, 0.0)]
+        {
+            function.points[0].easing = easing;
+            for (value, opacity) in [(10.0, 0.0), (12.5, quarter), (15.0, half), (20.0, 0.8)] {
+                let found = function.opacity_at(value);
+                assert!((found - opacity).abs() < 1e-12, "{easing:?} at {value}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn seen_mixtures_have_even_lightness() {
+        let mut function = ramp(Interpolation::Opacity);
+        (function.points[0].color, function.points[1].color) = ([0.0, 0.0, 1.0], [1.0, 1.0, 0.0]);
+        let lightness = |function: &TransferFunction, value| oklab_from_linear(function.at(value).0)[0];
+        let even = |function: &TransferFunction| {
+            let middle = f64::midpoint(lightness(function, 10.0), lightness(function, 20.0));
+            (lightness(function, 15.0) - middle).abs() < 1e-3
+        };
+        assert!(!even(&function), "light mixes brighter than it looks");
+        function.mixing = Mixing::Seen;
+        assert!(even(&function));
+        let ends = [function.at(10.0).0, function.at(20.0).0];
+        assert!(ends.iter().flatten().zip([0.0, 0.0, 1.0, 1.0, 1.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+
+    #[test]
+    fn points_on_the_curve_leave_it_as_it_is() {
+        for mixing in [Mixing::Light, Mixing::Seen] {
+            for easing in [Easing::Linear, Easing::Step] {
+                let mut function = TransferFunction { mixing, ..ramp(Interpolation::Opacity) };
+                function.points[0].easing = easing;
+                let before = function.clone();
+                assert_eq!(function.insert_on_curve(13.0), 1);
+                for i in 0..40 {
+                    let value = 9.0 + f64::from(i) * 0.3;
+                    let ((a, x), (b, y)) = (before.at(value), function.at(value));
+                    assert!((x - y).abs() < 1e-9, "{mixing:?} {easing:?} {value}");
+                    assert!(
+                        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6),
+                        "{mixing:?} {easing:?} {value}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn straight_ways_stand_for_others() {
+        for (easing, more, apart) in
+            [(Easing::Linear, 0, 1e-9), (Easing::Step, 1, 1e-9), (Easing::Smooth, 7, 0.01)]
+        {
+            let mut function = ramp(Interpolation::Opacity);
+            function.points[0].easing = easing;
+            let before = function.clone();
+            assert_eq!(function.clone().straighten(0), more, "{easing:?}");
+            let index = function.cut_at(13.0);
+            assert_eq!(function.points[index].value, 13.0);
+            for i in 0..100 {
+                let value = 9.03 + f64::from(i) * 0.12;
+                let found = (function.opacity_at(value) - before.opacity_at(value)).abs();
+                assert!(found < apart, "{easing:?} at {value}: {found}");
+            }
+        }
+        assert_eq!(ramp(Interpolation::Opacity).straighten(1), 0, "nothing follows");
+    }
+
+    #[test]
+    fn two_points_at_one_value_make_a_step() {
+        let mut function = ramp(Interpolation::Opacity);
+        function.points[1].value = 10.0;
+        assert_eq!(function.opacity_at(9.999), 0.0);
+        assert!((function.opacity_at(10.0) - 0.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn visibility_never_hides_what_can_be_seen() {
+        let baked = ramp(Interpolation::Opacity).bake((0.0, 100.0), 1.0, 1.0);
+        let visible = baked.visibility();
+        assert!(!visible(0.0, 0.09));
+        for i in 0..=1000 {
+            let density = i as f32 / 1000.0;
+            assert!(visible(density, density) || baked.sample(f64::from(density))[3] == 0.0, "{density}");
+        }
+    }
+
+    #[test]
+    fn full_opacity_stays_finite() {
+        let solid = TransferFunction {
+            points: vec![ControlPoint::new(0.0, [1.0; 3], 1.0)],
+            interpolation: Interpolation::Opacity,
+            ..TransferFunction::default()
+        };
+        assert!(solid.bake((0.0, 1.0), 0.01, 1.0).entries.iter().all(|entry| entry[3].is_finite()));
+    }
+}

@@ -1,0 +1,188 @@
+//! How far every cell of a volume is from the nearest in which something can be seen.
+//!
+//! Distances are Chebyshev's, in cells: everything nearer than a cell's distance is a cube of empty cells
+//! that a ray can leave in one step. What a kernel, a lookup or a reverse kernel reaches beyond a cell is
+//! subtracted from its distance, so that one field serves all passes.
+
+use rayon::prelude::*;
+
+use crate::plan::CellSet;
+
+/// Cells along the edge of a brick.
+const PER_BRICK: usize = 4;
+
+/// Distances are cut here: a ray leaves 62 voxels in one step.
+pub const FARTHEST: u8 = 31;
+
+/// Distance of every cell to the nearest member of a set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CellDistances {
+    /// Cells along x, y, z: those of whole bricks.
+    pub dims: [usize; 3],
+    /// 0 for members, at most [`FARTHEST`]; x fastest.
+    pub values: Vec<u8>,
+}
+
+impl CellDistances {
+    /// Distances to the cells of a set.
+    pub fn of(set: &CellSet) -> Self {
+        let dims = set.dims.map(|n| n * PER_BRICK);
+        let [nx, ny, _] = dims;
+        let mut values = vec![FARTHEST; dims.iter().product()];
+        values.par_chunks_mut(nx * ny).enumerate().for_each(|(z, plane)| {
+            for (y, row) in plane.chunks_mut(nx).enumerate() {
+                let first = set.dims[0] * (y / PER_BRICK + set.dims[1] * (z / PER_BRICK));
+                let shift = PER_BRICK * (y % PER_BRICK) + PER_BRICK * PER_BRICK * (z % PER_BRICK);
+                for (cells, mask) in row.chunks_mut(PER_BRICK).zip(&set.masks[first..]) {
+                    for (x, cell) in cells.iter_mut().enumerate() {
+                        *cell = if mask >> (shift + x) & 1 == 1 { 0 } else { FARTHEST };
+                    }
+                }
+                spread_along(row);
+            }
+            spread_across(plane, nx);
+        });
+        Self { dims, values: spread_through(&values, nx * ny) }
+    }
+
+    /// Distances to the nearest of two sets of one grid.
+    #[must_use]
+    pub fn nearest(&self, other: &Self) -> Self {
+        let values = self.values.iter().zip(&other.values).map(|(a, b)| *a.min(b)).collect();
+        Self { dims: self.dims, values }
+    }
+
+    /// The cells up to `reach` from the set, on a grid of `bricks` whose cells are `factor` times as
+    /// large: of those, all that hold any.
+    pub fn within(&self, reach: u8, factor: usize, bricks: [usize; 3]) -> CellSet {
+        let [nx, ny, nz] = self.dims;
+        let holds = |cell: [usize; 3]| {
+            let [xs, ys, zs] = [(cell[0], nx), (cell[1], ny), (cell[2], nz)]
+                .map(|(c, n)| (c * factor).min(n)..((c + 1) * factor).min(n));
+            zs.clone().any(|z| {
+                ys.clone().any(|y| {
+                    let row = nx * (y + ny * z);
+                    self.values[row + xs.start..row + xs.end].iter().any(|&distance| distance <= reach)
+                })
+            })
+        };
+        let mask = |at: usize| {
+            let brick = [at % bricks[0], at / bricks[0] % bricks[1], at / (bricks[0] * bricks[1])];
+            let bit = |cell: usize| {
+                let [x, y, z] = brick.map(|c| c * PER_BRICK);
+                let at = [x + cell % PER_BRICK, y + cell / PER_BRICK % PER_BRICK, z + cell / 16];
+                u64::from(holds(at)) << cell
+            };
+            (0..PER_BRICK * PER_BRICK * PER_BRICK).map(bit).sum()
+        };
+        CellSet { dims: bricks, masks: (0..bricks.iter().product()).into_par_iter().map(mask).collect() }
+    }
+}
+
+// Chebyshev's distance separates by axis: the distance over two axes is the least, over the third, of
+// max(distance so far, step).
+
+/// Along a row.
+fn spread_along(row: &mut [u8]) {
+    let before = row.to_vec();
+    if before.iter().all(|&distance| distance == FARTHEST) {
+        return;
+    }
+    for step in 1..usize::from(FARTHEST).min(row.len()) {
+        include(&mut row[step..], &before, step);
+        let end = row.len() - step;
+        include(&mut row[..end], &before[step..], step);
+    }
+}
+
+/// Along columns of rows.
+fn spread_across(plane: &mut [u8], row: usize) {
+    let before = plane.to_vec();
+    if before.iter().all(|&distance| distance == FARTHEST) {
+        return;
+    }
+    for (at, target) in plane.chunks_mut(row).enumerate() {
+        nearest_of(target, &before, at, row);
+    }
+}
+
+/// From plane to plane.
+fn spread_through(planes: &[u8], plane: usize) -> Vec<u8> {
+    let mut spread = planes.to_vec();
+    spread.par_chunks_mut(plane).enumerate().for_each(|(at, target)| nearest_of(target, planes, at, plane));
+    spread
+}
+
+/// The least, over lines of `length` values, of what they hold and how far they are from line `at`.
+fn nearest_of(target: &mut [u8], lines: &[u8], at: usize, length: usize) {
+    let count = lines.len() / length;
+    for step in 1..usize::from(FARTHEST).min(count.max(1)) {
+        // Nothing that far away is nearer than what is known.
+        if target.iter().all(|&known| usize::from(known) <= step) {
+            break;
+        }
+        if step <= at {
+            include(target, &lines[(at - step) * length..], step);
+        }
+        if at + step < count {
+            include(target, &lines[(at + step) * length..], step);
+        }
+    }
+}
+
+fn include(target: &mut [u8], line: &[u8], step: usize) {
+    for (known, &other) in target.iter_mut().zip(line) {
+        *known = (*known).min(other.max(step as u8));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A set of some cells of 3 × 2 × 4 bricks.
+    fn set(members: &[[usize; 3]]) -> CellSet {
+        let mut set = CellSet { dims: [3, 2, 4], masks: vec![0; 24] };
+        for &[x, y, z] in members {
+            set.masks[x / 4 + 3 * (y / 4 + 2 * (z / 4))] |= 1 << (x % 4 + 4 * (y % 4) + 16 * (z % 4));
+        }
+        set
+    }
+
+    #[test]
+    fn distances_are_chebyshevs() {
+        let members = [[1, 1, 0], [6, 3, 4], [0, 7, 15]];
+        let found = CellDistances::of(&set(&members));
+        assert_eq!(found.dims, [12, 8, 16]);
+        for (at, &distance) in found.values.iter().enumerate() {
+            let p = [at % 12, at / 12 % 8, at / 96];
+            let expected =
+                members.iter().map(|m| (0..3).map(|a| m[a].abs_diff(p[a])).max().unwrap()).min().unwrap();
+            assert_eq!(usize::from(distance), expected, "at {p:?}");
+        }
+    }
+
+    #[test]
+    fn an_empty_set_is_far_from_everything() {
+        assert!(CellDistances::of(&set(&[])).values.iter().all(|&distance| distance == FARTHEST));
+    }
+
+    #[test]
+    fn what_is_near_is_within_reach() {
+        let distances = CellDistances::of(&set(&[[4, 4, 4]]));
+        let same = distances.within(0, 1, [3, 2, 4]);
+        assert_eq!(same, set(&[[4, 4, 4]]));
+        assert_eq!(distances.within(1, 1, [3, 2, 4]).count(), 27);
+        // Cells 3 … 5 are cells 1 and 2 of twice the size.
+        let coarse = distances.within(1, 2, [2, 1, 2]);
+        assert_eq!(coarse.count(), 8);
+        assert_eq!(coarse.masks[0], 0b0110_0110 << 20 | 0b0110_0110 << 36);
+    }
+
+    #[test]
+    fn the_nearest_of_two_sets_counts() {
+        let (a, b) = (set(&[[4, 4, 4]]), set(&[[9, 1, 2]]));
+        let both = CellDistances::of(&a).nearest(&CellDistances::of(&b));
+        assert_eq!(both, CellDistances::of(&set(&[[4, 4, 4], [9, 1, 2]])));
+    }
+}

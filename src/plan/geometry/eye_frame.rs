@@ -1,0 +1,148 @@
+//! The eye's sheets.
+
+use glam::{DMat3, DVec2};
+
+use super::sheet_frame::{Placement, SheetFrame};
+use crate::math::SceneSpace;
+use crate::model::{Camera, Projection};
+use crate::plan::PixelWindow;
+
+/// Most slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
+/// that very flat voxels do not make a ray endless.
+const MAX_SLABS: f64 = 4096.0;
+
+/// Nearest distance from a perspective eye that is drawn, as a share of the distance to the target.
+const NEAR_SHARE: f64 = 1e-3;
+
+/// Thickest slabs of a preview, in edges of the smallest voxel: its kernel reaches as far to either side.
+const THICKEST_PREVIEW: f64 = 2.0;
+
+/// Thickness of slabs for a preview, in edges of the smallest voxel, where pictures have `slab`.
+///
+/// It is as much as the preview's pixels are wide where they are narrowest: it can show no finer shapes along its
+/// rays than across them. `size`: pixels of the preview.
+pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64) -> f64 {
+    let frame = eye_frame(camera, scene, size, slab);
+    let width = frame.pitch_at(frame.first_depth) / (frame.slab / slab);
+    // One is enough for a preview however large: it may show a little wood grain.
+    slab.max(width.clamp(1.0, THICKEST_PREVIEW))
+}
+
+/// The sheets that a camera sees, `slab` smallest voxel edges thick.
+///
+/// The anchor plane goes through the middle of the volume when that lies well in front of the eye,
+/// else through the target (both are arbitrary; the first keeps slabs in phase while panning). Of a part of a
+/// picture, the sheets are that part of those of the whole.
+pub fn eye_frame(
+    camera: &Camera,
+    scene: &SceneSpace,
+    window: impl Into<PixelWindow>,
+    slab: f64,
+) -> SheetFrame {
+    let PixelWindow { whole, first, size } = window.into();
+    let view = camera.scene_from_view();
+    let axes = DMat3::from_cols(view.x_axis, -view.y_axis, -view.z_axis);
+    let eye = camera.eye();
+    let to_middle = -eye.dot(axes.z_axis);
+    let distance = match camera.projection {
+        Projection::Orthographic => to_middle,
+        Projection::Perspective if to_middle > 0.05 * camera.distance => to_middle,
+        Projection::Perspective => camera.distance,
+    };
+    let pitch_at_target = 2.0 * camera.half_height_at_target() / f64::from(whole[1].max(1));
+    let (pitch, inverse_distance, near) = match camera.projection {
+        Projection::Orthographic => (pitch_at_target, 0.0, f64::NEG_INFINITY),
+        Projection::Perspective => (
+            pitch_at_target * distance / camera.distance,
+            1.0 / distance,
+            NEAR_SHARE * camera.distance - distance,
+        ),
+    };
+    let pixels = |[i, j]: [u32; 2]| DVec2::new(f64::from(i), f64::from(j));
+    SheetFrame::new(
+        scene,
+        &Placement {
+            axes,
+            anchor: eye + axes.z_axis * distance,
+            inverse_distance,
+            pitch,
+            // Pixel centres lie half a pixel from the picture's edge.
+            first_pixel: DVec2::splat(0.5) + pixels(first) - pixels(whole) / 2.0,
+            size,
+            slab: slab * scene.smallest_edge().max(2.0 * scene.support_radius() / MAX_SLABS),
+            near,
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DAffine3, DVec3};
+
+    fn scene() -> SceneSpace {
+        SceneSpace::new([40, 30, 20], DAffine3::from_scale(DVec3::new(1.0, 1.2, 2.0)))
+    }
+
+    #[test]
+    fn rays_are_the_cameras_rays() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            for distance in [0.4, 3.0] {
+                let camera = Camera { projection, distance, target: [0.1, -0.2, 0.05], ..Camera::default() };
+                let frame = eye_frame(&camera, &scene(), [64, 48], 1.0);
+                let (origin, direction) = camera.ray_through(10.5, 7.5, 64.0, 48.0);
+                for depth in [-0.2, 0.3] {
+                    let point = scene().scene_from_index.transform_point3(frame.point(10.0, 7.0, depth));
+                    let miss = (point - origin).reject_from(direction).length();
+                    assert!(miss < 1e-12, "{projection:?}: {miss}");
+                }
+                let a = scene().scene_from_index.transform_point3(frame.point(10.0, 7.0, 0.0));
+                let b = scene().scene_from_index.transform_point3(frame.point(10.0, 7.0, 0.1));
+                assert!(((b - a).length() - 0.1 * frame.obliquity(10.0, 7.0)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_of_a_picture_see_what_the_whole_sees() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let camera = Camera { projection, ..Camera::default() };
+            let whole = eye_frame(&camera, &scene(), [64, 48], 1.0);
+            let part = PixelWindow { whole: [64, 48], first: [20, 30], size: [8, 9] };
+            let part = eye_frame(&camera, &scene(), part, 1.0);
+            assert_eq!((part.first_depth, part.slab_count), (whole.first_depth, whole.slab_count));
+            for depth in [-0.3, 0.2] {
+                let miss = part.point(3.0, 5.0, depth) - whole.point(23.0, 35.0, depth);
+                assert!(miss.length() < 1e-9, "{projection:?}: {miss}");
+                assert!((part.obliquity(3.0, 5.0) - whole.obliquity(23.0, 35.0)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn previews_have_slabs_as_thick_as_their_pixels_are_wide() {
+        let slab = |size, slab| preview_slab(&Camera::default(), &scene(), size, slab);
+        // Pixels that are finer than voxels, as wide as one and a half, and wider than the kernel.
+        assert_eq!(slab([6400, 4800], 0.5), 1.0);
+        assert_eq!(slab([16, 12], 0.5), 2.0);
+        assert_eq!(slab([16, 12], 3.0), 3.0);
+        let width = slab([36, 27], 0.5);
+        let frame = eye_frame(&Camera::default(), &scene(), [36, 27], width);
+        let narrowest = frame.pitch_at(frame.first_depth) / scene().smallest_edge();
+        assert!((1.0..2.0).contains(&width) && (width / narrowest - 1.0).abs() < 0.05, "{width}");
+    }
+
+    #[test]
+    fn slabs_cover_the_material_and_nothing_behind_the_eye() {
+        let far = eye_frame(&Camera::default(), &scene(), [64, 48], 1.0);
+        let last = far.first_depth + f64::from(far.slab_count) * far.slab;
+        for corner in scene().support_corners() {
+            let depth = (corner - Camera::default().eye()).dot(-Camera::default().scene_from_view().z_axis)
+                - 1.0 / far.inverse_distance;
+            assert!(far.first_depth <= depth + 1e-9 && depth - 1e-9 <= last);
+        }
+        let inside = Camera { distance: 0.1, ..Camera::default() };
+        let frame = eye_frame(&inside, &scene(), [64, 48], 1.0);
+        assert!(frame.depth_of(0.0) + 1.0 / frame.inverse_distance > 0.0, "slab 0 is in front of the eye");
+    }
+}

@@ -1,0 +1,256 @@
+//! Which parts of a light's sheets have to be marched: tiles of pixels under which something is looked up or
+//! attenuates light, chunk by chunk of slabs.
+
+use std::ops::RangeInclusive;
+
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+
+use crate::math::SceneSpace;
+use crate::plan::LightView;
+
+/// Pixels along the edge of a tile: a workgroup's.
+pub const TILE_EDGE: u32 = 8;
+
+/// Bits of a tile's column and row. Sheets have at most a few thousand pixels across.
+const BITS: u32 = 15;
+
+/// Set in the entry of a tile that no chunk before has: light arrives there as it left its source.
+const FIRST: u32 = 1 << 31;
+
+/// Nearer to the light's plane than this, in distances of the anchor, boxes spread over any number of pixels.
+const NEAREST_SPREAD: f64 = 0.05;
+
+/// Pixels and slabs to either side that make up for the rounding of shaders.
+const SLACK: f64 = 1.0;
+
+/// Tiles of a view's sheets, in the order of their rows for each chunk.
+///
+/// An entry is the tile's column, its row (from bit 15), and a bit for the first chunk in which it occurs
+/// (bit 31).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReadTiles {
+    chunks: Vec<Vec<u32>>,
+}
+
+impl ReadTiles {
+    /// Every tile in every chunk of so many slabs.
+    pub fn all(view: &LightView, chunk: u32) -> Self {
+        let mut marked = Marked::new(view, chunk);
+        marked.chunks.iter_mut().for_each(|tiles| tiles.fill(true));
+        marked.listed()
+    }
+
+    /// The tiles that boxes of index space lie behind, from their first corners to their second.
+    pub fn behind(
+        view: &LightView,
+        scene: &SceneSpace,
+        chunk: u32,
+        boxes: impl Iterator<Item = [DVec3; 2]>,
+    ) -> Self {
+        let mut marked = Marked::new(view, chunk);
+        let turned = DAffine3::from_mat3(view.axes.transpose());
+        let local_from_index = turned * DAffine3::from_translation(-view.anchor) * scene.scene_from_index;
+        for [low, high] in boxes {
+            let corner = local_from_index.transform_point3(low);
+            let edges = local_from_index.matrix3 * DMat3::from_diagonal(high - low);
+            if let Some((pixels, slabs)) = extent(view, corner, edges) {
+                marked.mark(pixels, slabs);
+            }
+        }
+        marked.listed()
+    }
+
+    /// Those of a chunk.
+    pub fn of_chunk(&self, at: usize) -> &[u32] {
+        self.chunks.get(at).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The pixels and slabs that a box lies in, from a corner along three edges in the light's axes; `None` if all
+/// of it is behind the light.
+fn extent(view: &LightView, corner: DVec3, edges: DMat3) -> Option<([DVec2; 2], [f64; 2])> {
+    let frame = &view.frame;
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut nearest = f64::INFINITY;
+    for side in 0..8 {
+        let along = [0, 1, 2].map(|axis| f64::from(side >> axis & 1));
+        let local = corner + edges * DVec3::from(along);
+        let spread = 1.0 + local.z * frame.inverse_distance;
+        nearest = nearest.min(spread);
+        let pixel = local.truncate() / (frame.pitch * spread.max(NEAREST_SPREAD)) - view.first_pixel;
+        let at = pixel.extend((local.z - frame.first_depth) / frame.slab - 0.5);
+        (low, high) = (low.min(at), high.max(at));
+    }
+    let slabs = [low.z - SLACK, high.z + SLACK];
+    if nearest > NEAREST_SPREAD {
+        return Some(([low.truncate() - SLACK, high.truncate() + SLACK], slabs));
+    }
+    let behind = frame.inverse_distance > 0.0
+        && frame.first_depth + (slabs[1] + 0.5) * frame.slab < -1.0 / frame.inverse_distance;
+    (!behind).then_some(([DVec2::NEG_INFINITY, DVec2::INFINITY], slabs))
+}
+
+/// Tiles that are being marked.
+struct Marked {
+    /// Columns and rows.
+    size: [u32; 2],
+    /// Slabs of a chunk.
+    chunk: u32,
+    chunks: Vec<Vec<bool>>,
+    /// Chunks of which every tile is marked.
+    full: Vec<bool>,
+}
+
+impl Marked {
+    fn new(view: &LightView, chunk: u32) -> Self {
+        let size = view.frame.size.map(|n| n.div_ceil(TILE_EDGE));
+        let count = view.frame.slab_count.div_ceil(chunk).max(1) as usize;
+        let chunks = vec![vec![false; (size[0] * size[1]) as usize]; count];
+        Self { size, chunk, chunks, full: vec![false; count] }
+    }
+
+    fn mark(&mut self, [low, high]: [DVec2; 2], [first, last]: [f64; 2]) {
+        let Some(chunks) = whole(first, last, f64::from(self.chunk), self.chunks.len()) else { return };
+        let edge = f64::from(TILE_EDGE);
+        let [Some(columns), Some(rows)] =
+            [0, 1].map(|axis| whole(low[axis], high[axis], edge, self.size[axis] as usize))
+        else {
+            return;
+        };
+        let is_all = columns == (0..=self.size[0] as usize - 1) && rows == (0..=self.size[1] as usize - 1);
+        for (tiles, full) in self.chunks[chunks.clone()].iter_mut().zip(&mut self.full[chunks]) {
+            if std::mem::replace(full, *full || is_all) {
+                continue;
+            }
+            for row in rows.clone() {
+                let start = row * self.size[0] as usize;
+                tiles[start + columns.start()..=start + columns.end()].fill(true);
+            }
+        }
+    }
+
+    fn listed(self) -> ReadTiles {
+        let mut is_new = vec![true; (self.size[0] * self.size[1]) as usize];
+        let width = self.size[0];
+        let list = |tiles: &Vec<bool>| {
+            let marked = tiles.iter().zip(&mut is_new).zip(0..).filter(|((marked, _), _)| **marked);
+            let entry = |((_, is_new), at): ((&bool, &mut bool), u32)| {
+                let first = if std::mem::take(is_new) { FIRST } else { 0 };
+                (at % width) | ((at / width) << BITS) | first
+            };
+            marked.map(entry).collect()
+        };
+        ReadTiles { chunks: self.chunks.iter().map(list).collect() }
+    }
+}
+
+/// Which of `count` pieces of a length the whole numbers from `low` to `high` lie in.
+fn whole(low: f64, high: f64, length: f64, count: usize) -> Option<RangeInclusive<usize>> {
+    let (first, last) = ((low.floor() / length).floor(), (high.ceil() / length).floor());
+    let end = count as f64 - 1.0;
+    (last >= 0.0 && first <= end).then(|| first.max(0.0) as usize..=last.min(end) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Light, LightKind, Shadows};
+    use crate::plan::light_views;
+
+    const CHUNK: u32 = 8;
+
+    fn scene() -> SceneSpace {
+        SceneSpace::new([40, 30, 20], DAffine3::from_scale(DVec3::new(1.0, 1.2, 2.0)))
+    }
+
+    fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
+        light_views(&Light { kind, position, ..Light::default() }, &Shadows::default(), &scene())
+    }
+
+    fn has(tiles: &ReadTiles, [i, j]: [u32; 2], slab: u32) -> bool {
+        let wanted = (i / TILE_EDGE) | ((j / TILE_EDGE) << BITS);
+        tiles.of_chunk((slab / CHUNK) as usize).iter().any(|tile| tile & !FIRST == wanted)
+    }
+
+    #[test]
+    fn rays_through_a_box_meet_it_in_its_tiles() {
+        let scene = scene();
+        let [low, high] = [DVec3::new(10.0, 8.0, 3.0), DVec3::new(17.0, 15.0, 12.0)];
+        for (kind, position) in [
+            (LightKind::Parallel, [1.0, 2.0, 3.0]),
+            (LightKind::Perspective, [1.0, 2.0, 3.0]),
+            (LightKind::Perspective, [0.1, 0.2, 0.0]),
+            (LightKind::Perspective, [-0.4, -0.2, -0.1]),
+        ] {
+            let mut met = 0;
+            for view in views(kind, position) {
+                let tiles = ReadTiles::behind(&view, &scene, CHUNK, std::iter::once([low, high]));
+                let [width, height] = view.frame.size;
+                for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
+                    for k in 0..view.frame.slab_count {
+                        let depth = view.frame.depth_of(f64::from(k));
+                        let p = view.frame.point(f64::from(i), f64::from(j), depth);
+                        if p.cmpge(low).all() && p.cmple(high).all() {
+                            assert!(has(&tiles, [i, j], k), "{kind:?} {position:?}: ({i}, {j}, {k})");
+                            met += 1;
+                        }
+                    }
+                }
+            }
+            assert!(met > 500, "{kind:?} {position:?}: {met}");
+        }
+    }
+
+    #[test]
+    fn a_small_box_has_few_tiles() {
+        let scene = scene();
+        let view = &views(LightKind::Perspective, [1.0, 2.0, 3.0])[0];
+        let around = |low: DVec3| std::iter::once([low, low + 1.0]);
+        let count = |tiles: &ReadTiles| tiles.chunks.iter().map(Vec::len).sum::<usize>();
+        let few = count(&ReadTiles::behind(view, &scene, CHUNK, around(DVec3::splat(10.0))));
+        assert!((1..=8).contains(&few), "{few}");
+        assert_eq!(count(&ReadTiles::behind(view, &scene, CHUNK, around(DVec3::splat(500.0)))), 0);
+        let all = ReadTiles::all(view, CHUNK);
+        let each = view.frame.size.map(|n| n.div_ceil(TILE_EDGE) as usize).iter().product::<usize>();
+        assert_eq!(count(&all), each * view.frame.slab_count.div_ceil(CHUNK) as usize);
+    }
+
+    #[test]
+    fn the_shader_takes_entries_apart_as_they_are_made() {
+        let shader = include_str!("../../../shaders/light/march.wgsl");
+        let mask = (1u32 << BITS) - 1;
+        let place =
+            format!("vec2u(tile & {mask}u, tile >> {BITS}u & {mask}u) * {TILE_EDGE}u + in_tile(local.xy)");
+        assert!(shader.contains(&place), "{place}");
+        assert!(shader.contains(&format!("tile >> {}u == 1u", FIRST.trailing_zeros())));
+        assert!(shader.contains(&format!("@workgroup_size({TILE_EDGE}, {TILE_EDGE})")));
+    }
+
+    #[test]
+    fn every_tile_is_first_once() {
+        let scene = scene();
+        let view = &views(LightKind::Parallel, [1.0, 0.3, 0.2])[0];
+        let boxes =
+            [[DVec3::splat(2.0), DVec3::splat(6.0)], [DVec3::splat(9.0), DVec3::new(30.0, 12.0, 15.0)]];
+        let tiles = ReadTiles::behind(view, &scene, CHUNK, boxes.into_iter());
+        let mut seen = std::collections::BTreeSet::new();
+        for tile in tiles.chunks.iter().flatten() {
+            assert_eq!(tile & FIRST != 0, seen.insert(tile & !FIRST), "{tile:x}");
+        }
+        assert!(seen.len() > 4);
+    }
+
+    #[test]
+    fn what_is_behind_a_light_is_in_none_of_its_tiles() {
+        let scene = scene();
+        let views = views(LightKind::Perspective, [0.1, 0.2, 0.0]);
+        let light = scene.scene_from_index.inverse().transform_point3(DVec3::new(0.1, 0.2, 0.0));
+        let far = [light + DVec3::new(6.0, -1.0, -1.0), light + DVec3::new(8.0, 1.0, 1.0)];
+        let is_listed = |forward: DVec3| {
+            let view = views.iter().find(|view| view.axes.z_axis.dot(forward) > 0.99).unwrap();
+            let tiles = ReadTiles::behind(view, &scene, CHUNK, std::iter::once(far));
+            tiles.chunks.iter().any(|tiles| !tiles.is_empty())
+        };
+        assert!(is_listed(DVec3::X) && !is_listed(DVec3::NEG_X));
+    }
+}

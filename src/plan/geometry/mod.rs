@@ -1,0 +1,12 @@
+//! The geometry of the passes: frames of sheets, bricks and cells, how far samples reach.
+
+pub(super) mod brick_set;
+pub(super) mod cell_distances;
+pub(super) mod cell_set;
+pub(super) mod eye_frame;
+pub(super) mod light_frame;
+pub(super) mod march_tiles;
+pub(super) mod pixel_window;
+pub(super) mod reach;
+pub(super) mod sheet_frame;
+pub(super) mod slice_order;
