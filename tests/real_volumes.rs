@@ -122,8 +122,8 @@ fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
     if low >= high {
         found.push(format!("values from {low} to {high}"));
     }
-    if volume.odd_voxels() > 0 {
-        found.push(format!("{} voxels are not finite", volume.odd_voxels()));
+    if volume.non_finite_voxels() > 0 {
+        found.push(format!("{} voxels are not finite", volume.non_finite_voxels()));
     }
     found
 }

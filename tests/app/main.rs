@@ -459,7 +459,7 @@ fn a_floor_takes_shadows() {
     harness.run_steps(2);
     wait_until_idle(&mut harness);
     harness.run_steps(20);
-    assert!(harness.state().settings().ground.on);
+    assert!(harness.state().settings().floor.on);
     let (floor, size) = picture(&mut harness);
     assert!(floor != bare);
     assert!(floor == render(&harness, size).shown);
@@ -581,12 +581,12 @@ fn the_next_file_can_have_the_look_of_this_one() {
     harness.key_press(egui::Key::CloseBracket);
     harness.run_steps(2);
     let lights = harness.state().settings().lights.clone();
-    let height = harness.state().settings().ground.height;
+    let height = harness.state().settings().floor.height;
     let ctx = harness.ctx.clone();
     harness.state_mut().open("builtin:box:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box") && app.is_idle());
     assert_eq!(harness.state().settings().lights, lights);
-    assert_ne!(harness.state().settings().ground.height, height, "the floor lies under the other object");
+    assert_ne!(harness.state().settings().floor.height, height, "the floor lies under the other object");
 }
 
 #[test]

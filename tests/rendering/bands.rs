@@ -3,7 +3,7 @@
 use chiaroscuro::export::Rows;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
-    Background, Depth, Engine, Ground, Projection, Sampling, Settings, ShadowAlgorithm, Shot,
+    Background, Depth, Engine, Floor, Projection, Sampling, Settings, ShadowAlgorithm, Shot,
 };
 use glam::DVec3;
 
@@ -18,7 +18,7 @@ const SIZE: [u32; 2] = [93, 70];
 fn look() -> Settings {
     let mut settings = scenes::look();
     settings.output.background = Background { top: [0.9, 0.2, 0.1], bottom: [0.1, 0.3, 0.8] };
-    settings.ground = Ground { on: true, height: -0.9, ..Ground::default() };
+    settings.floor = Floor { on: true, height: -0.9, ..Floor::default() };
     settings
 }
 
@@ -137,7 +137,7 @@ fn linear_light_is_what_the_display_shows() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = look();
     settings.output.tone_map = chiaroscuro::model::ToneMap::Clip;
-    settings.ground.on = false;
+    settings.floor.on = false;
     let whole = (4096, 1 << 20);
     let shot = Shot { depth: Depth::Linear, ..Shot::new(SIZE) };
     let linear = picture(&mut renderer, &loaded, &settings, &shot, whole);

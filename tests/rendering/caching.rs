@@ -202,9 +202,9 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
     biased.shadows.bias_voxels = 2.0;
     let mut halved = scenes::look();
     halved.shadows.resolution = Resolution::Half;
-    let mut collapsed = three_lights();
-    collapsed.shadows.storage = LightStorage::Collapsed;
-    looks.extend([biased, halved, collapsed]);
+    let mut combined = three_lights();
+    combined.shadows.storage = LightStorage::Combined;
+    looks.extend([biased, halved, combined]);
     for algorithm in [ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
         let mut rays = scenes::look();
         rays.shadows.algorithm = algorithm;
@@ -225,9 +225,12 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
             renderer.render(&loaded.volume, &loaded.bricks, settings, [120, 90], options).expect("a picture")
         };
         let usual = picture(&RenderOptions::default());
-        let plodding =
-            picture(&RenderOptions { leaping: false, fill_everything: true, ..RenderOptions::default() });
-        assert_eq!(usual.light, plodding.light, "look {at}: leaping changes the picture");
+        let plodding = picture(&RenderOptions {
+            empty_space_skipping: false,
+            fill_everything: true,
+            ..RenderOptions::default()
+        });
+        assert_eq!(usual.light, plodding.light, "look {at}: empty_space_skipping changes the picture");
         let parts = picture(&RenderOptions { light_parts: 3, ..RenderOptions::default() });
         assert_eq!(usual.light, parts.light, "look {at}: cutting chunks into parts changes the picture");
         for chunk in [1, 5, 1000] {

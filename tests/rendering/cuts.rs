@@ -249,8 +249,8 @@ fn collapsed_lights_know_the_faces() {
     for offset in [0.17, 0.3] {
         settings.cuts.plane.offset = offset;
         let kept = shown(LightStorage::PerLight, &mut settings);
-        let collapsed = shown(LightStorage::Collapsed, &mut settings);
+        let combined = shown(LightStorage::Combined, &mut settings);
         let limit = crate::thresholds::CUT_COLLAPSED;
-        compare("collapsed", &collapsed, &kept, limit).expect("nearly the same");
+        compare("combined", &combined, &kept, limit).expect("nearly the same");
     }
 }

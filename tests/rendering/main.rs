@@ -7,12 +7,12 @@
 mod bands;
 mod caching;
 mod closed_form;
-mod collapse;
+mod combine;
 mod common;
 mod compare;
 mod cuts;
+mod floor;
 mod gpu_vs_reference;
-mod ground;
 mod mutations;
 mod preview;
 mod reduced;

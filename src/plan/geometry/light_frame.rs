@@ -5,7 +5,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::sheet_frame::{Placement, SheetFrame};
 use crate::math::SceneSpace;
-use crate::model::{Light, LightKind, Shadows};
+use crate::model::{LightKind, SceneLight, Shadows};
 
 /// A perspective light nearer than this many radii of the volume is split into six views: beyond
 /// it, the volume fits a cone of ± asin(1/1.5) = 42°, no wider than one face of a cube.
@@ -105,7 +105,7 @@ impl LightView {
 }
 
 /// The views of a light over a scene, with the pitch, slab and resolution that `shadows` asks for.
-pub fn light_views(light: &Light, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
+pub fn light_views(light: &SceneLight, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
     let radius = scene.support_radius();
     let edge = (scene.smallest_edge() * shadows.resolution.divisor() as f64).max(2.0 * radius / MAX_PIXELS);
     let position = DVec3::from(light.position);

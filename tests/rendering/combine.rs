@@ -3,7 +3,7 @@
 use crate::common::{Loaded, context, render};
 use crate::compare::{compare, difference, flat32};
 use crate::scenes::{self, isotropic};
-use crate::thresholds::COLLAPSED;
+use crate::thresholds::COMBINED;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{Light, LightKind, LightStorage, Settings};
 use glam::DVec3;
@@ -27,7 +27,7 @@ fn look() -> Settings {
     settings
 }
 
-/// No. 14: Where material answers evenly, the collapsed light is the sum of all lights; where it does
+/// No. 14: Where material answers evenly, the combined light is the sum of all lights; where it does
 /// not, the angle to the light is interpolated too.
 #[test]
 fn collapsed_light_is_the_sum_of_the_lights() {
@@ -44,17 +44,17 @@ fn collapsed_light_is_the_sum_of_the_lights() {
     };
     surfaces(LightStorage::PerLight, true, &mut settings);
     let apart = render(&mut renderer, &loaded, &settings, SIZE);
-    settings.shadows.storage = LightStorage::Collapsed;
+    settings.shadows.storage = LightStorage::Combined;
     let together = render(&mut renderer, &loaded, &settings, SIZE);
-    compare("collapsed", &flat32(&together.light), &flat32(&apart.light), COLLAPSED)
+    compare("combined", &flat32(&together.light), &flat32(&apart.light), COMBINED)
         .unwrap_or_else(|err| panic!("{err}"));
     // With normals: the difference is reported, and must be there, or the test would see nothing.
     let mut settings = look();
     let apart = render(&mut renderer, &loaded, &settings, SIZE);
-    settings.shadows.storage = LightStorage::Collapsed;
+    settings.shadows.storage = LightStorage::Combined;
     let together = render(&mut renderer, &loaded, &settings, SIZE);
     let found = difference(&flat32(&together.light), &flat32(&apart.light));
-    println!("collapsed with normals: RMSE {:.2e}, largest {:.2e}", found.rmse, found.max);
+    println!("combined with normals: RMSE {:.2e}, largest {:.2e}", found.rmse, found.max);
     assert!(found.rmse > 0.0 && found.rmse < 0.02, "interpolated normals differ a little: {}", found.rmse);
 }
 
@@ -67,7 +67,7 @@ fn a_collapsed_volume_is_kept_until_a_light_changes() {
     render(&mut renderer, &loaded, &settings, SIZE);
     let voxels = loaded.volume.voxel_count() as u64;
     assert_eq!(renderer.light_bytes(), 3 * 2 * voxels, "three lights cast shadows");
-    settings.shadows.storage = LightStorage::Collapsed;
+    settings.shadows.storage = LightStorage::Combined;
     let first = render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_bytes(), 8 * voxels, "four 16-bit numbers, and the lights' own are gone");
     let fills = |renderer: &Renderer| renderer.light_rebuilds().iter().sum::<u64>();
@@ -88,11 +88,11 @@ fn a_collapsed_volume_is_kept_until_a_light_changes() {
     let recolored = render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(fills(&renderer), before + 3, "all lights are filled again");
     assert!(recolored.light != first.light);
-    // Left to itself it collapses only where that costs nothing.
+    // Left to itself it combines only where that costs nothing.
     settings.shadows.storage = LightStorage::Auto;
-    assert!(!settings.collapses_lights(), "three volumes take less than one of colours");
+    assert!(!settings.combines_lights(), "three volumes take less than one of colours");
     settings.lights.extend(vec![settings.lights[0].clone(); 3]);
-    assert!(settings.collapses_lights());
+    assert!(settings.combines_lights());
     settings.shading.specular = 0.1;
-    assert!(!settings.collapses_lights(), "highlights would be lost");
+    assert!(!settings.combines_lights(), "highlights would be lost");
 }

@@ -2,7 +2,7 @@
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Background, Camera, Deposit, Ground, Hood, Kernel, Length, LightKind, Projection, Settings,
+    Background, Camera, Deposit, Floor, Hood, Kernel, Length, LightKind, Projection, Settings,
     ShadowAlgorithm, ToneMap,
 };
 use chiaroscuro::reference::{Options, Reference};
@@ -16,7 +16,7 @@ use crate::thresholds::{FLOOR_SHADOW, SAME_WEIGHTS};
 const SIZE: [u32; 2] = [96, 80];
 
 fn on(settings: Settings) -> Settings {
-    Settings { ground: Ground { on: true, height: -0.9, ..Ground::default() }, ..settings }
+    Settings { floor: Floor { on: true, height: -0.9, ..Floor::default() }, ..settings }
 }
 
 /// What is seen of the floor past the volume, by both sides.
@@ -35,7 +35,7 @@ fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
     let found: Vec<f64> =
         floor.iter().enumerate().flat_map(|(at, texel)| past(texel.map(f64::from), at)).collect();
     let expected: Vec<f64> =
-        reference.ground(SIZE).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
+        reference.floor(SIZE).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
     assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
     compare(name, &found, &expected, SAME_WEIGHTS).unwrap_or_else(|err| panic!("{err}"));
 }
@@ -56,8 +56,8 @@ fn floor_and_shadows_as_in_the_reference() {
     settings.shadows.kernel = Kernel::Prefiltered;
     settings.shadows.deposit = Deposit::Front;
     check("hood, cures, orthographic camera", DVec3::new(1.0, 0.8, 1.6), &settings);
-    settings.ground.shadow_only = true;
-    settings.ground.opacity = 0.8;
+    settings.floor.shadow_only = true;
+    settings.floor.opacity = 0.8;
     settings.lights[0].casts_shadows = true;
     settings.cuts.plane.on = true;
     check("shadow alone, and cut", DVec3::ONE, &settings);
@@ -102,7 +102,7 @@ fn what_a_block_lets_through_falls_on_the_floor() {
     };
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
-    settings.ground = Ground { on: true, height: -3.0, color: [1.0; 3], radius: 50.0, ..Ground::default() };
+    settings.floor = Floor { on: true, height: -3.0, color: [1.0; 3], radius: 50.0, ..Floor::default() };
     let camera = settings.camera.clone();
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     // Where a point of the floor is seen.
@@ -150,7 +150,7 @@ fn it_lies_behind_the_volume_and_before_the_background() {
     }
     assert!(seen > 300, "{seen} pixels of the bare floor");
     // On transparent pictures shadows are half-transparent black.
-    settings.ground.shadow_only = true;
+    settings.floor.shadow_only = true;
     let options = RenderOptions { transparent: true, ..RenderOptions::default() };
     let picture =
         renderer.render(&loaded.volume, &loaded.bricks, &settings, SIZE, &options).expect("a picture");
