@@ -1,9 +1,9 @@
 //! The scattering engine: against the reference with the same weights, against the gathering engine,
 //! and against the footprint itself.
 
+use super::check_against;
 use crate::common::{Loaded, context, render};
 use crate::compare::{compare, flat32, wide};
-use crate::gpu_vs_reference::check_against;
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
 use chiaroscuro::data::{Samples, Volume};
@@ -163,8 +163,8 @@ fn single_voxels_reproduce_the_footprint() {
 /// What scatters has no texture of densities to sample.
 #[test]
 fn scattering_samples_no_density() {
-    for name in ["scatter_splat", "scatter_eye", "scatter_light", "scatter_reverse", "scatter_normalise"] {
-        let name = format!("{name}.wgsl");
+    for name in ["splat", "eye", "light", "reverse", "normalise"] {
+        let name = format!("scatter/{name}.wgsl");
         assert!(SHADERS.iter().any(|(known, _)| *known == name), "{name}");
         let source = chiaroscuro::gpu::ShaderLibrary::source(
             &name,

@@ -11,8 +11,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use image::{RgbaImage, imageops};
 
+use crate::harness::{wait_until_idle, window};
 use crate::names::unfolded;
-use crate::wait_until_idle;
 
 /// Steps of 255 by which a channel may differ without being seen: adapters round blended edges differently.
 const STEPS: u8 = 24;
@@ -91,7 +91,7 @@ fn panels_and_editor() {
 
 #[test]
 fn windows_over_the_picture() {
-    let mut harness = crate::window();
+    let mut harness = window();
     harness.set_size(eframe::egui::vec2(1100.0, 760.0));
     harness.run_steps(4);
     wait_until_idle(&mut harness);

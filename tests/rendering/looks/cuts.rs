@@ -9,9 +9,9 @@ use chiaroscuro::model::{
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
+use crate::against_reference::check_against;
 use crate::common::{Loaded, context, render};
 use crate::compare::{compare, flat32, flat64};
-use crate::gpu_vs_reference::check_against;
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{CHORD_OPACITY, CUT_ORDERS, SAME_WEIGHTS};
 
