@@ -6,7 +6,7 @@ use eframe::egui::{self, Key, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::{click, wait_until, window};
+use crate::harness::{click, wait_until, window};
 
 /// All sections unfolded, and a window that is tall enough for them.
 pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {

@@ -4,21 +4,12 @@
 
 #![expect(clippy::print_stdout, reason = "what was measured, for whoever reads the log of a failure")]
 
-mod bands;
+mod against_reference;
 mod caching;
 mod closed_form;
-mod combine;
 mod common;
 mod compare;
-mod cuts;
-mod floor;
-mod gpu_vs_reference;
-mod mutations;
-mod preview;
-mod reduced;
-mod scatter;
+mod looks;
+mod output;
 mod scenes;
-mod stretch;
 mod thresholds;
-mod variants;
-mod window;

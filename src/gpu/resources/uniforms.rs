@@ -1,4 +1,4 @@
-//! Every struct that a shader mirrors, field by field. `tests/shaders.rs` compares names, offsets
+//! Every struct that a shader mirrors, field by field. `tests/shaders/structs.rs` compares names, offsets
 //! and sizes with what the shaders declare.
 
 #![expect(missing_docs, reason = "each field is documented where the shader declares it")]

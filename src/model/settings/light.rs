@@ -178,6 +178,12 @@ impl Light {
     }
 }
 
+impl Default for SceneLight {
+    fn default() -> Self {
+        Light::default().in_scene(&Camera::default())
+    }
+}
+
 impl SceneLight {
     /// The cone in which the light shines; open for parallel lights and without a hood.
     pub fn cone(&self) -> Cone {

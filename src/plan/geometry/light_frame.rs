@@ -218,7 +218,7 @@ mod tests {
     }
 
     fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
-        light_views(&Light { kind, position, ..Light::default() }, &Shadows::default(), &scene())
+        light_views(&SceneLight { kind, position, ..SceneLight::default() }, &Shadows::default(), &scene())
     }
 
     #[test]
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn flat_voxels_do_not_need_endless_sheets() {
         let flat = SceneSpace::new([10, 10, 400], DAffine3::from_scale(DVec3::new(0.01, 0.01, 5.0)));
-        let light = Light { position: [1.0, 1.0, 1.0], ..Light::default() };
+        let light = SceneLight { position: [1.0, 1.0, 1.0], ..SceneLight::default() };
         for view in light_views(&light, &Shadows::default(), &flat) {
             assert!(view.frame.size.iter().all(|&n| n <= 2048), "{:?}", view.frame.size);
             assert!(view.frame.slab_count <= 2048);

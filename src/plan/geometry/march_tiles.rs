@@ -154,7 +154,7 @@ fn whole(low: f64, high: f64, length: f64, count: usize) -> Option<RangeInclusiv
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Light, LightKind, Shadows};
+    use crate::model::{LightKind, SceneLight, Shadows};
     use crate::plan::light_views;
 
     const CHUNK: u32 = 8;
@@ -164,7 +164,7 @@ mod tests {
     }
 
     fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
-        light_views(&Light { kind, position, ..Light::default() }, &Shadows::default(), &scene())
+        light_views(&SceneLight { kind, position, ..SceneLight::default() }, &Shadows::default(), &scene())
     }
 
     fn has(tiles: &MarchTiles, [i, j]: [u32; 2], slab: u32) -> bool {

@@ -182,8 +182,8 @@ mod tests {
         View::new(Camera { projection, ..Camera::default() }, picture, 1.8)
     }
 
-    fn light(kind: LightKind) -> Light {
-        Light { kind, position: [0.3, -1.5, 0.8], ..Light::default() }
+    fn light(kind: LightKind) -> SceneLight {
+        SceneLight { kind, position: [0.3, -1.5, 0.8], ..SceneLight::default() }
     }
 
     #[test]
@@ -223,7 +223,8 @@ mod tests {
         assert!(
             view.sight.picture.contains(handle.position) && handle.position.x > view.sight.picture.center().x
         );
-        let far = Light { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..Light::default() };
+        let far =
+            SceneLight { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..SceneLight::default() };
         if let Some(handle) = view.handle(&far) {
             assert!(view.sight.picture.contains(handle.position));
         }

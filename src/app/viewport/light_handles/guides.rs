@@ -101,11 +101,11 @@ mod tests {
     #[test]
     fn cones_are_as_wide_as_their_hoods() {
         let hooded = Hood { on: true, half_angle_deg: 30.0, rim_deg: 5.0 };
-        let mut light = Light {
+        let mut light = SceneLight {
             kind: LightKind::Perspective,
             position: [0.0, 0.0, 2.0],
             hood: hooded,
-            ..Light::default()
+            ..SceneLight::default()
         };
         let cone = hood(&light);
         assert_eq!(cone.len(), 1 + RIBS);

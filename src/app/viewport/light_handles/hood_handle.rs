@@ -130,11 +130,11 @@ mod tests {
     fn the_cone_follows_the_pointer() {
         let picture = Rect::from_min_size(Pos2::new(10.0, 20.0), Vec2::new(800.0, 600.0));
         let view = View::new(Camera::default(), picture, 1.2);
-        let mut light = Light {
+        let mut light = SceneLight {
             kind: LightKind::Perspective,
             position: [0.4, -1.1, 2.0],
             hood: Hood { on: true, half_angle_deg: 20.0, rim_deg: 5.0 },
-            ..Light::default()
+            ..SceneLight::default()
         };
         let spot = Spot::seen(&view, &light).unwrap();
         assert_eq!(spot, Spot { eighth: 0, share: 1.0 });
@@ -153,7 +153,7 @@ mod tests {
         assert_eq!(closed, 1.0, "closed, and not open to the other side");
         // Wherever the light is, some spot of its cone can be grabbed.
         for position in [[0.0, 0.0, 6.0], [4.0, 3.0, 2.0], [-5.0, 0.1, 0.0], [0.0, 3.0, -1.0]] {
-            let light = Light { position, ..light.clone() };
+            let light = SceneLight { position, ..light };
             let spot = Spot::seen(&view, &light).expect("a spot");
             assert!(view.shows(view.point(spot.place(&view, &light)).unwrap()));
         }

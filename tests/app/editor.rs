@@ -1,0 +1,156 @@
+//! The editor of the transfer function.
+
+use chiaroscuro::app::App;
+use chiaroscuro::model::{Easing, TransferFunction};
+use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{click, drag, turn_wheel, wait_until_idle, window};
+
+#[test]
+fn the_transfer_function_is_edited_in_its_plot() {
+    let mut harness = window();
+    let before = harness.state().settings().transfer.clone();
+    let point = harness.get_by_label("Eye point 2").rect().center();
+    drag(&mut harness, point, vec2(14.0, -12.0));
+    let after = harness.state().settings().transfer.clone();
+    assert_eq!(after.points.len(), before.points.len());
+    assert!(
+        after.points[1].value > before.points[1].value && after.points[1].opacity > before.points[1].opacity
+    );
+    assert_eq!(after.points[0], before.points[0]);
+
+    // A click on the empty plot adds a point, Delete removes it.
+    let plot = harness.get_by_label("Transfer function").rect();
+    let empty = plot.left_top() + vec2(30.0, 30.0);
+    drag(&mut harness, empty, Vec2::ZERO);
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().transfer.points.len(), before.points.len() + 1);
+    harness.key_press(egui::Key::Delete);
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().transfer.points.len(), before.points.len());
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn the_whole_curve_is_colored_moved_and_replaced() {
+    let mut harness = window();
+    let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
+    let first = transfer(&harness);
+    click(&mut harness, "Colours");
+    click(&mut harness, "Viridis");
+    let colored = transfer(&harness);
+    assert!(colored.points.len() > first.points.len());
+    let last = |function: &TransferFunction| function.points.last().expect("a point").color;
+    assert!(last(&colored) != last(&first));
+
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(transfer(&harness), first);
+    click(&mut harness, "Presets");
+    click(&mut harness, "Lobster");
+    let preset = transfer(&harness);
+    assert!(preset != first && preset != colored);
+    click(&mut harness, "Shape");
+    click(&mut harness, "Bump");
+    assert!(transfer(&harness).points.len() >= preset.points.len() + 8);
+
+    // The wheel shows fewer values, and points beyond are not in the way.
+    let plot = harness.get_by_label("Transfer function").rect();
+    harness.hover_at(plot.left_center() + vec2(30.0, 0.0));
+    harness.step();
+    turn_wheel(&harness, 400.0);
+    harness.run_steps(8);
+    click(&mut harness, "Show all");
+    assert!(harness.query_by_label("Show all").is_none());
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn points_are_selected_and_changed_together() {
+    let mut harness = window();
+    let points = |harness: &Harness<'_, App>| harness.state().settings().transfer.points.clone();
+    let before = points(&harness);
+    assert!(before.len() >= 4);
+    let place = |harness: &Harness<'_, App>, number: usize| {
+        harness.get_by_label(&format!("Eye point {number}")).rect().center()
+    };
+    // A frame around the second and the third, from above to below.
+    let plot = harness.get_by_label("Transfer function").rect();
+    let (second, third) = (place(&harness, 2), place(&harness, 3));
+    let from = Pos2::new(second.x - 6.0, plot.min.y + 3.0);
+    drag(&mut harness, from, Pos2::new(third.x + 6.0, plot.max.y - 2.0) - from);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("2 points").is_some());
+    assert_eq!(points(&harness), before, "a frame changes nothing");
+
+    drag(&mut harness, second, vec2(5.0, 4.0));
+    harness.run_steps(2);
+    let moved = points(&harness);
+    let by = |index: usize| moved[index].value - before[index].value;
+    assert!(by(1) > 0.0 && (by(1) - by(2)).abs() < 1e-9, "{} and {}", by(1), by(2));
+    assert_eq!((moved[0], moved[3]), (before[0], before[3]));
+
+    // Looking at the colour changes nothing; a step to the right changes that of both.
+    let colors = |harness: &Harness<'_, App>| points(harness).iter().map(|p| p.color).collect::<Vec<_>>();
+    let plain = colors(&harness);
+    click(&mut harness, "As seen");
+    harness.run_steps(3);
+    assert_eq!(colors(&harness), plain);
+    harness.get_by_role_and_label(Role::Slider, "Hue").focus();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run_steps(3);
+    let turned = colors(&harness);
+    assert!(turned[1] == turned[2] && turned[1] != plain[1], "{turned:?}");
+    assert_eq!((turned[0], turned[3]), (plain[0], plain[3]));
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+
+    // The way to the next point, for both; and one more with Shift.
+    click(&mut harness, "Straight");
+    click(&mut harness, "Smooth");
+    let eased = points(&harness).iter().map(|point| point.easing).collect::<Vec<_>>();
+    assert_eq!(eased[..4], [Easing::Linear, Easing::Smooth, Easing::Smooth, Easing::Linear]);
+    let first = place(&harness, 1);
+    harness.hover_at(first);
+    for pressed in [true, false] {
+        harness.event_modifiers(
+            Event::PointerButton {
+                pos: first,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::SHIFT,
+            },
+            Modifiers::SHIFT,
+        );
+    }
+    harness.run_steps(2);
+    assert!(harness.query_by_label("3 points").is_some());
+    harness.key_press(egui::Key::Delete);
+    harness.run_steps(2);
+    assert_eq!(points(&harness).len(), before.len() - 3);
+    // All of them with Ctrl+A over the plot; Escape leaves them.
+    harness.hover_at(plot.center());
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
+    harness.run_steps(2);
+    assert!(harness.query_by_label(&format!("{} points", before.len() - 3)).is_some());
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Level").is_some());
+    click(&mut harness, "Shape");
+    click(&mut harness, "Box");
+    assert_eq!(points(&harness).len(), before.len());
+    // A selection does not outlive the points that it meant.
+    harness.hover_at(plot.center());
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
+    harness.run_steps(2);
+    click(&mut harness, "Colours");
+    click(&mut harness, "Viridis");
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Level").is_some(), "nothing is selected");
+    wait_until_idle(&mut harness);
+}

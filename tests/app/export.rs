@@ -1,0 +1,98 @@
+//! Pictures and animations that the window writes.
+
+use std::path::PathBuf;
+
+use chiaroscuro::export::{export_png, read_picture};
+use chiaroscuro::gpu::RenderOptions;
+use chiaroscuro::model::{Depth, Shot};
+use eframe::egui::{self, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{beside, click, render, render_with, wait_until, window};
+
+#[test]
+fn exports_are_what_the_renderer_makes() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let (exported, expected): (PathBuf, PathBuf) =
+        (folder.path().join("window.png"), folder.path().join("own.png"));
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&exported, [200, 150], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    export_png([200, 150], &render(&harness, [200, 150]).shown, false, None, &expected).unwrap();
+    let pixels = |path: &PathBuf| image::open(path).expect("a picture").to_rgba8().into_raw();
+    assert!(pixels(&exported) == pixels(&expected));
+
+    // The open export window, with its box ticked.
+    click(&mut harness, "Transparent background");
+    click(&mut harness, "Export");
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let options = RenderOptions { transparent: true, ..RenderOptions::default() };
+    export_png([200, 150], &render_with(&harness, [200, 150], &options).shown, true, None, &expected)
+        .unwrap();
+    assert!(pixels(&exported) == pixels(&expected));
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn fine_pictures_come_from_the_window() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fine.png");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&path, [60, 45], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    for (depth, ending, label) in [(Depth::Sixteen, "png", "PNG, 16 bit"), (Depth::Linear, "exr", "EXR")] {
+        click(&mut harness, label);
+        click(&mut harness, "4 samples per pixel");
+        click(&mut harness, "Export");
+        wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+        let app = harness.state();
+        let (dataset, mut renderer) = beside();
+        let shot = Shot { samples: 2, depth, ..Shot::new([60, 45]) };
+        let expected = renderer.bands(&dataset, app.settings(), &shot).all().unwrap();
+        let found = read_picture(&path.with_extension(ending)).unwrap();
+        assert!(found == ([60, 45], expected.as_written(&shot)), "{label}");
+    }
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn turntables_and_copies_come_from_the_window() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turn.png");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&path, [24, 18], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    click(&mut harness, "Turntable");
+    click(&mut harness, "Export");
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap()));
+    let frames = image::AnimationDecoder::into_frames(decoder.unwrap().apng().unwrap());
+    assert_eq!(frames.count(), 72);
+    // The kind of file and its name follow each other.
+    click(&mut harness, "GIF");
+    click(&mut harness, "Export");
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let gif = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(
+        std::fs::read(path.with_extension("gif")).unwrap(),
+    ));
+    assert_eq!(image::AnimationDecoder::into_frames(gif.unwrap()).count(), 72);
+    click(&mut harness, "One file per picture");
+    // So large that nobody waits for all of them.
+    click(&mut harness, "1920 × 1080");
+    click(&mut harness, "Export");
+    harness.run_steps(3);
+    click(&mut harness, "Cancel");
+    wait_until(&mut harness, "never cancelled", |app| !app.is_exporting());
+    let made = std::fs::read_dir(path.with_extension("")).unwrap().count();
+    assert!(made < 72, "{made} were made after all");
+
+    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), egui::Key::C);
+    harness.run_steps(2);
+    wait_until(&mut harness, "never copied", |app| !app.is_exporting());
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("on the clipboard").is_some());
+    assert!(harness.state().errors().is_empty());
+}

@@ -1,0 +1,158 @@
+//! A window without a display: ways to make it, to wait for it, to press and drag in it, and to see its picture.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use chiaroscuro::app::{App, Options, wgpu_setup};
+use chiaroscuro::data::Dataset;
+use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
+use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
+use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+/// A minute: software adapters on shared cores are slow.
+pub(crate) const PATIENCE: Duration = Duration::from_mins(1);
+
+pub(crate) const SCENE: &str = "builtin:chair:32";
+
+/// The window of the tests. It is taller than wide panels need, so that nothing is scrolled away.
+pub(crate) fn window() -> Harness<'static, App> {
+    let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
+    window_with(options, Vec2::new(760.0, 1100.0))
+}
+
+/// A window of some size, in points.
+pub(crate) fn window_with(options: Options, size: Vec2) -> Harness<'static, App> {
+    let mut setup = wgpu_setup();
+    // As the tests of the renderer: the first adapter that there is, software included.
+    setup.power_preference = wgpu::PowerPreference::None;
+    let mut harness = Harness::builder()
+        .with_size(size)
+        .with_step_dt(0.1)
+        .wgpu_setup(setup.into())
+        .build_eframe(|cc| App::new(cc, options).expect("a window"));
+    wait_until_idle(&mut harness);
+    harness
+}
+
+/// A window without marks over the picture, whose bytes can be compared.
+pub(crate) fn bare_window() -> Harness<'static, App> {
+    let mut harness = window();
+    harness.key_press(egui::Key::G);
+    harness.run_steps(3);
+    harness
+}
+
+/// Lets frames pass until a condition holds.
+pub(crate) fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: impl Fn(&App) -> bool) {
+    let start = Instant::now();
+    loop {
+        harness.step();
+        if condition(harness.state()) {
+            return;
+        }
+        assert!(start.elapsed() < PATIENCE, "{what}: errors {:?}", harness.state().errors());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+pub(crate) fn wait_until_idle(harness: &mut Harness<'_, App>) {
+    wait_until(harness, "never idle", App::is_idle);
+}
+
+/// Presses, moves in steps and releases, with the window running.
+pub(crate) fn drag(harness: &mut Harness<'_, App>, from: Pos2, by: Vec2) {
+    drag_with(harness, PointerButton::Primary, from, by);
+}
+
+pub(crate) fn drag_with(harness: &mut Harness<'_, App>, button: PointerButton, from: Pos2, by: Vec2) {
+    let button = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
+    harness.hover_at(from);
+    harness.step();
+    harness.event(button(from, true));
+    harness.step();
+    for i in 1..=4 {
+        harness.hover_at(from + by * (i as f32 / 4.0));
+        harness.step();
+    }
+    harness.event(button(from + by, false));
+    harness.step();
+}
+
+/// Turns the wheel by so many points, upwards if positive, where the pointer is.
+pub(crate) fn turn_wheel(harness: &Harness<'_, App>, points: f32) {
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        source: egui::MouseWheelSource::Wheel,
+        delta: Vec2::new(0.0, points),
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    });
+}
+
+/// Presses and releases the pointer where it is, so many times.
+pub(crate) fn press(harness: &mut Harness<'_, App>, at: Pos2, times: usize) {
+    harness.hover_at(at);
+    harness.step();
+    for pressed in [true, false].repeat(times) {
+        let button = PointerButton::Primary;
+        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+        harness.step();
+    }
+}
+
+/// The bytes of the picture in the window, and its size.
+pub(crate) fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
+    // Handles fade out when the pointer is gone.
+    harness.remove_cursor();
+    harness.run_steps(12);
+    wait_until_idle(harness);
+    let (rect, size) = harness.state().viewport_rect().expect("a picture");
+    let image = harness.render().expect("a picture of the window");
+    let (x, y) = (rect.min.x.round() as u32, rect.min.y.round() as u32);
+    let mut bytes = Vec::new();
+    for row in 0..size[1] {
+        for column in 0..size[0] {
+            bytes.extend(image.get_pixel(x + column, y + row).0);
+        }
+    }
+    (bytes, size)
+}
+
+/// What the renderer makes of the window's settings, on a device of its own.
+pub(crate) fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> Picture {
+    render_with(harness, size, &RenderOptions::default())
+}
+
+pub(crate) fn render_with(harness: &Harness<'_, App>, size: [u32; 2], options: &RenderOptions) -> Picture {
+    let (dataset, mut renderer) = beside();
+    let settings = harness.state().settings();
+    renderer.render(&dataset, settings, size, options).expect("a picture")
+}
+
+/// The window's volume, and a renderer on a device of its own.
+pub(crate) fn beside() -> (Dataset, Renderer) {
+    let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
+    let context = Context::headless().expect("an adapter");
+    (Dataset::new(volume), Renderer::new(&context).expect("a renderer"))
+}
+
+pub(crate) fn click(harness: &mut Harness<'_, App>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(3);
+}
+
+/// A file that the mouse has brought.
+#[derive(Debug)]
+pub(crate) struct Dropped(pub(crate) PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|err| err.to_string())
+    }
+}

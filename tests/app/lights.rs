@@ -1,0 +1,112 @@
+//! Lights and presets that are set by the keyboard, found by name and tried on the volume.
+
+use std::time::{Duration, Instant};
+
+use chiaroscuro::app::App;
+use eframe::egui::{self, Event, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{PATIENCE, click, wait_until_idle, window};
+
+#[test]
+fn lights_are_set_by_the_keyboard() {
+    let mut harness = window();
+    let lights = |harness: &Harness<'_, App>| harness.state().settings().lights.clone();
+    let before = lights(&harness);
+    let press = |harness: &mut Harness<'_, App>, key| {
+        harness.key_press(key);
+        harness.run_steps(2);
+    };
+    press(&mut harness, egui::Key::ArrowRight);
+    let turned = lights(&harness);
+    let angle = glam::DVec3::from(before[0].position).angle_between(turned[0].position.into()).to_degrees();
+    assert!(angle > 0.1 && angle < 1.001, "one degree about the axis, {angle} between directions");
+    assert_eq!(turned[1], before[1]);
+    harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::ArrowUp);
+    harness.run_steps(2);
+    let far = lights(&harness);
+    let angle = glam::DVec3::from(turned[0].position).angle_between(far[0].position.into()).to_degrees();
+    assert!(angle > 2.0, "ten degrees about the axis, {angle} between directions");
+
+    press(&mut harness, egui::Key::Period);
+    press(&mut harness, egui::Key::CloseBracket);
+    assert!(lights(&harness)[1].intensity > before[1].intensity, "the fill is selected and brighter");
+    press(&mut harness, egui::Key::S);
+    assert_eq!(lights(&harness).iter().map(|light| light.on).collect::<Vec<_>>(), [false, true]);
+    press(&mut harness, egui::Key::M);
+    assert!(!lights(&harness)[1].on);
+
+    // The chip selects, as its handle would.
+    click(&mut harness, "Light Key, off");
+    press(&mut harness, egui::Key::M);
+    assert!(lights(&harness)[0].on);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn lights_are_tried_on_the_volume() {
+    let mut harness = window();
+    let before = harness.state().settings().lights.clone();
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+    harness.run_steps(3);
+    harness.event(Event::Text("try lights".to_owned()));
+    harness.run_steps(3);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    let begin = Instant::now();
+    while harness.query_by_label("From above").is_none() {
+        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(harness.query_all_by_label_contains("o'clock").count() % 6, 0);
+    click(&mut harness, "Use From above");
+    let lights = harness.state().settings().lights.clone();
+    assert_ne!(lights, before);
+    assert_eq!(lights[0].name, "Sun");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn presets_are_tried_on_the_volume() {
+    let mut harness = window();
+    let before = harness.state().settings().clone();
+    click(&mut harness, "Presets");
+    click(&mut harness, "Try presets…");
+    let begin = Instant::now();
+    while harness.query_by_label("Simulation: Cloud").is_none() {
+        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // The window grows around them.
+    harness.run_steps(5);
+    assert!(harness.query_all_by_label_contains("CT: ").count() >= 4);
+    assert_eq!(harness.state().settings(), &before, "trying changes nothing");
+    click(&mut harness, "Use Paper: Lobster");
+    assert_ne!(harness.state().settings().transfer, before.transfer);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings(), &before);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn commands_are_found_by_name() {
+    let mut harness = window();
+    let lights = harness.state().settings().lights.len();
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+    harness.run_steps(3);
+    harness.event(Event::Text("key fill back".to_owned()));
+    harness.run_steps(3);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings().lights.len(), lights + 1, "three lights instead of two");
+    assert!(harness.query_by_label("Find a command").is_none(), "it has closed");
+    wait_until_idle(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings().lights.len(), lights);
+    wait_until_idle(&mut harness);
+}

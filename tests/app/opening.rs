@@ -1,0 +1,180 @@
+//! Files that are opened, dropped, asked about and remembered.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use chiaroscuro::app::{App, Options};
+use eframe::egui::{self, Event, Modifiers, Role, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{
+    Dropped, PATIENCE, SCENE, bare_window, click, drag, wait_until, wait_until_idle, window, window_with,
+};
+
+#[test]
+fn a_dropped_file_opens() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ramp_8x9x10_uint8.raw");
+    std::fs::write(&path, (0..720).map(|i| (i / 3) as u8).collect::<Vec<_>>()).unwrap();
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("ramp"));
+    wait_until_idle(&mut harness);
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn a_dropped_picture_brings_its_look_back() {
+    let mut harness = bare_window();
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) = (folder.path().join("first.png"), folder.path().join("second.png"));
+    let ctx = harness.ctx.clone();
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    harness.state_mut().export(&first, [120, 90], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    let before = harness.state().settings().clone();
+
+    // Another look at another volume.
+    harness.state_mut().open("builtin:sphere:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere"));
+    wait_until_idle(&mut harness);
+    assert_ne!(harness.state().settings(), &before);
+
+    // What is opened last counts: no look is laid over another volume.
+    harness.state_mut().open(&first.display().to_string(), &ctx);
+    harness.state_mut().open("builtin:box:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box"));
+    assert_ne!(harness.state().settings().lights, before.lights);
+
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(first.clone())));
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair"));
+    wait_until_idle(&mut harness);
+    assert_eq!(harness.state().settings(), &before);
+    harness.state_mut().export(&second, [120, 90], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    assert!(std::fs::read(&first).unwrap() == std::fs::read(&second).unwrap(), "all bytes, record included");
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn bare_voxels_are_asked_about() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.raw");
+    std::fs::write(&path, (0..720 + 16).map(|i| (i / 3) as u8).collect::<Vec<_>>()).unwrap();
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
+    let start = Instant::now();
+    while harness.query_by_label("How is it stored?").is_none() {
+        harness.step();
+        assert!(start.elapsed() < PATIENCE, "never asked: {:?}", harness.state().errors());
+    }
+    harness.run_steps(2);
+    assert_eq!(harness.state().volume_name(), Some("chair"), "what is open stays");
+    assert!(harness.unnamed_widgets().is_empty(), "{:?}", harness.unnamed_widgets());
+    assert!(harness.query_by_label_contains("are missing").is_some());
+    for (axis, n) in [("x", 8.0), ("y", 9.0), ("z", 10.0)] {
+        let name = format!("Voxels along {axis}");
+        harness.get_by_role_and_label(Role::SpinButton, &name).set_value_accesskit(n);
+        harness.run_steps(2);
+    }
+    assert!(harness.query_by_label_contains("16 bytes longer").is_some());
+    click(&mut harness, "They are a header");
+    assert!(harness.query_by_label_contains("736 bytes").is_some());
+    click(&mut harness, "Open");
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("scan"));
+    wait_until_idle(&mut harness);
+    assert!(harness.state().errors().is_empty());
+    let header = std::fs::read_to_string(folder.path().join("scan.nhdr")).expect("remembered");
+    assert!(header.contains("sizes: 8 9 10") && header.contains("byte skip: 16"), "{header}");
+}
+
+#[test]
+fn a_missing_file_leaves_the_volume_alone() {
+    let mut harness = window();
+    let before = harness.state().settings().clone();
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("/no/such/volume.nrrd", &ctx);
+    wait_until(&mut harness, "no error", |app| !app.errors().is_empty());
+    assert!(harness.query_by_label_contains("there is no such file").is_some());
+    assert_eq!(harness.state().volume_name(), Some("chair"));
+    assert_eq!(harness.state().settings(), &before);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn the_next_file_can_have_the_look_of_this_one() {
+    let mut harness = window();
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    let lights = harness.state().settings().lights.clone();
+    let open_sphere = |harness: &mut Harness<'_, App>, n: usize| {
+        let ctx = harness.ctx.clone();
+        harness.state_mut().open(&format!("builtin:sphere:{n}"), &ctx);
+        let other = move |app: &App| app.volume_name() == Some("sphere") && app.is_idle();
+        wait_until(harness, "never opened", other);
+    };
+    open_sphere(&mut harness, 16);
+    assert_ne!(harness.state().settings().lights, lights, "a first look of its own");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+    harness.run_steps(3);
+    harness.event(Event::Text("keep this look".to_owned()));
+    harness.run_steps(3);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    let lights = harness.state().settings().lights.clone();
+    let height = harness.state().settings().floor.height;
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("builtin:box:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box") && app.is_idle());
+    assert_eq!(harness.state().settings().lights, lights);
+    assert_ne!(harness.state().settings().floor.height, height, "the floor lies under the other object");
+}
+
+#[test]
+fn the_first_run_has_hints_and_the_next_remembers() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = |source: Option<&str>| {
+        let options = Options {
+            source: source.map(str::to_owned),
+            storage: Some(folder.path().to_owned()),
+            ..Options::default()
+        };
+        window_with(options, Vec2::new(760.0, 900.0))
+    };
+    let mut harness = start(Some(SCENE));
+    assert!(harness.query_by_label("Close the hints").is_some());
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    drag(&mut harness, rect.left_center() + vec2(30.0, 60.0), vec2(30.0, 0.0));
+    harness.run_steps(20);
+    assert!(harness.query_by_label("Close the hints").is_none(), "gone with the first drag");
+    wait_until_idle(&mut harness);
+    // The look is kept some seconds after it was kept last.
+    let kept = folder.path().join("now.json");
+    let begin = Instant::now();
+    let wanted = harness.state().settings().clone();
+    while !std::fs::read_to_string(&kept).is_ok_and(|text| {
+        let read = chiaroscuro::model::Record::read(&text).expect("a record");
+        read.apply(&wanted, (0.0, 1.0)).expect("settings").0 == wanted
+            && text.contains("builtin:chair")
+            && read.apply(&chiaroscuro::model::Settings::default(), (0.0, 1.0)).expect("settings").0 == wanted
+    }) {
+        assert!(begin.elapsed() < PATIENCE, "the look was not kept");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    drop(harness);
+
+    let mut harness = start(Some("builtin:sphere:16"));
+    assert!(harness.query_by_label("Close the hints").is_none());
+    click(&mut harness, "File");
+    harness.get_by_label_contains("Go on where").click();
+    harness.run_steps(3);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair") && app.is_idle());
+    assert_eq!(harness.state().settings(), &wanted);
+}

@@ -1,0 +1,81 @@
+//! Controls in the panels, and what they change in the picture.
+
+use chiaroscuro::app::{App, Options};
+use chiaroscuro::model::{LightKind, Projection};
+use eframe::egui::{self, Modifiers, Role, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{SCENE, bare_window, click, picture, render, wait_until, wait_until_idle, window_with};
+
+#[test]
+fn panels_change_settings() {
+    let mut harness = bare_window();
+    click(&mut harness, "Perspective");
+    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Perspective);
+    click(&mut harness, "Parallel");
+    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Parallel);
+    click(&mut harness, "Camera");
+    // The section slides open.
+    harness.run_steps(8);
+    click(&mut harness, "Orthographic");
+    assert_eq!(harness.state().settings().camera.projection, Projection::Orthographic);
+
+    click(&mut harness, "Light opacity follows the eye's");
+    let settings = harness.state().settings();
+    assert!(!settings.lighting.linked);
+    assert_eq!(settings.lighting.curve, settings.transfer, "a fresh curve starts as the eye's");
+
+    harness.get_by_role_and_label(Role::Slider, "Strength").set_value_accesskit(0.5);
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().shadows.strength, 0.5);
+    wait_until_idle(&mut harness);
+    let (shown, size) = picture(&mut harness);
+    assert!(shown == render(&harness, size).shown);
+}
+
+#[test]
+fn a_floor_takes_shadows() {
+    let mut harness = bare_window();
+    let (bare, _) = picture(&mut harness);
+    let fills = harness.state().light_rebuilds();
+    harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::G);
+    harness.run_steps(2);
+    wait_until_idle(&mut harness);
+    harness.run_steps(20);
+    assert!(harness.state().settings().floor.on);
+    let (floor, size) = picture(&mut harness);
+    assert!(floor != bare);
+    assert!(floor == render(&harness, size).shown);
+    assert_eq!(harness.state().light_rebuilds(), fills, "the floor needs no light volume");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    wait_until_idle(&mut harness);
+    harness.run_steps(20);
+    assert!(picture(&mut harness).0 == bare);
+}
+
+#[test]
+fn voxels_are_averaged_and_the_look_stays() {
+    // So tall that the whole section can be seen.
+    let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
+    let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
+    harness.key_press(egui::Key::CloseBracket);
+    click(&mut harness, "Data");
+    let before = harness.state().settings().clone();
+    let choose = |harness: &mut Harness<'_, App>, block: &str, voxels: &'static str| {
+        click(harness, block);
+        wait_until(harness, "never read again", App::is_idle);
+        harness.run_steps(3);
+        assert_eq!(harness.query_all_by_label_contains(voxels).count(), 1, "the title says {voxels}");
+        assert_eq!(harness.state().errors(), [""; 0]);
+    };
+    choose(&mut harness, "2 × 2 × 2", "16×16×16");
+    let after = harness.state().settings().clone();
+    assert_eq!((&after.camera, &after.transfer), (&before.camera, &before.transfer));
+    assert_eq!(after.lights, before.lights);
+    // The chair has a unit in millimetres already.
+    assert_eq!(after.opacity_unit, before.opacity_unit);
+    harness.get_by_label("Averaged from");
+    choose(&mut harness, "None", "32×32×32");
+    assert!(harness.query_by_label("Averaged from").is_none());
+}

@@ -1,0 +1,17 @@
+//! The command line as scripts see it: exit codes, messages, and what is written and what is not.
+//!
+//! Exit codes: 0 ok, 1 a check that does not hold, 2 usage, 3 bad input, 4 no usable graphics adapter, 5 out of memory or over a
+//! limit, 6 input or output.
+
+mod animation;
+mod bench;
+mod checks;
+mod info;
+mod inputs;
+mod light_volume;
+mod program;
+mod render;
+mod replay;
+mod results;
+mod usage;
+mod volumes;

@@ -1,0 +1,146 @@
+//! The program in a folder of its own: what it is given, what it says and what it leaves behind.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+/// Longest that any command may take here; most take well under a second.
+pub(crate) const PATIENCE: Duration = Duration::from_mins(2);
+
+/// Longest that a refusal may take, whatever sizes a file claims.
+pub(crate) const PROMPT: Duration = Duration::from_secs(5);
+
+/// A folder of its own for each test.
+pub(crate) struct Folder(tempfile::TempDir);
+
+/// What a command did.
+#[derive(Debug)]
+pub(crate) struct Outcome {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+    pub(crate) took: Duration,
+}
+
+impl Outcome {
+    /// What the program says went wrong: from the last line that begins with `error: `. Drivers and
+    /// the log may have written before it.
+    pub(crate) fn message(&self) -> Option<&str> {
+        let start = self.stderr.rfind("\nerror: ").map(|end_of_line| end_of_line + 1);
+        start.or_else(|| self.stderr.starts_with("error: ").then_some(0)).map(|at| &self.stderr[at..])
+    }
+}
+
+impl Folder {
+    pub(crate) fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder for temporary files"))
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
+        fs::write(self.path(name), contents).expect("the folder can be written to");
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|err| panic!("{name} should be there: {err}"))
+    }
+
+    pub(crate) fn json(&self, name: &str) -> Value {
+        serde_json::from_slice(&self.read(name)).expect("valid JSON")
+    }
+
+    pub(crate) fn names(&self) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(self.0.path())
+            .expect("the folder can be listed")
+            .map(|entry| entry.expect("it can be listed").file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// Runs the program in this folder.
+    pub(crate) fn run(&self, args: &str) -> Outcome {
+        self.run_with(args, &[])
+    }
+
+    pub(crate) fn run_with(&self, args: &str, environment: &[(&str, &str)]) -> Outcome {
+        // Files instead of pipes: a pipe that nobody empties would block the program.
+        let file = || tempfile::NamedTempFile::new().expect("a temporary file");
+        let (stdout, stderr) = (file(), file());
+        let handle = |file: &tempfile::NamedTempFile| file.reopen().expect("a second handle");
+        let start = Instant::now();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
+            .args(args.split_whitespace())
+            .current_dir(self.0.path())
+            .env_remove("RUST_LOG")
+            .envs(environment.iter().copied())
+            .stdin(Stdio::null())
+            .stdout(handle(&stdout))
+            .stderr(handle(&stderr))
+            .spawn()
+            .expect("the program can be started");
+        let status = loop {
+            if let Some(status) = child.try_wait().expect("the program can be waited for") {
+                break status;
+            }
+            if start.elapsed() > PATIENCE {
+                child.kill().expect("the program can be ended");
+                panic!("`{args}` takes longer than {PATIENCE:?}");
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        };
+        let text = |file: &tempfile::NamedTempFile| {
+            fs::read_to_string(file.path()).expect("the output can be read and is UTF-8")
+        };
+        Outcome { code: status.code(), took: start.elapsed(), stdout: text(&stdout), stderr: text(&stderr) }
+    }
+
+    /// Runs a command that must work; gives its standard output.
+    pub(crate) fn succeed(&self, args: &str) -> String {
+        let outcome = self.run(args);
+        assert_eq!(outcome.code, Some(0), "`{args}`: {outcome:?}");
+        outcome.stdout
+    }
+
+    /// Runs a command that must fail with this code and leave the folder as it was; gives what it
+    /// says.
+    pub(crate) fn fail(&self, args: &str, code: i32) -> String {
+        self.fail_with(args, code, &[])
+    }
+
+    pub(crate) fn fail_with(&self, args: &str, code: i32, environment: &[(&str, &str)]) -> String {
+        let before = self.names();
+        let outcome = self.run_with(args, environment);
+        assert_eq!(outcome.code, Some(code), "`{args}`: {outcome:?}");
+        assert_eq!(self.names(), before, "`{args}` failed and left something behind");
+        assert_eq!(outcome.stdout, "", "`{args}` failed: results belong to standard output only");
+        assert!(!outcome.stderr.contains("panicked"), "`{args}`: {outcome:?}");
+        outcome.message().unwrap_or_else(|| panic!("`{args}` should say `error: …`: {outcome:?}")).to_owned()
+    }
+
+    /// A volume that no command accepts: `info` and `render` fail with one of these codes, soon, and
+    /// name the file.
+    pub(crate) fn refuse(&self, file: &str, codes: &[i32]) -> String {
+        let before = self.names();
+        let mut said = String::new();
+        for args in [format!("info {file}"), format!("render {file} -o out.png --size 16x16")] {
+            let outcome = self.run(&args);
+            let code = outcome.code.unwrap_or(-1);
+            assert!(codes.contains(&code), "`{args}` should end with {codes:?}: {outcome:?}");
+            assert!(outcome.stderr.starts_with("error: "), "`{args}`: {outcome:?}");
+            let name = file.split_whitespace().next().unwrap_or_default();
+            let name = name.rsplit('/').next().unwrap_or(name);
+            assert!(outcome.stderr.contains(name), "`{args}` should name the file: {outcome:?}");
+            assert!(outcome.took < PROMPT, "`{args}` took {:?}", outcome.took);
+            assert_eq!(self.names(), before, "`{args}` failed and left something behind");
+            said = outcome.stderr;
+        }
+        said
+    }
+}

@@ -1,0 +1,188 @@
+//! Pictures of volumes, their reports, and the settings that they are made with.
+
+use serde_json::Value;
+
+use crate::checks::{assert_has_keys, assert_shows_something, keys, pixels};
+use crate::program::Folder;
+use crate::volumes::{gzipped, small_ball};
+
+#[test]
+fn a_picture_and_its_report_are_written() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:sphere:24 -o out.png --size 64x48 --report r.json");
+    assert_eq!(folder.names(), ["out.png", "r.json"], "and nothing else");
+    assert_shows_something(&folder.path("out.png"), [64, 48]);
+
+    let report = folder.json("r.json");
+    assert_has_keys(
+        &report,
+        &[
+            "adapter",
+            "image_size",
+            "volume_dims",
+            "stages_ms",
+            "light_rebuilds",
+            "slabs",
+            "peak_gpu_bytes",
+            "settings_hash",
+            "settings",
+        ],
+    );
+    assert_eq!(
+        keys(&report["stages_ms"]),
+        ["bricks", "eye", "light_backproject", "light_march", "light_raycast", "readback", "upload"]
+    );
+    for (stage, took) in report["stages_ms"].as_object().expect("an object") {
+        assert!(took.as_f64().is_some_and(|ms| (0.0..60_000.0).contains(&ms)), "{stage}: {took}");
+    }
+    assert!(report["adapter"].as_str().is_some_and(|name| !name.is_empty()));
+    assert_eq!(report["image_size"], serde_json::json!([64, 48]));
+    assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
+    // The key light casts shadows, so its volume was made for the picture; the fill light casts none.
+    assert_eq!(report["light_rebuilds"][0], 1, "{}", report["light_rebuilds"]);
+    assert!(report["slabs"].as_u64().is_some_and(|slabs| slabs >= 24), "{}", report["slabs"]);
+    assert!(report["peak_gpu_bytes"].as_u64().is_some_and(|bytes| bytes > 2 * 24 * 24 * 24));
+    assert_eq!(report["settings_hash"].as_str().map(str::len), Some(16));
+}
+
+#[test]
+fn blocks_of_voxels_are_averaged_when_that_is_asked_for() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:sphere:48 --reduce 2 -o out.png --size 64x48 --report r.json");
+    assert_shows_something(&folder.path("out.png"), [64, 48]);
+    let report = folder.json("r.json");
+    assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
+    assert_eq!(report["volume_file_dims"], serde_json::json!([48, 48, 48]));
+    let replayed = folder.run("replay out.png --check");
+    assert_eq!(replayed.code, Some(3), "it is of other voxels: {replayed:?}");
+    folder.succeed("replay out.png --check --reduce 2");
+    folder.fail("render builtin:sphere:48 --reduce 0 -o none.png", 2);
+}
+
+#[test]
+fn volumes_beyond_the_adapter_are_shown_with_fewer_voxels() {
+    let folder = Folder::new();
+    // Longer than any adapter's axes.
+    folder.write("long_20000x3x3_uint8.raw", vec![200; 20000 * 9]);
+    let outcome = folder.run("render long_20000x3x3_uint8.raw -o out.png --size 64x48 --report r.json");
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(outcome.stderr.contains("20000 × 3 × 3 voxels were averaged to"), "{outcome:?}");
+    let report = folder.json("r.json");
+    assert_eq!(report["volume_file_dims"], serde_json::json!([20000, 3, 3]));
+    assert!(report["volume_dims"][0].as_u64().is_some_and(|n| n < 20000), "{}", report["volume_dims"]);
+    assert_eq!(report["volume_dims"][1], 3, "the other axes are short enough");
+    // Nobody mistakes it for the whole.
+    let bench = "bench --volume long_20000x3x3_uint8.raw --only orbit --frames 1 --size 16x16";
+    let said = folder.fail(bench, 2);
+    assert!(said.contains("full resolution"), "{said}");
+}
+
+#[test]
+fn the_same_command_gives_the_same_bytes() {
+    let folder = Folder::new();
+    for name in ["a", "b"] {
+        folder.succeed(&format!("render builtin:cloud:24 -o {name}.png --size 64x48"));
+        folder.succeed(&format!("light-volume builtin:cloud:24 -o {name}.nrrd"));
+    }
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    assert_eq!(folder.read("a.nrrd"), folder.read("b.nrrd"));
+    // An older result is replaced.
+    folder.write("b.png", b"older");
+    folder.succeed("render builtin:cloud:24 -o b.png --size 64x48");
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+}
+
+#[test]
+fn a_transparent_picture_has_nothing_in_its_corner() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:sphere:24 -o clear.png --size 64x48 --transparent");
+    let image = image::open(folder.path("clear.png")).expect("a PNG that can be decoded");
+    assert_eq!(image.color(), image::ColorType::Rgba8);
+    let (_, _, clear) = pixels(&folder.path("clear.png"));
+    assert_eq!(clear[0][3], 0, "the corner");
+    assert!(clear.iter().any(|pixel| pixel[3] > 200), "the object");
+
+    folder.succeed("render builtin:sphere:24 -o solid.png --size 64x48");
+    let image = image::open(folder.path("solid.png")).expect("a PNG that can be decoded");
+    assert_eq!(image.color(), image::ColorType::Rgb8);
+}
+
+#[test]
+fn shadows_change_the_picture() {
+    let folder = Folder::new();
+    let render = "render builtin:sphere:24 --size 64x48 -o";
+    folder.succeed(&format!("{render} with.png"));
+    folder.succeed(&format!("{render} off.png --shadows off"));
+    folder.succeed(&format!("{render} none.png --set shadows.algorithm=off"));
+    folder.succeed(&format!("{render} splat.png --shadows splat"));
+    assert_ne!(folder.read("with.png"), folder.read("off.png"));
+    assert_eq!(folder.read("off.png"), folder.read("none.png"), "two ways to say the same");
+    assert_eq!(folder.read("with.png"), folder.read("splat.png"), "splatting is the default");
+}
+
+#[test]
+fn presets_that_come_with_the_program_are_known_by_name() {
+    let folder = Folder::new();
+    let outcome = folder.run("render builtin:chair:24 -o out.png --size 32x32 --preset bench/creature");
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(!outcome.stderr.contains("warning: preset"), "{outcome:?}");
+}
+
+#[test]
+fn presets_of_the_library_can_be_named() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:chair:16 -o own.png --size 40x30");
+    folder.succeed("render builtin:chair:16 -o paper.png --size 40x30 --preset paper/chair");
+    assert_shows_something(&folder.path("paper.png"), [40, 30]);
+    assert!(folder.read("own.png") != folder.read("paper.png"));
+}
+
+#[test]
+fn unknown_names_in_a_preset_are_warnings() {
+    let folder = Folder::new();
+    folder.write("typo.json", r#"{"shadows": {"strenght": 0.5}, "_remark": "free"}"#);
+    let outcome = folder.run("render builtin:sphere:16 -o out.png --size 16x16 --preset typo.json");
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(outcome.stderr.contains("shadows.strenght"), "{outcome:?}");
+    assert!(!outcome.stderr.contains("_remark"), "{outcome:?}");
+}
+
+#[test]
+fn raw_files_say_their_format_in_the_name_or_in_options() {
+    let folder = Folder::new();
+    folder.write("x_8x8x8_uint8.raw", small_ball());
+    folder.write("x.bin", small_ball());
+    folder.write("padded.bin", [vec![9; 10], small_ball()].concat());
+    folder.write("x_8x8x8_uint8.raw.gz", gzipped(&small_ball()));
+    let render = |file: &str, out: &str| {
+        folder.succeed(&format!("render {file} -o {out} --size 32x24"));
+        assert_shows_something(&folder.path(out), [32, 24]);
+        // The pixels: beside them, a picture says of which file it is.
+        image::open(folder.path(out)).expect("a picture").to_rgba8().into_raw()
+    };
+    let named = render("x_8x8x8_uint8.raw", "named.png");
+    assert!(named == render("x.bin --dims 8x8x8 --type uint8", "options.png"));
+    assert!(named == render("padded.bin --dims 8x8x8 --type uint8 --offset 10", "offset.png"));
+    assert!(named == render("x_8x8x8_uint8.raw.gz", "zipped.png"));
+    assert!(named != render("x_8x8x8_uint8.raw --spacing 1x1x3", "stretched.png"), "spacing counts");
+
+    let facts = |args: &str| -> Value {
+        serde_json::from_str(&folder.succeed(&format!("info --json {args}"))).expect("valid JSON")
+    };
+    folder.write("wide.bin", [1, 0, 0, 2].repeat(4));
+    let little = facts("wide.bin --dims 2x2x2 --type uint16 --endian little");
+    let big = facts("wide.bin --dims 2x2x2 --type uint16 --endian big");
+    assert_eq!(little["range"], serde_json::json!([1.0, 512.0]));
+    assert_eq!(big["range"], serde_json::json!([2.0, 256.0]));
+}
+
+#[test]
+fn looks_stand_side_by_side_with_their_distances() {
+    let folder = Folder::new();
+    let text = folder.succeed("compare builtin:sphere:16 -o row.png --size 40x30 --looks splat,splat,off");
+    let row = image::open(folder.path("row.png")).expect("a picture").to_rgba8();
+    assert_eq!(row.dimensions(), (3 * 40 + 2 * 4, 30));
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[1].starts_with("splat") && lines[1].contains("RMSE   0.00"), "{text}");
+    assert!(lines[2].starts_with("off") && !lines[2].contains("RMSE   0.00"), "{text}");
+}

@@ -1,0 +1,130 @@
+//! Pictures that are made again from what they or their reports say.
+
+use chiaroscuro::export::{ExportError, export_png, read_picture, read_record, write_picture};
+use chiaroscuro::model::{Depth, Shot};
+
+use crate::program::Folder;
+use crate::volumes::small_ball;
+
+#[test]
+fn settings_of_a_report_restore_the_picture() {
+    let folder = Folder::new();
+    folder.succeed(
+        "render builtin:chair:24 -o first.png --size 64x48 --report first.json --set camera.azimuth_deg=77.7 \
+         --set shadows.strength=0.7 --set sampling.kernel={\"gaussian\":{\"sigma\":0.55}}",
+    );
+    // As text: reading a number and writing it again may already change its last digit.
+    let settings = |name: &str| {
+        let text = String::from_utf8(folder.read(name)).expect("JSON is UTF-8");
+        let (_, after) = text.split_once("\"settings\": ").expect("the report has the settings");
+        after.trim_end().strip_suffix('}').expect("they are its last part").trim_end().to_owned()
+    };
+    let first = folder.json("first.json");
+    assert_eq!(first["settings"]["camera"]["azimuth_deg"], 77.7);
+    folder.write("session.json", settings("first.json"));
+    for option in ["--session", "--preset"] {
+        folder.succeed(&format!(
+            "render builtin:chair:24 -o second.png --size 64x48 --report second.json {option} session.json"
+        ));
+        assert!(folder.read("first.png") == folder.read("second.png"), "{option}: another picture");
+        let changed: Vec<_> = std::iter::zip(settings("first.json").lines(), settings("second.json").lines())
+            .filter(|(before, after)| before != after)
+            .map(|(before, after)| format!("{} became {}", before.trim(), after.trim()))
+            .collect();
+        assert!(changed.is_empty(), "{option}: {changed:?}");
+        assert_eq!(first["settings_hash"], folder.json("second.json")["settings_hash"], "{option}");
+    }
+}
+
+#[test]
+fn pictures_can_be_made_again_from_themselves() {
+    let folder = Folder::new();
+    folder.write("x_8x8x8_uint8.raw", small_ball());
+    folder.succeed("render x_8x8x8_uint8.raw -o shot.png --size 48x36 --transparent --set shadows.gain=1.3");
+    assert!(folder.succeed("replay shot.png --check").contains("identical"));
+    folder.succeed("replay shot.png -o again.png");
+    assert!(folder.read("again.png") == folder.read("shot.png"), "all bytes, the record included");
+
+    // Another look is noticed, and only a failure when that was asked for.
+    let text = read_record(&folder.path("shot.png")).expect("a picture").expect("a record");
+    let changed = text.replace("\"gain\": 1.3", "\"gain\": 0.4");
+    assert_ne!(changed, text);
+    let pixels = image::open(folder.path("shot.png")).expect("a picture").to_rgba8().into_raw();
+    export_png([48, 36], &pixels, true, Some(&changed), &folder.path("changed.png")).expect("written");
+    assert!(folder.succeed("replay changed.png").contains("different"));
+    let outcome = folder.run("replay changed.png --check");
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.stderr.contains("RMSE"), "{outcome:?}");
+
+    // Another volume, a moved one, and pictures that carry nothing.
+    folder.write(
+        "y_8x8x8_uint8.raw",
+        vec![7; 512].iter().zip(0..).map(|(a, b): (&u8, i32)| a ^ b as u8).collect::<Vec<_>>(),
+    );
+    let outcome = folder.run("replay shot.png --volume y_8x8x8_uint8.raw");
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    assert!(outcome.stderr.contains("another volume"), "{outcome:?}");
+    std::fs::rename(folder.path("x_8x8x8_uint8.raw"), folder.path("z_8x8x8_uint8.raw")).expect("moved");
+    assert_ne!(folder.run("replay shot.png").code, Some(0));
+    assert!(folder.succeed("replay shot.png --check --volume z_8x8x8_uint8.raw").contains("identical"));
+    export_png([48, 36], &pixels, true, None, &folder.path("plain.png")).expect("written");
+    let outcome = folder.run("replay plain.png");
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    assert!(outcome.stderr.contains("carries no settings"), "{outcome:?}");
+    assert_eq!(folder.run("replay nothing.png").code, Some(6));
+}
+
+#[test]
+fn fine_pictures_can_be_made_again_from_themselves() {
+    let folder = Folder::new();
+    for (name, options) in [
+        ("deep.png", "--bits 16 --samples 2"),
+        ("deep_alpha.png", "--bits 16 --transparent"),
+        ("light.exr", "--samples 3"),
+        ("light_alpha.exr", "--transparent"),
+    ] {
+        folder.succeed(&format!("render builtin:chair:16 -o {name} --size 48x36 {options}"));
+        assert!(folder.succeed(&format!("replay {name} --check")).contains("identical"), "{name}");
+        folder.succeed(&format!("replay {name} -o again_{name}"));
+        let [found, again] = [name.to_owned(), format!("again_{name}")].map(|name| folder.path(&name));
+        assert!(
+            read_picture(&found).expect("a picture") == read_picture(&again).expect("a picture"),
+            "{name}"
+        );
+        assert_eq!(read_record(&found).expect("a record"), read_record(&again).expect("a record"), "{name}");
+    }
+    let deep = image::open(folder.path("deep.png")).expect("a picture");
+    assert_eq!(deep.color(), image::ColorType::Rgb16);
+    let words = deep.to_rgb16().into_raw();
+    assert!(words.iter().filter(|&&word| word % 257 != 0).count() > words.len() / 4, "more than bytes");
+    // Another look is noticed in these, too.
+    let text = read_record(&folder.path("light.exr")).expect("a picture").expect("a record");
+    let (size, rows) = read_picture(&folder.path("light.exr")).expect("a picture");
+    let changed = text.replace("\"gain\": 1.0", "\"gain\": 0.4");
+    assert_ne!(changed, text);
+    let shot = Shot { depth: Depth::Linear, ..Shot::new(size) };
+    let mut rows = Some(rows);
+    let mut next = || Ok::<_, ExportError>(rows.take());
+    write_picture(&folder.path("changed.exr"), &shot, Some(&changed), &mut next).expect("written");
+    assert_eq!(folder.run("replay changed.exr --check").code, Some(1));
+    // A look can be taken from any of them.
+    folder.succeed("render builtin:chair:16 -o from.png --size 48x36 --session light.exr");
+    export_png([1, 1], &[0; 4], false, None, &folder.path("bare.png")).expect("written");
+    let outcome = folder.run("render builtin:chair:16 -o x.png --session bare.png");
+    assert!(outcome.code == Some(3) && outcome.stderr.contains("carries no settings"), "{outcome:?}");
+    let outcome = folder.run("render builtin:chair:16 -o x.gif --size 48x36");
+    assert!(outcome.code == Some(6) && outcome.stderr.contains(".png or .exr"), "{outcome:?}");
+    assert_ne!(folder.run("render builtin:chair:16 -o x.png --samples 5").code, Some(0));
+    assert_ne!(folder.run("render builtin:chair:16 -o x.png --bits 12").code, Some(0));
+}
+
+#[test]
+fn pictures_may_be_larger_than_textures() {
+    let folder = Folder::new();
+    // Wider than adapters draw at once (16384 here and on most).
+    let said = folder.succeed("render builtin:chair:16 -o wide.png --size 20000x3 --set sampling.slab=4");
+    assert!(said.contains("wide.png"));
+    let wide = image::open(folder.path("wide.png")).expect("a picture").to_rgb8();
+    assert_eq!((wide.width(), wide.height()), (20000, 3));
+    assert!(folder.succeed("replay wide.png --check").contains("identical"));
+}

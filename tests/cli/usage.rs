@@ -1,0 +1,82 @@
+//! Arguments that are refused, and the words that help.
+
+use std::fs;
+
+use crate::program::Folder;
+
+#[test]
+fn help_and_version_are_no_errors() {
+    let folder = Folder::new();
+    assert!(folder.succeed("--version").contains(env!("CARGO_PKG_VERSION")));
+    let help = folder.succeed("--help");
+    for command in ["render", "compare", "light-volume", "info", "bench"] {
+        assert!(help.contains(command), "{command} is missing: {help}");
+        assert!(!folder.succeed(&format!("{command} --help")).is_empty());
+    }
+}
+
+#[test]
+fn unknown_words_are_usage_errors() {
+    let folder = Folder::new();
+    for args in [
+        "--no-such-flag",
+        "no-such-command x y",
+        "render builtin:sphere:16",
+        "render builtin:sphere:16 -o out.png --no-such-flag",
+        "render builtin:sphere:16 -o out.png --shadows sometimes",
+        "render builtin:sphere:16 -o out.png --size 0x5",
+        "render builtin:sphere:16 -o out.png --size 64",
+        "render builtin:sphere:16 -o out.png --size 1000000x1000000",
+        "render builtin:sphere:16 -o out.png --dims 1x2",
+        "render builtin:sphere:16 -o out.png --type complex",
+        "bench --only nothing",
+        "bench --frames 0",
+        "info",
+    ] {
+        folder.fail(args, 2);
+    }
+    let said = folder.fail("render builtin:sphere:16 -o out.png --shadows sometimes", 2);
+    assert!(said.contains("splat") && said.contains("off"), "the known words: {said}");
+    let said = folder.fail("render builtin:nothing -o out.png", 3);
+    assert!(said.contains("chair") && said.contains("marschner-lobb"), "the known volumes: {said}");
+}
+
+#[test]
+fn unknown_settings_are_usage_errors_that_list_the_known_ones() {
+    let folder = Folder::new();
+    let render = "render builtin:sphere:16 -o out.png --size 16x16 --set";
+    let said = folder.fail(&format!("{render} shadows.strenght=1"), 2);
+    assert!(said.contains("shadows.strenght"), "what was wrong: {said}");
+    for known in ["strength", "gain", "bias"] {
+        assert!(said.contains(known), "the known names: {said}");
+    }
+    let said = folder.fail(&format!("{render} no_such=1"), 2);
+    assert!(said.contains("shadows") && said.contains("camera"), "the known names: {said}");
+    for assignment in ["shadows.strength", "shadows.strength=much", "lights.99.intensity=1", "=1", ""] {
+        folder.fail(&format!("{render}={assignment}"), 2);
+    }
+}
+
+#[test]
+fn presets_and_sessions_that_cannot_be_used_are_refused() {
+    let folder = Folder::new();
+    folder.write("words.json", "this is no JSON");
+    folder.write("list.json", "[1, 2, 3]");
+    folder.write("form.json", r#"{"shadows": {"strength": "much"}}"#);
+    folder.write("binary.json", [0xff, 0xfe, 0x00, 0x80]);
+    fs::create_dir(folder.path("directory.json")).expect("the folder can be written to");
+    for option in ["--preset", "--session"] {
+        let refused = |file: &str, code: i32| {
+            let args = format!("render builtin:sphere:16 -o out.png --size 16x16 {option} {file}");
+            let said = folder.fail(&args, code);
+            assert!(said.contains(file), "`{args}` should name the file: {said}");
+        };
+        refused("words.json", 3);
+        refused("list.json", 3);
+        refused("form.json", 3);
+        refused("missing.json", 6);
+        refused("directory.json", 6);
+        // Not even text: no preset, and the file can be read.
+        refused("binary.json", 3);
+    }
+}

@@ -1,0 +1,233 @@
+//! No two modules side by side import each other, be it over others: who reads one need not read all.
+//!
+//! A folder's `mod.rs` is no part of this: it is the folder, and its files are parts of it. What a `mod.rs` hands on
+//! is followed to where it is.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::paths::{Path, imports, paths, without_tests};
+use crate::sources::{Source, files};
+use crate::tokens::tokens;
+
+/// Circles that there still are: the folder, and the modules in it. None may grow; one that is gone is to be taken
+/// off.
+const REMAINING: &[(&str, &[&str])] = &[
+    // Panels and windows hand their parts of the screen to each other through the shell's state.
+    ("app", &["panels", "shell", "text", "viewport", "windows", "worker"]),
+    // The thread starts the worker, which reports to it.
+    ("app/worker", &["render_thread", "render_worker"]),
+    // Bricks are made of cells, whose edge is a part of a brick's.
+    ("data", &["bricks", "cells"]),
+    // `builtin:` is resolved where files are loaded, and built-in volumes have the errors of loading.
+    ("data", &["load", "synthetic"]),
+    // Each format is chosen by its ending where pictures are written, and shares its helpers.
+    ("export", &["exr_file", "picture_file", "png_file"]),
+    // `Renderer` has its methods where their passes are, and passes know its frame.
+    ("gpu", &["eye", "frame", "light", "output", "resources", "scatter", "volume"]),
+    // The cache is filled by methods of `Renderer`, which holds it.
+    ("gpu/frame", &["light_cache", "renderer"]),
+    // Settings hold a transfer function, which is stored with them.
+    ("model", &["settings", "stored", "transfer"]),
+];
+
+/// For each module of a folder the others that it names, with a file that does.
+type Named = BTreeMap<String, BTreeMap<String, String>>;
+
+/// What the modules of each folder name.
+type Edges = BTreeMap<String, Named>;
+
+/// The modules of the crate and what their `mod.rs` hand on.
+struct Modules {
+    known: BTreeSet<Path>,
+    handed_on: BTreeMap<Path, Path>,
+}
+
+impl Modules {
+    fn of(files: &[Source]) -> Self {
+        let owned = |module: Vec<&str>| module.into_iter().map(str::to_owned).collect::<Path>();
+        let known: BTreeSet<Path> = files.iter().map(|file| owned(file.module())).collect();
+        let mut handed_on = BTreeMap::new();
+        for file in files.iter().filter(|file| file.path.ends_with("/mod.rs")) {
+            let module = file.module();
+            for (name, path) in imports(&tokens(&file.text), &module) {
+                let place: Path = [owned(module.clone()), vec![name]].concat();
+                if place != path {
+                    handed_on.insert(place, path);
+                }
+            }
+        }
+        Self { known, handed_on }
+    }
+
+    /// The module in which what a path names is.
+    fn module_of(&self, path: &Path) -> Option<Path> {
+        let mut path = path.clone();
+        // As many hops as a name can reasonably be handed on.
+        for _ in 0..8 {
+            let length = (1..=path.len()).rev().find(|&length| self.known.contains(&path[..length]))?;
+            let hop = path.get(..=length).and_then(|name| self.handed_on.get(name));
+            let Some(hop) = hop else { return Some(path[..length].to_vec()) };
+            path = [hop.as_slice(), &path[length + 1..]].concat();
+        }
+        None
+    }
+}
+
+/// Which modules name which, tests apart.
+fn edges(files: &[Source]) -> Edges {
+    let modules = Modules::of(files);
+    let mut found = Edges::new();
+    for file in files.iter().filter(|file| !file.module().contains(&"tests")) {
+        let module = file.module();
+        let tokens = without_tests(&tokens(&file.text));
+        for target in paths(&tokens, &module).iter().filter_map(|path| modules.module_of(path)) {
+            let shared = module.iter().zip(&target).take_while(|(own, other)| *own == other).count();
+            let (Some(own), Some(other)) = (module.get(shared), target.get(shared)) else { continue };
+            let named =
+                found.entry(module[..shared].join("/")).or_default().entry((*own).to_owned()).or_default();
+            named.entry(other.clone()).or_insert_with(|| file.path.clone());
+        }
+    }
+    found
+}
+
+/// All that can be reached from a module, itself only over others.
+fn reached<'a>(named: &'a Named, from: &str) -> BTreeSet<&'a str> {
+    let mut found = BTreeSet::new();
+    let mut open = vec![from];
+    while let Some(next) = open.pop() {
+        for other in named.get(next).into_iter().flat_map(BTreeMap::keys) {
+            if found.insert(other.as_str()) {
+                open.push(other);
+            }
+        }
+    }
+    found
+}
+
+/// The circles: a folder, and modules in it of which each can be reached from each.
+fn circles(edges: &Edges) -> Vec<(String, BTreeSet<String>)> {
+    let mut found = Vec::new();
+    for (folder, named) in edges {
+        let mut seen = BTreeSet::new();
+        for module in named.keys() {
+            let forth = reached(named, module);
+            if forth.contains(module.as_str()) && !seen.contains(module) {
+                let back = |other: &&&str| reached(named, other).contains(module.as_str());
+                let circle: BTreeSet<String> =
+                    forth.iter().filter(back).map(|&name| name.to_owned()).collect();
+                seen.extend(circle.clone());
+                found.push((folder.clone(), circle));
+            }
+        }
+    }
+    found
+}
+
+/// What is wrong with the circles that there are, beside those that may remain.
+fn violations(found: &[(String, BTreeSet<String>)], remaining: &[(&str, &[&str])]) -> Vec<String> {
+    let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect::<BTreeSet<String>>();
+    let is_listed = |(folder, circle): &&(String, BTreeSet<String>)| {
+        !remaining.iter().any(|(known, list)| known == folder && circle.is_subset(&names(list)))
+    };
+    let new = found.iter().filter(is_listed).map(|(folder, circle)| format!("new: in {folder}: {circle:?}"));
+    let is_gone = |(folder, list): &&(&str, &[&str])| {
+        !found.iter().any(|(known, circle)| known == folder && *circle == names(list))
+    };
+    let gone = remaining.iter().filter(is_gone);
+    let gone = gone.map(|(folder, list)| format!("gone, take it off the list: in {folder}: {list:?}"));
+    new.chain(gone).collect()
+}
+
+/// The circles link by link, for whoever opens them.
+fn links(edges: &Edges, circles: &[(String, BTreeSet<String>)]) -> String {
+    let mut lines = Vec::new();
+    for (folder, circle) in circles {
+        for (module, named) in edges[folder].iter().filter(|(module, _)| circle.contains(*module)) {
+            for (other, file) in named.iter().filter(|(other, _)| circle.contains(*other)) {
+                lines.push(format!("{folder}: {module} names {other}, in {file}"));
+            }
+        }
+    }
+    lines.join("\n")
+}
+
+#[test]
+fn no_modules_side_by_side_import_each_other() {
+    let edges = edges(&files("src", "rs"));
+    assert!(edges.values().flatten().count() > 50, "the check must see the modules");
+    let circles = circles(&edges);
+    let found = violations(&circles, REMAINING);
+    assert!(found.is_empty(), "\n{}\nAll circles:\n{}", found.join("\n"), links(&edges, &circles));
+}
+
+/// The circles of these files: folder and modules.
+fn circles_of(list: &[(&str, &str)]) -> Vec<String> {
+    let source = |(path, text): &(&str, &str)| Source { path: (*path).to_owned(), text: (*text).to_owned() };
+    let files: Vec<Source> = list.iter().map(source).collect();
+    let name = |(folder, circle): (String, BTreeSet<String>)| {
+        format!("{folder}: {}", circle.into_iter().collect::<Vec<_>>().join(" "))
+    };
+    circles(&edges(&files)).into_iter().map(name).collect()
+}
+
+#[test]
+fn circles_are_reported() {
+    let gpu = "mod a; mod b; mod c; pub use a::A; pub(crate) use self::{b::{B, make as made}, c::C};";
+    for (a, b, c) in [
+        ("use super::b::B;", "use super::a::A;", ""),
+        ("use crate::gpu::{b, c::C};", "fn f() { crate::gpu::a::g() }", ""),
+        // Over what the folder hands on.
+        ("use super::B;", "use crate::gpu::A;", ""),
+        ("use super::made;", "use super::super::gpu::A;", ""),
+        // Over a third.
+        ("use super::b::B;", "use super::c::C;", "use super::a::A;"),
+        ("use super::*; use super::b::B;", "mod inner { use super::super::a::A; }", ""),
+    ] {
+        let found = circles_of(&[("gpu/mod.rs", gpu), ("gpu/a.rs", a), ("gpu/b.rs", b), ("gpu/c.rs", c)]);
+        let expected = if c.is_empty() { "gpu: a b" } else { "gpu: a b c" };
+        assert_eq!(found, [expected], "{a} {b} {c}");
+    }
+    // Between folders, and over what they hand on.
+    let found = circles_of(&[
+        ("gpu/eye/mod.rs", "pub use gather::Gather;"),
+        ("gpu/eye/gather.rs", "use crate::gpu::light::march::March;"),
+        ("gpu/light/mod.rs", ""),
+        ("gpu/light/march.rs", "use crate::gpu::eye::Gather;"),
+        ("gpu/mod.rs", ""),
+    ]);
+    assert_eq!(found, ["gpu: eye light"]);
+}
+
+#[test]
+fn what_is_no_circle_is_not_reported() {
+    for (a, b) in [
+        ("use super::b::B;", ""),
+        ("use super::b::B;", "use crate::math::A;"),
+        ("use super::b::B;", "#[cfg(test)]\nmod tests { use super::super::a::A; }"),
+        ("use super::b::B;", "#[cfg(all(test, unix))]\nuse super::a::A;"),
+        ("use super::b::B;", "// use super::a::A;"),
+        ("use super::b::B;", "fn f(self) { self.a.g() }"),
+        // What belongs to the folder itself, its parts may use.
+        ("use super::b::B;", "use super::Shared;"),
+        ("use super::Shared;", "use super::Shared;"),
+    ] {
+        let files = [
+            ("gpu/mod.rs", "pub struct Shared; use a::A;"),
+            ("gpu/a.rs", a),
+            ("gpu/b.rs", b),
+            ("math/mod.rs", ""),
+        ];
+        assert_eq!(circles_of(&files), [""; 0], "{a} {b}");
+    }
+}
+
+#[test]
+fn the_list_of_circles_must_be_true() {
+    let found = [("gpu".to_owned(), BTreeSet::from(["a".to_owned(), "b".to_owned()]))];
+    assert_eq!(violations(&found, &[("gpu", &["a", "b"])]), [""; 0]);
+    assert_eq!(violations(&found, &[]).len(), 1, "a new one");
+    assert_eq!(violations(&found, &[("app", &["a", "b"])]).len(), 2, "another folder's");
+    assert_eq!(violations(&found, &[("gpu", &["a", "b", "c"])]).len(), 1, "one that has shrunk");
+    assert_eq!(violations(&[], &[("gpu", &["a", "b"])]).len(), 1, "one that is gone");
+}

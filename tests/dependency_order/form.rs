@@ -1,0 +1,118 @@
+//! Files say what they are and stay short; folders hold no more than can be taken in at a glance; modules with parts
+//! of their own have one form.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::sources::{Source, files, paths};
+
+/// Lines that a file may have: what is longer has two subjects.
+const LONGEST_FILE: usize = 400;
+
+/// Files and folders that a folder may hold side by side.
+const LARGEST_FOLDER: usize = 15;
+
+/// Folders of pictures, which grow with what is pictured.
+const PICTURES: &str = "snapshots";
+
+/// How a file of each language begins that says what it is.
+fn flaws(file: &Source, heading: &str) -> Vec<String> {
+    let Source { path, text } = file;
+    let mut found = Vec::new();
+    if !text.starts_with(heading) {
+        found.push(format!("{path} does not begin with {heading} and what it is"));
+    }
+    let lines = text.lines().count();
+    if lines > LONGEST_FILE {
+        found.push(format!("{path} has {lines} lines, {LONGEST_FILE} are allowed"));
+    }
+    found
+}
+
+/// Folders with more than [`LARGEST_FOLDER`] entries, pictures apart.
+fn crowded(paths: &[String]) -> Vec<String> {
+    let mut folders: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for path in paths {
+        for (at, _) in path.match_indices('/') {
+            let entry = path[at + 1..].split('/').next().unwrap_or_default();
+            folders.entry(&path[..at]).or_default().insert(entry);
+        }
+    }
+    let is_full = |(folder, entries): &(&str, BTreeSet<&str>)| {
+        entries.len() > LARGEST_FOLDER && folder.rsplit('/').next() != Some(PICTURES)
+    };
+    let folders = folders.into_iter().filter(is_full);
+    folders.map(|(folder, entries)| format!("{folder} has {} entries", entries.len())).collect()
+}
+
+/// Files `x.rs` beside a folder `x`, in which the module is `x/mod.rs` here.
+fn beside_their_folder(paths: &[String]) -> Vec<String> {
+    let is_folder = |stem: &str| paths.iter().any(|path| path.starts_with(&format!("{stem}/")));
+    let files = paths.iter().filter(|path| path.strip_suffix(".rs").is_some_and(is_folder));
+    files.map(|path| format!("{path} lies beside its folder, not in it as mod.rs")).collect()
+}
+
+/// Paths below these folders, with the folder's name.
+fn all_paths(folders: &[&str]) -> Vec<String> {
+    let below =
+        |folder: &&str| paths(folder).into_iter().map(|path| format!("{folder}/{path}")).collect::<Vec<_>>();
+    folders.iter().flat_map(below).collect()
+}
+
+#[test]
+fn files_say_what_they_are_and_stay_short() {
+    let mut found = Vec::new();
+    for (folder, ending, heading, least) in
+        [("src", "rs", "//!", 50), ("tests", "rs", "//!", 20), ("shaders", "wgsl", "// ", 20)]
+    {
+        let files = files(folder, ending);
+        assert!(files.len() > least, "the check must see the files of {folder}");
+        found.extend(
+            files.iter().flat_map(|file| flaws(file, heading)).map(|flaw| format!("{folder}/{flaw}")),
+        );
+    }
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+#[test]
+fn folders_are_small_and_modules_have_one_form() {
+    let paths = all_paths(&["src", "shaders", "tests"]);
+    let found = [crowded(&paths), beside_their_folder(&paths)].concat();
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+#[test]
+fn files_without_a_heading_or_too_long_are_reported() {
+    let flaws_of =
+        |text: &str| flaws(&Source { path: "math/a.rs".to_owned(), text: text.to_owned() }, "//!").len();
+    assert_eq!(flaws_of("use glam::DVec3;\n"), 1);
+    let lines = |count: usize| format!("//! A file.\n{}", "\n".repeat(count - 1));
+    assert_eq!(flaws_of(&lines(LONGEST_FILE)), 0);
+    assert_eq!(flaws_of(&lines(LONGEST_FILE + 1)), 1);
+    assert_eq!(flaws_of(&"\n".repeat(LONGEST_FILE + 1)), 2);
+}
+
+#[test]
+fn crowded_folders_are_reported() {
+    let files =
+        |folder: &str, count: usize| (0..count).map(|i| format!("{folder}/{i}.rs")).collect::<Vec<_>>();
+    assert_eq!(crowded(&files("src/gpu", LARGEST_FOLDER)), Vec::<String>::new());
+    assert_eq!(crowded(&files("src/gpu", LARGEST_FOLDER + 1)), ["src/gpu has 16 entries"]);
+    // A folder is one entry, whatever it holds.
+    let nested = [files("src/gpu", LARGEST_FOLDER - 1), files("src/gpu/eye", 5)].concat();
+    assert_eq!(crowded(&nested), Vec::<String>::new());
+    let nested = [files("src/gpu", LARGEST_FOLDER), files("src/gpu/eye", 5)].concat();
+    assert_eq!(crowded(&nested), ["src/gpu has 16 entries"]);
+    assert_eq!(crowded(&files("tests/app/snapshots", 40)), Vec::<String>::new());
+    assert_eq!(crowded(&files("tests/snapshots/app", 40)).len(), 1);
+}
+
+#[test]
+fn modules_beside_their_folder_are_reported() {
+    let paths = |list: &[&str]| list.iter().map(|&path| path.to_owned()).collect::<Vec<_>>();
+    assert_eq!(
+        beside_their_folder(&paths(&["src/a.rs", "src/b/mod.rs", "src/ab/c.rs"])),
+        Vec::<String>::new()
+    );
+    assert_eq!(beside_their_folder(&paths(&["src/a.rs", "src/a/b.rs"])).len(), 1);
+    assert_eq!(beside_their_folder(&paths(&["src/a/b.rs", "src/a/b/mod.rs"])).len(), 1);
+}

@@ -1,0 +1,55 @@
+//! Files of the project, and the modules that they are.
+
+use std::fs;
+use std::path::Path;
+
+/// A source file.
+pub(crate) struct Source {
+    /// Below the folder that was asked for, with `/` between folders.
+    pub(crate) path: String,
+    pub(crate) text: String,
+}
+
+impl Source {
+    /// The module's path below the root: folders and stem, without `mod`.
+    pub(crate) fn module(&self) -> Vec<&str> {
+        let stem = self.path.strip_suffix(".rs").unwrap_or(&self.path);
+        stem.split('/').filter(|part| *part != "mod").collect()
+    }
+
+    /// The module at the root that it belongs to.
+    pub(crate) fn top(&self) -> &str {
+        self.module()[0]
+    }
+}
+
+/// Paths of all files below a folder of the project, in order.
+pub(crate) fn paths(folder: &str) -> Vec<String> {
+    fn walk(folder: &Path, root: &Path, found: &mut Vec<String>) {
+        for entry in fs::read_dir(folder).expect("the folder can be listed") {
+            let path = entry.expect("the folder can be listed").path();
+            if path.is_dir() {
+                walk(&path, root, found);
+            } else {
+                let below = path.strip_prefix(root).expect("it is below");
+                found.push(below.to_string_lossy().replace('\\', "/"));
+            }
+        }
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut found = Vec::new();
+    walk(&root, &root, &mut found);
+    found.sort();
+    found
+}
+
+/// All files below a folder of the project with this ending.
+pub(crate) fn files(folder: &str, ending: &str) -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let text = |path: &str| fs::read_to_string(root.join(path)).expect("sources are text");
+    paths(folder)
+        .into_iter()
+        .filter(|path| Path::new(path).extension().is_some_and(|found| found == ending))
+        .map(|path| Source { text: text(&path), path })
+        .collect()
+}

@@ -1,0 +1,136 @@
+//! What is asked of a volume and of the first look at it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use chiaroscuro::data::load::{LoadControl, LoadError, LoadOptions, RawFormat, load};
+use chiaroscuro::data::synthetic::builtin;
+use chiaroscuro::data::{Histogram, Samples, Volume};
+use chiaroscuro::model::auto;
+
+use crate::manifest::{Facts, manifest};
+
+/// Files of a folder with one of these endings, in order.
+pub(crate) fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+    let mut found: Vec<_> = fs::read_dir(folder)
+        .unwrap_or_else(|err| panic!("{}: {err}", folder.display()))
+        .map(|entry| entry.expect("the folder can be listed").path())
+        .filter(|path| path.extension().is_some_and(|found| endings.iter().any(|ending| found == *ending)))
+        .collect();
+    found.sort();
+    assert!(!found.is_empty(), "{} has no {endings:?}", folder.display());
+    found
+}
+
+pub(crate) fn open(path: &Path, raw: RawFormat) -> Result<Volume, LoadError> {
+    load(path, &LoadOptions { raw, ..LoadOptions::default() }, &LoadControl::new())
+}
+
+/// All that differs between a volume and what is known of its file.
+fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
+    let mut found = Vec::new();
+    if facts.dims.is_some_and(|dims| dims != volume.dims()) {
+        found.push(format!("{:?} voxels, {:?} expected", volume.dims(), facts.dims));
+    }
+    let voxel_type = volume.samples().voxel_type().name();
+    if facts.voxel_type.as_deref().is_some_and(|expected| expected != voxel_type) {
+        found.push(format!("voxels of {voxel_type}, {:?} expected", facts.voxel_type));
+    }
+    // The manifest gives four digits. A slice has no thickness of its own.
+    let spacing_mm = volume.spacing_mm();
+    let axes = if volume.dims()[2] == 1 { 2 } else { 3 };
+    let differs = |expected: [f64; 3]| (0..axes).any(|i| (spacing_mm[i] / expected[i] - 1.0).abs() > 1e-3);
+    if facts.spacing_mm.is_some_and(differs) {
+        found.push(format!("spacing {spacing_mm:?}, {:?} expected", facts.spacing_mm));
+    }
+    let (low, high) = volume.value_range();
+    if low >= high {
+        found.push(format!("values from {low} to {high}"));
+    }
+    if volume.non_finite_voxels() > 0 {
+        found.push(format!("{} voxels are not finite", volume.non_finite_voxels()));
+    }
+    found
+}
+
+/// All that is wrong with the first look at a volume.
+fn first_look_flaws(volume: &Volume) -> Vec<String> {
+    let settings = auto::first_settings(volume, &Histogram::of(volume));
+    let mut found = Vec::new();
+    let values: Vec<f64> = settings.transfer.points.iter().map(|point| point.value).collect();
+    if !values.windows(2).all(|pair| pair[0] < pair[1]) {
+        found.push(format!("control points do not ascend: {values:?}"));
+    }
+    let visible: usize = (0..volume.dims()[2])
+        .map(|z| {
+            let slice = volume.slice_densities(z);
+            let opacity = |density: f32| settings.transfer.opacity_at(volume.value_of(f64::from(density)));
+            slice.into_iter().filter(|&density| opacity(density) > 0.05).count()
+        })
+        .sum();
+    let share = visible as f64 / volume.voxel_count() as f64;
+    println!("{}: {:.1} % of the voxels are visible", volume.name(), share * 100.0);
+    // Less is a picture of nothing; more than two thirds is a block without a shape. (The
+    // Marschner–Lobb signal fills more of its cube than any scan.)
+    if !(0.005..=0.667).contains(&share) {
+        found.push(format!("{:.2} % of the voxels are visible, 0.5 % to 67 % expected", share * 100.0));
+    }
+    if !settings.camera.distance.is_finite() || settings.camera.target.iter().any(|c| !c.is_finite()) {
+        found.push(format!("the camera is nowhere: {:?}", settings.camera));
+    }
+    found
+}
+
+/// Loads files as the manifest describes them; the volumes, or all that is wrong.
+pub(crate) fn load_all(folder: &Path, paths: &[PathBuf]) -> Vec<Volume> {
+    let facts = manifest(folder);
+    let (mut volumes, mut wrong) = (Vec::new(), Vec::new());
+    for path in paths {
+        let name = path.strip_prefix(folder).expect("it is below").to_string_lossy().replace('\\', "/");
+        let Some(facts) = facts.get(&name) else {
+            wrong.push(format!("{name} is not in the manifest"));
+            continue;
+        };
+        // A RAW file cannot say its spacing.
+        let is_raw = path.extension().is_some_and(|ending| ending == "raw");
+        let spacing_mm = if is_raw { facts.spacing_mm } else { None };
+        match open(path, RawFormat { spacing_mm, ..RawFormat::default() }) {
+            Ok(volume) => {
+                wrong.extend(differences(&volume, facts).into_iter().map(|flaw| format!("{name}: {flaw}")));
+                volumes.push(volume);
+            }
+            Err(err) => wrong.push(format!("{name}: {err}")),
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    volumes
+}
+
+pub(crate) fn assert_good_first_looks(volumes: &[Volume]) {
+    let wrong: Vec<_> = volumes
+        .iter()
+        .flat_map(|volume| {
+            let flaws = first_look_flaws(volume);
+            flaws.into_iter().map(|flaw| format!("{} {:?}: {flaw}", volume.name(), volume.dims()))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+pub(crate) fn wrong_facts_and_looks_are_noticed() {
+    let ball = builtin("sphere", Some(16)).expect("it can be made");
+    let right =
+        Facts { dims: Some([16; 3]), voxel_type: Some("uint8".to_owned()), spacing_mm: Some([8.0; 3]) };
+    assert_eq!(differences(&ball, &right), Vec::<String>::new());
+    let wrong = Facts {
+        dims: Some([16, 16, 17]),
+        voxel_type: Some("int8".to_owned()),
+        spacing_mm: Some([8.0, 8.0, 8.1]),
+    };
+    assert_eq!(differences(&ball, &wrong).len(), 3);
+
+    let empty = Volume::with_spacing("empty", [8; 3], glam::DVec3::ONE, Samples::U8(vec![0; 512]))
+        .expect("a volume of one value");
+    assert!(!first_look_flaws(&empty).is_empty(), "all of it looks the same");
+    assert!(!differences(&empty, &Facts::default()).is_empty(), "only one value");
+}

@@ -1,0 +1,127 @@
+//! A harness that decides when it runs which tests are ignored, and gives the reason in their names. It understands
+//! what `cargo test` and `cargo nextest` ask of one.
+//!
+//! A library for this would turn on features of the command line's library in all tests: they would no longer test
+//! the program as it is built otherwise.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+/// A test.
+pub(crate) struct Trial {
+    /// Of what is missing, if anything, and of what is tested.
+    name: String,
+    ignored: bool,
+    check: Box<dyn Fn()>,
+}
+
+impl Trial {
+    /// A test that is ignored if something is missing. Run all the same, it fails.
+    pub(crate) fn new(name: &str, missing: Option<String>, check: impl Fn() + 'static) -> Self {
+        let Some(missing) = missing else {
+            return Self { name: name.to_owned(), ignored: false, check: Box::new(check) };
+        };
+        let name = format!("[{missing}] {name}");
+        Self { name, ignored: true, check: Box::new(move || panic!("not run: {missing}")) }
+    }
+}
+
+/// What is asked for.
+#[derive(Debug, Default)]
+struct Asked {
+    list: bool,
+    exact: bool,
+    /// Those that are ignored, and no others.
+    ignored: bool,
+    include_ignored: bool,
+    filters: Vec<String>,
+    skip: Vec<String>,
+}
+
+impl Asked {
+    fn new(args: impl IntoIterator<Item = String>) -> Self {
+        let mut asked = Self::default();
+        let mut args = args.into_iter();
+        while let Some(arg) = args.next() {
+            match arg.as_str() {
+                "--list" => asked.list = true,
+                "--exact" => asked.exact = true,
+                "--ignored" => asked.ignored = true,
+                "--include-ignored" => asked.include_ignored = true,
+                "--skip" => asked.skip.extend(args.next()),
+                // Of all others only these are followed by a word of their own.
+                "--format" | "--color" | "--test-threads" | "--logfile" | "-Z" => drop(args.next()),
+                flag if flag.starts_with('-') => {}
+                _ => asked.filters.push(arg),
+            }
+        }
+        asked
+    }
+
+    fn matches(&self, name: &str, filter: &str) -> bool {
+        if self.exact { name == filter } else { name.contains(filter) }
+    }
+
+    fn is_meant(&self, trial: &Trial) -> bool {
+        let is_chosen = self.filters.is_empty() || self.filters.iter().any(|f| self.matches(&trial.name, f));
+        let is_left_out = self.skip.iter().any(|filter| self.matches(&trial.name, filter));
+        is_chosen && !is_left_out && (trial.ignored || !self.ignored)
+    }
+
+    fn runs(&self, trial: &Trial) -> bool {
+        !trial.ignored || self.ignored || self.include_ignored
+    }
+}
+
+/// Lists or runs the tests that the arguments ask for; whether none failed.
+pub(crate) fn run(trials: &[Trial]) -> ExitCode {
+    let asked = Asked::new(std::env::args().skip(1));
+    let meant: Vec<_> = trials.iter().filter(|trial| asked.is_meant(trial)).collect();
+    if asked.list {
+        for trial in meant {
+            println!("{}: test", trial.name);
+        }
+        return ExitCode::SUCCESS;
+    }
+    println!("\nrunning {} tests", meant.len());
+    let (mut failed, mut ignored) = (0, 0);
+    for trial in &meant {
+        if !asked.runs(trial) {
+            ignored += 1;
+            println!("test {} ... ignored", trial.name);
+        } else if catch_unwind(AssertUnwindSafe(|| (trial.check)())).is_ok() {
+            println!("test {} ... ok", trial.name);
+        } else {
+            failed += 1;
+            println!("test {} ... FAILED", trial.name);
+        }
+    }
+    let passed = meant.len() - failed - ignored;
+    let outcome = if failed == 0 { "ok" } else { "FAILED" };
+    println!("\ntest result: {outcome}. {passed} passed; {failed} failed; {ignored} ignored\n");
+    // As the harness that comes with the compiler.
+    if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(101) }
+}
+
+/// The harness itself.
+pub(crate) fn tests_without_their_data_are_ignored() {
+    let asked = |line: &str| Asked::new(line.split_whitespace().map(str::to_owned));
+    let here = Trial::new("here", None, || {});
+    let absent = Trial::new("absent", Some("needs DATA".to_owned()), || {});
+    assert_eq!(absent.name, "[needs DATA] absent");
+    for (line, meant, run) in [
+        ("", [true, true], [true, false]),
+        ("--list --format terse", [true, true], [true, false]),
+        ("--list --format terse --ignored", [false, true], [true, true]),
+        ("--exact here --nocapture", [true, false], [true, false]),
+        ("--exact her", [false, false], [true, false]),
+        ("her --test-threads 1", [true, false], [true, false]),
+        ("--include-ignored --skip here", [false, true], [true, true]),
+    ] {
+        let asked = asked(line);
+        assert_eq!([&here, &absent].map(|trial| asked.is_meant(trial)), meant, "{line}");
+        assert_eq!([&here, &absent].map(|trial| asked.runs(trial)), run, "{line}");
+    }
+    assert!(catch_unwind(AssertUnwindSafe(|| (here.check)())).is_ok());
+    assert!(catch_unwind(AssertUnwindSafe(|| (absent.check)())).is_err(), "it never passes unseen");
+}

@@ -1,0 +1,114 @@
+//! Volumes as they come from scanners and other programs, where there are any: they load as they should, and their
+//! first look shows something. The built-in volumes are checked everywhere.
+//!
+//! The files are in the folder that `CHIAROSCURO_TEST_DATA` names, else in `../shared/data`, with `MANIFEST.tsv`
+//! saying what each of them is. Where they are not, their tests are ignored and say why.
+
+#![expect(clippy::print_stdout, reason = "tests say what they measured, and the harness how they went")]
+
+mod checks;
+mod harness;
+mod manifest;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use chiaroscuro::data::Samples;
+use chiaroscuro::data::load::{LoadErrorKind, RawFormat};
+use chiaroscuro::data::synthetic::{NAMES, builtin};
+
+use checks::{assert_good_first_looks, files, load_all, open};
+use harness::Trial;
+
+/// The variable that names the folder of the data.
+const FOLDER: &str = "CHIAROSCURO_TEST_DATA";
+
+/// Where the data are looked for.
+fn data() -> PathBuf {
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data");
+    std::env::var_os(FOLDER).map_or_else(|| beside.into(), PathBuf::from)
+}
+
+fn main() -> ExitCode {
+    let folder = data();
+    let missing = (!folder.join("MANIFEST.tsv").is_file()).then(|| format!("needs {FOLDER}"));
+    let real = |name, check: fn(&Path)| {
+        let folder = folder.clone();
+        Trial::new(name, missing.clone(), move || check(&folder))
+    };
+    let always = |name, check: fn()| Trial::new(name, None, check);
+    harness::run(&[
+        real(
+            "raw_volumes_load_as_their_names_and_the_manifest_say",
+            raw_volumes_load_as_their_names_and_the_manifest_say,
+        ),
+        real("nrrd_volumes_load_as_the_manifest_says", nrrd_volumes_load_as_the_manifest_says),
+        real("odd_nrrd_files_load_or_say_why_not", odd_nrrd_files_load_or_say_why_not),
+        real("one_volume_is_the_same_in_every_form", one_volume_is_the_same_in_every_form),
+        always("built_in_volumes_have_good_first_looks", built_in_volumes_have_good_first_looks),
+        always("wrong_facts_and_looks_are_noticed", checks::wrong_facts_and_looks_are_noticed),
+        always("the_manifest_is_understood", manifest::the_manifest_is_understood),
+        always("tests_without_their_data_are_ignored", harness::tests_without_their_data_are_ignored),
+    ])
+}
+
+fn raw_volumes_load_as_their_names_and_the_manifest_say(folder: &Path) {
+    let volumes = load_all(folder, &files(&folder.join("raw"), &["raw", "nhdr"]));
+    assert_good_first_looks(&volumes);
+}
+
+fn nrrd_volumes_load_as_the_manifest_says(folder: &Path) {
+    let mut paths = files(&folder.join("formats/nrrd"), &["nrrd", "nhdr"]);
+    paths.extend(files(&folder.join("formats/nrrd/blaze"), &["nhdr"]));
+    let volumes = load_all(folder, &paths);
+    assert_good_first_looks(&volumes);
+}
+
+fn odd_nrrd_files_load_or_say_why_not(folder: &Path) {
+    let odd = folder.join("formats/nrrd/odd");
+    let (refused, readable): (Vec<_>, Vec<_>) = files(&odd, &["nrrd", "nhdr"])
+        .into_iter()
+        .filter(|path| !path.ends_with("test_simple4d_raw.nrrd"))
+        .partition(|path| path.ends_with("BallBinary30x30x30_bz2.nrrd"));
+    let volumes = load_all(folder, &readable);
+    assert_eq!(volumes.len(), 4);
+
+    for path in refused {
+        let err = open(&path, RawFormat::default()).expect_err("bzip2 is not read");
+        assert_eq!(err.kind(), LoadErrorKind::BadInput);
+        assert!(err.to_string().contains("bzip2") && err.to_string().contains("encoding"), "{err}");
+    }
+
+    // Four axes, the last one not spatial, but all of one sample: one voxel.
+    let single = open(&odd.join("test_simple4d_raw.nrrd"), RawFormat::default()).expect("one component");
+    assert_eq!(single.dims(), [1; 3]);
+    assert!((single.spacing_mm() - glam::DVec3::new(1.5, 1.5, 1.0)).length() < 1e-9);
+}
+
+fn one_volume_is_the_same_in_every_form(folder: &Path) {
+    let read = |name: &str| open(&folder.join(name), RawFormat::default()).expect("it loads");
+    for (a, b) in [
+        ("raw/lobster_301x324x56_uint8.raw", "raw/lobster.nhdr"),
+        ("raw/fuel_64x64x64_uint8.raw", "formats/nrrd/fuel.nhdr"),
+        ("raw/neghip_64x64x64_uint8.raw", "formats/nrrd/neghip.nhdr"),
+        ("raw/engine_149x208x110_uint8.raw", "formats/nrrd/blaze/engine.nhdr"),
+        ("formats/nrrd/odd/BallBinary30x30x30.nhdr", "formats/nrrd/odd/BallBinary30x30x30_gz.nrrd"),
+        (
+            "formats/nrrd/odd/BallBinary30x30x30.nhdr",
+            "formats/nrrd/odd/BallBinary30x30x30_byteskip_minus_one.nhdr",
+        ),
+    ] {
+        let (first, second) = (read(a), read(b));
+        assert_eq!(first.dims(), second.dims(), "{a} and {b}");
+        assert!(same(first.samples(), second.samples()), "{a} and {b} have other voxels");
+    }
+}
+
+fn same(a: &Samples, b: &Samples) -> bool {
+    a.len() == b.len() && (0..a.len()).all(|voxel| a.value(voxel) == b.value(voxel))
+}
+
+fn built_in_volumes_have_good_first_looks() {
+    let volumes: Vec<_> = NAMES.iter().map(|name| builtin(name, Some(64)).expect("it can be made")).collect();
+    assert_good_first_looks(&volumes);
+}

@@ -1,0 +1,251 @@
+//! The GPU against the independent f64 reference: stage by stage with the same weights, and
+//! against the paper's literal footprints.
+
+use super::{SIZE, check_against, round_to_f16};
+use crate::common::{Dataset, attenuation, context, render};
+use crate::compare::{compare, flat32, flat64, wide};
+use crate::scenes;
+use crate::thresholds::{BYTES, LITERAL};
+use chiaroscuro::gpu::{Renderer, stored_density};
+use chiaroscuro::model::{
+    Camera, Classification, Deposit, Gradients, Kernel, LightKind, LightLock, Precision, Projection,
+    Quadrature, Resolution, Settings, ShadowAlgorithm,
+};
+use chiaroscuro::reference::{Options, Reference, Weights};
+use glam::DVec3;
+
+/// Sheets, light volumes and picture of one look, each against the reference.
+fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
+    let loaded = Dataset::new(scenes::creature(8, spacing_mm));
+    assert_eq!(
+        stored_density(&context(), loaded.volume(), 0.3),
+        round_to_f16(0.3),
+        "8-bit data are stored as f16"
+    );
+    check_against(name, 48, spacing_mm, settings, Some(round_to_f16));
+}
+
+#[test]
+fn parallel_light_and_turned_perspective_camera() {
+    check("parallel", DVec3::ONE, &scenes::look());
+}
+
+#[test]
+fn perspective_light_and_orthographic_camera() {
+    let mut settings = scenes::look();
+    settings.lights = vec![scenes::light(LightKind::Perspective, [1.6, -1.2, 2.2])];
+    settings.camera = Camera { projection: Projection::Orthographic, ..settings.camera };
+    check("perspective light", DVec3::ONE, &settings);
+}
+
+#[test]
+fn anisotropic_voxels() {
+    let mut settings = scenes::look();
+    settings.lights = vec![
+        scenes::light(LightKind::Perspective, [-2.0, 1.2, 1.9]),
+        scenes::light(LightKind::Parallel, [0.3, -1.0, 0.9]),
+    ];
+    check("anisotropic", DVec3::new(1.0, 0.8, 1.6), &settings);
+}
+
+#[test]
+fn a_light_inside_the_volume() {
+    let mut settings = scenes::look();
+    settings.lights = vec![scenes::light(LightKind::Perspective, [-0.45, -0.35, 0.4])];
+    check("light inside", DVec3::ONE, &settings);
+}
+
+#[test]
+fn gaussian_kernel_thin_slabs_two_points() {
+    let mut settings = scenes::look();
+    settings.sampling.kernel = Kernel::Gaussian { sigma: 0.6 };
+    settings.sampling.slab = 0.5;
+    settings.sampling.quadrature = Quadrature::Two;
+    settings.shadows.kernel = Kernel::Gaussian { sigma: 0.55 };
+    settings.shadows.slab = 0.5;
+    settings.shadows.quadrature = Quadrature::Two;
+    check("gaussian", DVec3::ONE, &settings);
+}
+
+#[test]
+fn prefiltered_kernel_and_literal_deposit() {
+    let mut settings = scenes::look();
+    settings.sampling.kernel = Kernel::Prefiltered;
+    settings.shadows.kernel = Kernel::Prefiltered;
+    settings.shadows.deposit = Deposit::Front;
+    check("prefiltered", DVec3::ONE, &settings);
+}
+
+#[test]
+fn first_touch() {
+    let mut settings = scenes::look();
+    settings.shadows.first_touch = true;
+    check("first touch", DVec3::ONE, &settings);
+}
+
+#[test]
+fn light_volume_at_half_resolution() {
+    let mut settings = scenes::look();
+    settings.shadows.resolution = Resolution::Half;
+    check("half resolution", DVec3::ONE, &settings);
+}
+
+#[test]
+fn several_lights_and_every_cure_for_darkness() {
+    let mut settings = scenes::look();
+    settings.lights = vec![
+        scenes::light(LightKind::Parallel, [1.3, -0.8, 1.7]),
+        scenes::light(LightKind::Perspective, [-1.8, 1.5, 2.0]),
+        scenes::light(LightKind::Parallel, [-0.2, -1.0, 0.3]),
+    ];
+    settings.lights[0].color = [1.0, 0.8, 0.5];
+    settings.lights[1].intensity = 0.7;
+    settings.lights[2].casts_shadows = false;
+    settings.lights[2].color = [0.3, 0.5, 1.0];
+    settings.shadows.ambient_offset = 0.1;
+    settings.shadows.gain = 1.6;
+    settings.shadows.strength = 0.85;
+    settings.shadows.bias_voxels = 1.2;
+    settings.shadows.balance = 1.3;
+    settings.shading.specular = 0.6;
+    settings.shading.emission = 0.05;
+    settings.lighting.scale = 0.6;
+    check("several lights", DVec3::ONE, &settings);
+}
+
+#[test]
+fn kernels_stretched_by_small_pictures_and_near_lights() {
+    let mut settings = scenes::look();
+    // Far away: pixels are two to three voxels wide.
+    settings.camera.distance = 14.0;
+    settings.lights = vec![scenes::light(LightKind::Perspective, [1.9, -1.5, 1.4])];
+    check("stretched", DVec3::ONE, &settings);
+}
+
+#[test]
+fn an_eye_inside_the_volume() {
+    let mut settings = scenes::look();
+    settings.camera = Camera { distance: 0.35, fov_y_deg: 70.0, target: [0.4, 0.3, 0.2], ..settings.camera };
+    check("eye inside", DVec3::ONE, &settings);
+}
+
+/// Lights of both kinds, one of them near, and voxels that are no cubes.
+fn rays(algorithm: ShadowAlgorithm) -> Settings {
+    let mut settings = scenes::look();
+    settings.shadows.algorithm = algorithm;
+    settings.lights = vec![
+        scenes::light(LightKind::Parallel, [1.3, -0.8, 1.7]),
+        scenes::light(LightKind::Perspective, [-1.1, 0.9, 1.2]),
+    ];
+    settings.lights[1].density_scale = 0.5;
+    settings
+}
+
+#[test]
+fn a_light_volume_by_rays() {
+    let mut settings = rays(ShadowAlgorithm::Raycast);
+    check("raycast", DVec3::ONE, &settings);
+    settings.shadows.deposit = Deposit::Front;
+    settings.shadows.resolution = Resolution::Half;
+    settings.shadows.quadrature = Quadrature::Two;
+    check("raycast, literal", DVec3::new(1.0, 0.8, 1.6), &settings);
+}
+
+#[test]
+fn rays_from_every_sample() {
+    let mut settings = rays(ShadowAlgorithm::Direct);
+    check("direct", DVec3::new(1.0, 0.8, 1.6), &settings);
+    settings.shadows.deposit = Deposit::Front;
+    settings.shadows.bias_voxels = 0.7;
+    check("direct, literal", DVec3::ONE, &settings);
+}
+
+#[test]
+fn hoods_cameras_lights_and_densities() {
+    for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
+        let mut settings = rays(algorithm);
+        settings.lights[0].kind = LightKind::Perspective;
+        settings.lights[0].position = [-0.6, 0.4, 3.0];
+        settings.lights[0].lock = LightLock::Camera;
+        for light in &mut settings.lights {
+            light.hood.on = true;
+            light.hood.half_angle_deg = 18.0;
+            light.hood.rim_deg = 6.0;
+        }
+        settings.shadows.ambient_offset = 0.1;
+        check(&format!("hoods, {algorithm:?}"), DVec3::ONE, &settings);
+    }
+}
+
+/// The picture by the paper's literal footprints in f64, against the GPU's.
+fn check_literal(n: usize, kind: LightKind, position: [f64; 3]) {
+    let mut settings = scenes::look();
+    settings.lights = vec![scenes::light(kind, position)];
+    settings.sampling.quadrature = Quadrature::Two;
+    settings.shadows.quadrature = Quadrature::Two;
+    let loaded = Dataset::new(scenes::creature(n, DVec3::ONE));
+    let options = Options { weights: Weights::Footprint, ..Options::default() };
+    let reference = Reference::new(loaded.volume(), &settings, options);
+    let expected = reference.picture(SIZE, &reference.attenuations());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let found = render(&mut renderer, &loaded, &settings, SIZE);
+    let what = format!("literal footprints, {kind:?}, {n}³");
+    compare(&what, &flat32(&found.light), &flat64(&expected), LITERAL).unwrap_or_else(|err| panic!("{err}"));
+}
+
+#[test]
+fn literal_footprints_parallel() {
+    check_literal(128, LightKind::Parallel, [1.3, -0.8, 1.7]);
+}
+
+#[test]
+fn literal_footprints_perspective() {
+    check_literal(128, LightKind::Perspective, [2.0, -1.3, 2.4]);
+}
+
+/// Gradients from neighbouring sheets: thin slabs, perspective, voxels that are no cubes.
+#[test]
+fn gradients_from_neighbouring_sheets() {
+    let mut settings = scenes::look();
+    settings.sampling.gradients = Gradients::Sheets;
+    settings.sampling.slab = 0.5;
+    check("gradients from sheets", DVec3::new(1.0, 1.2, 1.7), &settings);
+    settings.camera.projection = Projection::Orthographic;
+    settings.camera.distance = 1.2;
+    check("gradients from sheets, near", DVec3::ONE, &settings);
+}
+
+/// A byte per voxel: 256 steps, which filtering smooths.
+#[test]
+fn light_volumes_of_bytes() {
+    let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
+    let context = context();
+    assert!(context.byte_volumes, "this adapter cannot show it");
+    let mut renderer = Renderer::new(&context).expect("a renderer");
+    let mut settings = scenes::look();
+    let fine = attenuation(&mut renderer, &loaded, &settings, 0);
+    let picture = render(&mut renderer, &loaded, &settings, SIZE);
+    let before = renderer.gpu_bytes();
+    settings.shadows.precision = Precision::Byte;
+    let bytes = attenuation(&mut renderer, &loaded, &settings, 0);
+    assert!(bytes.iter().all(|value| (value * 255.0).fract().abs() < 1e-3), "steps of 1/255");
+    compare("bytes: light volume", &wide(&bytes), &wide(&fine), BYTES).unwrap_or_else(|err| panic!("{err}"));
+    let found = render(&mut renderer, &loaded, &settings, SIZE);
+    compare("bytes: picture", &flat32(&found.light), &flat32(&picture.light), BYTES)
+        .unwrap_or_else(|err| panic!("{err}"));
+    let voxels = loaded.volume().voxel_count() as u64;
+    let added = renderer.gpu_bytes() - before;
+    assert_eq!(added, voxels, "the earlier volume is kept, and this one has a byte per voxel");
+}
+
+/// Voxels are classified before the kernel spreads them, in both passes; far away the blurred volume is.
+#[test]
+fn pre_classified_voxels() {
+    let mut settings = scenes::look();
+    settings.sampling.classification = Classification::Pre;
+    settings.sampling.quadrature = Quadrature::Two;
+    settings.shadows.kernel = Kernel::Gaussian { sigma: 0.5 };
+    check("pre-classified", DVec3::new(1.0, 1.2, 1.7), &settings);
+    settings.camera.distance = 7.0;
+    check("pre-classified, far", DVec3::ONE, &settings);
+}

@@ -1,0 +1,60 @@
+//! The GPU against the independent f64 reference, and proof that the comparison notices mistakes.
+
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{Settings, ShadowAlgorithm};
+use chiaroscuro::reference::{Options, Reference, Rounding};
+use glam::DVec3;
+
+use crate::common::{Dataset, attenuation, context, render};
+use crate::compare::{compare, flat32, flat64, wide};
+use crate::scenes;
+use crate::thresholds::SAME_WEIGHTS;
+
+mod gather;
+mod mutations;
+mod scatter;
+
+const SIZE: [u32; 2] = [96, 80];
+
+fn round_to_f16(value: f32) -> f32 {
+    half::f16::from_f32(value).to_f32()
+}
+
+/// Sheets, light volumes and picture of one look at one size, each against the reference, with densities stored as
+/// `rounding` says.
+pub(crate) fn check_against(
+    name: &str,
+    n: usize,
+    spacing_mm: DVec3,
+    settings: &Settings,
+    rounding: Option<Rounding>,
+) {
+    let loaded = Dataset::new(scenes::creature(n, spacing_mm));
+    let context = context();
+    let options = Options { rounding, ..Options::default() };
+    let reference = Reference::new(loaded.volume(), settings, options);
+    let mut renderer = Renderer::new(&context).expect("a renderer");
+    let mut failures = Vec::new();
+    for light in (0..settings.lights.len()).filter(|&light| settings.lights[light].needs_volume()) {
+        if !settings.shadows.algorithm.has_volume() {
+            continue;
+        }
+        let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat;
+        let sheets = if splats { reference.light_sheets(light) } else { Vec::new() };
+        for (view, expected) in sheets.iter().enumerate() {
+            let found = renderer.light_sheets(&loaded, settings, light, view).expect("sheets are read back");
+            let what = format!("{name}: sheets of light {light}, view {view}");
+            failures.extend(compare(&what, &wide(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
+        }
+        let found = attenuation(&mut renderer, &loaded, settings, light);
+        let expected = reference.attenuation(light);
+        let what = format!("{name}: light volume {light}");
+        failures.extend(compare(&what, &wide(&found), &expected.values, SAME_WEIGHTS).err());
+    }
+    let found = render(&mut renderer, &loaded, settings, SIZE);
+    let expected = reference.picture(SIZE, &reference.attenuations());
+    failures.extend(
+        compare(&format!("{name}: picture"), &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).err(),
+    );
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}

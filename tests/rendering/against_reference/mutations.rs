@@ -1,0 +1,183 @@
+//! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
+
+use chiaroscuro::gpu::{Renderer, ShaderLibrary};
+use chiaroscuro::model::{Camera, Engine, Kernel, LightKind, Settings};
+use chiaroscuro::reference::{Fault, Options, Reference};
+use glam::DVec3;
+
+use crate::common::{Dataset, attenuation, context, render};
+use crate::compare::{compare, flat32, flat64, wide};
+use crate::scenes;
+use crate::thresholds::SAME_WEIGHTS;
+
+const SIZE: [u32; 2] = [64, 64];
+
+/// A look in which every mistake shows: steep opacities, a wide angle, a near light, highlights, a
+/// kernel whose weights do not sum to one by themselves.
+fn look() -> Settings {
+    let mut settings = scenes::look();
+    settings.camera = Camera { distance: 2.2, fov_y_deg: 80.0, ..settings.camera };
+    settings.lights = vec![scenes::light(LightKind::Perspective, [1.4, -1.1, 1.8])];
+    settings.transfer = scenes::linear_extinction(0.6);
+    settings.sampling.kernel = Kernel::Gaussian { sigma: 0.6 };
+    settings.shadows.kernel = Kernel::Gaussian { sigma: 0.6 };
+    settings.shading.specular = 0.8;
+    settings
+}
+
+/// Light volume and picture of a damaged GPU path against a damaged reference.
+fn disagree(from: &str, to: &str, fault: Fault) -> bool {
+    disagree_with(Engine::Gather, from, to, fault)
+}
+
+/// The same with one of the engines.
+fn disagree_with(engine: Engine, from: &str, to: &str, fault: Fault) -> bool {
+    let mut settings = look();
+    settings.sampling.engine = engine;
+    let n = if engine == Engine::Scatter { 28 } else { 40 };
+    let loaded = Dataset::new(scenes::creature(n, DVec3::ONE));
+    let context = context();
+    let shaders = ShaderLibrary::with_mutation(&context, from, to);
+    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+    let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
+    let options = Options { fault, rounding: Some(rounding), ..Options::default() };
+    let reference = Reference::new(loaded.volume(), &settings, options);
+    let expected = reference.attenuations();
+    let found = attenuation(&mut renderer, &loaded, &settings, 0);
+    let values = &expected[0].as_ref().expect("the light casts shadows").values;
+    let light = compare("light volume", &wide(&found), values, SAME_WEIGHTS);
+    let found = render(&mut renderer, &loaded, &settings, SIZE);
+    let picture =
+        compare("picture", &flat32(&found.light), &flat64(&reference.picture(SIZE, &expected)), SAME_WEIGHTS);
+    light.is_err() || picture.is_err()
+}
+
+/// A mutation must change the shader that it is meant for: a text that is not there proves nothing.
+fn in_shader(shader: &str, from: &str) {
+    let source = ShaderLibrary::source(shader, wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float)
+        .expect("the shader is there");
+    assert!(source.contains(from), "{shader} no longer contains {from:?}");
+}
+
+#[test]
+fn undamaged_sides_agree() {
+    assert!(!disagree("\u{0}", "", Fault::None));
+}
+
+macro_rules! gpu_mutation {
+    ($name:ident, $shader:literal, $from:literal, $to:literal) => {
+        #[test]
+        fn $name() {
+            in_shader($shader, $from);
+            assert!(disagree($from, $to, Fault::None), "the comparison does not notice");
+        }
+    };
+}
+
+gpu_mutation!(
+    gpu_kernel_five_percent_wider,
+    "eye/gather.wgsl",
+    "(-0.5 / (SIGMA * SIGMA))",
+    "(-0.5 / (1.1025 * SIGMA * SIGMA))"
+);
+gpu_mutation!(
+    gpu_transmittance_behind_the_slab,
+    "light/march.wgsl",
+    "select(t * slab_mean(tau), t, DEPOSIT_FRONT)",
+    "t * exp(-tau)"
+);
+gpu_mutation!(gpu_weights_not_divided, "light/backproject.wgsl", "sum / weights", "sum");
+gpu_mutation!(
+    gpu_no_obliquity_for_the_eye,
+    "eye/gather.wgsl",
+    "eye.frame.slab * ray.obliquity",
+    "eye.frame.slab"
+);
+gpu_mutation!(
+    gpu_no_obliquity_for_the_light,
+    "light/march.wgsl",
+    "march.frame.slab * ray.obliquity",
+    "march.frame.slab"
+);
+gpu_mutation!(
+    gpu_normals_flipped,
+    "eye/gather.wgsl",
+    "slope * (-1.0 / max(steepness, 1e-9))",
+    "slope * (1.0 / max(steepness, 1e-9))"
+);
+gpu_mutation!(
+    gpu_kernel_shifted_by_half_a_voxel,
+    "eye/gather.wgsl",
+    "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 2.5)",
+    "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 3.0)"
+);
+
+#[test]
+fn undamaged_sides_agree_when_scattered() {
+    assert!(!disagree_with(Engine::Scatter, "\u{0}", "", Fault::None));
+}
+
+macro_rules! scatter_mutation {
+    ($name:ident, $shader:literal, $from:literal, $to:literal) => {
+        #[test]
+        fn $name() {
+            in_shader($shader, $from);
+            let noticed = disagree_with(Engine::Scatter, $from, $to, Fault::None);
+            assert!(noticed, "the comparison does not notice");
+        }
+    };
+}
+
+scatter_mutation!(
+    scattered_kernel_five_percent_wider,
+    "scatter/splat.wgsl",
+    "/ (scatter.stretch * scatter.stretch);\n    if (squared >= 4.0) {\n        return 0.0;\n    }\n    let reach",
+    "/ (1.1025 * scatter.stretch * scatter.stretch);\n    if (squared >= 4.0) {\n        return 0.0;\n    }\n    let reach"
+);
+scatter_mutation!(
+    scattered_transmittance_behind_the_slab,
+    "scatter/light.wgsl",
+    "select(t * slab_mean(tau), t, DEPOSIT_FRONT)",
+    "t * exp(-tau)"
+);
+scatter_mutation!(scattered_weights_not_divided, "scatter/normalise.wgsl", "/ f32(max(weight, 1))", "/ UNIT");
+scatter_mutation!(
+    scattered_without_obliquity_for_the_eye,
+    "scatter/eye.wgsl",
+    "met.thickness * ray.obliquity",
+    "met.thickness"
+);
+scatter_mutation!(
+    scattered_without_obliquity_for_the_light,
+    "scatter/light.wgsl",
+    "march.frame.slab * ray.obliquity",
+    "march.frame.slab"
+);
+scatter_mutation!(
+    scattered_voxels_shifted_by_half,
+    "scatter/splat.wgsl",
+    "let centre = vec3f(voxel);",
+    "let centre = vec3f(voxel) + vec3f(0.5, 0.0, 0.0);"
+);
+scatter_mutation!(
+    scattered_gradient_flipped,
+    "scatter/eye.wgsl",
+    "/ (2.0 * f32(slabs) * met.thickness)",
+    "/ (-2.0 * f32(slabs) * met.thickness)"
+);
+
+macro_rules! reference_mutation {
+    ($name:ident, $fault:expr) => {
+        #[test]
+        fn $name() {
+            assert!(disagree("\u{0}", "", $fault), "the comparison does not notice");
+        }
+    };
+}
+
+reference_mutation!(reference_kernel_five_percent_wider, Fault::WiderKernel);
+reference_mutation!(reference_transmittance_behind_the_slab, Fault::DepositAfter);
+reference_mutation!(reference_weights_not_divided, Fault::NoDivision);
+reference_mutation!(reference_no_obliquity, Fault::NoObliquity);
+reference_mutation!(reference_normals_flipped, Fault::FlippedNormal);
+reference_mutation!(reference_kernel_shifted_by_half_a_voxel, Fault::ShiftedKernel);

@@ -1,0 +1,183 @@
+//! What is kept and what is refilled; and what must not change a single bit.
+
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{LightKind, Settings};
+use chiaroscuro::plan::Request;
+use glam::DVec3;
+
+use crate::common::{Dataset, context, render};
+use crate::scenes;
+use crate::thresholds::F16_STEP;
+
+mod bits;
+
+const SIZE: [u32; 2] = [64, 48];
+
+fn three_lights() -> Settings {
+    let mut settings = scenes::look();
+    settings.lights = vec![
+        scenes::light(LightKind::Parallel, [1.3, -0.8, 1.7]),
+        scenes::light(LightKind::Perspective, [-1.8, 1.5, 2.0]),
+        scenes::light(LightKind::Parallel, [-0.2, -1.0, 0.3]),
+    ];
+    settings
+}
+
+fn loaded() -> Dataset {
+    Dataset::new(scenes::creature(32, DVec3::ONE))
+}
+
+#[test]
+fn orbiting_a_hundred_frames_rebuilds_no_light() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
+    for _ in 0..100 {
+        settings.camera.orbit(3.6, 1.0);
+        render(&mut renderer, &loaded, &settings, SIZE);
+    }
+    assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
+}
+
+#[test]
+fn dragging_three_shadowed_lights_makes_nothing_anew() {
+    dragging_makes_nothing_anew(three_lights());
+}
+
+#[test]
+fn dragging_a_light_beside_a_fill_makes_nothing_anew() {
+    let mut settings = three_lights();
+    settings.lights.truncate(2);
+    settings.lights[1].casts_shadows = false;
+    dragging_makes_nothing_anew(settings);
+}
+
+fn dragging_makes_nothing_anew(mut settings: Settings) {
+    let loaded = loaded();
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let drag = |renderer: &mut Renderer, settings: &mut Settings, at: u32| {
+        // Back and forth, so that sheets and lists have had every size.
+        let turn = glam::DQuat::from_rotation_z(0.1 * f64::from(at % 8));
+        settings.lights[0].position = (turn * DVec3::new(1.3, -0.8, 1.7)).into();
+        settings.lights[1].position = (turn * DVec3::new(-1.8, 1.5, 2.0)).into();
+        settings.camera.orbit(3.6, 0.3);
+        render(renderer, &loaded, settings, SIZE);
+    };
+    for at in 0..24 {
+        drag(&mut renderer, &mut settings, at);
+    }
+    let (made, bytes) = (renderer.made(), renderer.gpu_bytes());
+    assert!(made > 10, "the count must see what was made: {made}");
+    for at in 0..24 {
+        drag(&mut renderer, &mut settings, at);
+    }
+    assert_eq!(renderer.made(), made, "buffers, bind groups and sheets");
+    assert_eq!(renderer.gpu_bytes(), bytes);
+}
+
+#[test]
+fn live_controls_rebuild_no_light_and_change_the_picture() {
+    let (loaded, settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let before = render(&mut renderer, &loaded, &settings, SIZE);
+    type Change = fn(&mut Settings);
+    let changes: [(&str, Change); 8] = [
+        ("colour", |s| s.lights[0].color = [1.0, 0.2, 0.1]),
+        ("intensity", |s| s.lights[1].intensity = 0.3),
+        ("gain", |s| s.shadows.gain = 1.7),
+        ("offset", |s| s.shadows.ambient_offset = 0.2),
+        ("strength", |s| s.shadows.strength = 0.4),
+        ("balance", |s| s.shadows.balance = 1.4),
+        ("off", |s| s.lights[2].on = false),
+        ("shading", |s| s.shading.diffuse = 0.5),
+    ];
+    for (name, change) in changes {
+        let mut changed = settings.clone();
+        change(&mut changed);
+        let after = render(&mut renderer, &loaded, &changed, SIZE);
+        assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "{name}");
+        assert_ne!(after.light, before.light, "{name} changes nothing");
+    }
+    // Back again: the same bytes, and still nothing rebuilt.
+    assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), before);
+    assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
+}
+
+/// With a bias light is looked up further from material: what lies there is filled when a bias is first
+/// used, for the largest that there is. Filling it always would make every light build a seventh longer.
+#[test]
+fn a_light_bias_fills_more_once_and_is_live_from_then_on() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let before = render(&mut renderer, &loaded, &settings, SIZE);
+    let mut seen = vec![before.light.clone()];
+    for bias_voxels in [0.1, 1.5, 2.0, 0.7] {
+        settings.shadows.bias_voxels = bias_voxels;
+        let picture = render(&mut renderer, &loaded, &settings, SIZE);
+        assert!(!seen.contains(&picture.light), "a bias of {bias_voxels} changes nothing");
+        seen.push(picture.light);
+        assert!(renderer.light_rebuilds().iter().all(|&rebuilds| rebuilds <= 2), "{bias_voxels}");
+    }
+    let rebuilds = renderer.light_rebuilds().to_vec();
+    settings.shadows.bias_voxels = 0.0;
+    assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), before);
+    assert_eq!(renderer.light_rebuilds(), rebuilds);
+}
+
+#[test]
+fn moving_one_of_three_lights_rebuilds_exactly_that_one() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    settings.lights[1].position = [-1.5, 1.7, 2.0];
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
+    // Further out along the same direction a parallel light is the same light.
+    settings.lights[0].position = [2.6, -1.6, 3.4];
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
+}
+
+#[test]
+fn a_lighting_transfer_edit_rebuilds_all() {
+    let (loaded, mut settings) = (loaded(), three_lights());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    settings.lighting.scale = 0.5;
+    render(&mut renderer, &loaded, &settings, SIZE);
+    assert_eq!(renderer.light_rebuilds(), [2, 2, 2]);
+}
+
+/// An attenuation volume in use equals a fresh one; spoiling it shows that changes that may keep it
+/// do keep it, and that moving the light refills it.
+#[test]
+fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
+    let (loaded, mut settings) = (loaded(), scenes::look());
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    settings.lights[0].color = [0.9, 0.7, 0.5];
+    settings.shadows.gain = 1.3;
+    let kept = render(&mut renderer, &loaded, &settings, SIZE);
+    let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
+    let worst = kept.light.iter().flatten().zip(fresh.light.iter().flatten()).map(|(a, b)| (a - b).abs());
+    assert!(worst.fold(0.0, f32::max) <= F16_STEP);
+
+    let request = |settings: &Settings| Request {
+        volume: loaded.volume().content_id(),
+        settings: settings.clone(),
+        size: SIZE,
+        coarse: None,
+    };
+    assert!(renderer.corrupt_attenuation(&request(&settings), 0), "there is a volume to spoil");
+    let mean =
+        |picture: &chiaroscuro::gpu::Picture| picture.light.iter().map(|t| f64::from(t[1])).sum::<f64>();
+    let spoiled = render(&mut renderer, &loaded, &settings, SIZE);
+    assert!(mean(&spoiled) < 0.9 * mean(&fresh), "no light is left");
+    settings.lights[0].intensity = 1.01;
+    let still = render(&mut renderer, &loaded, &settings, SIZE);
+    assert!(mean(&still) < 0.9 * mean(&fresh), "a live control does not refill it");
+    settings.lights[0].position = [1.31, -0.8, 1.7];
+    let moved = render(&mut renderer, &loaded, &settings, SIZE);
+    assert!(mean(&moved) > 0.95 * mean(&fresh), "moving the light does");
+}

@@ -1,0 +1,165 @@
+//! What homogeneous material absorbs: Beer–Lambert, and the opacity of chords.
+
+use chiaroscuro::gpu::Picture;
+use chiaroscuro::model::{Camera, Engine, LightKind, Quadrature, ShadowAlgorithm};
+use glam::DVec3;
+
+use super::{base, renderer, with_both_engines};
+use crate::common::{Dataset, attenuation, render};
+use crate::scenes;
+use crate::thresholds::{BEER_LAMBERT, CHORD_OPACITY, OBLIQUE_CHORD, RAY_BEER_LAMBERT, SLAB_MEAN_CHANGE};
+
+with_both_engines! {
+    beer_lambert_in_a_homogeneous_block
+    opacity_of_a_chord
+    oblique_rays_have_longer_paths
+}
+
+/// Variance of the cubic B-spline, in voxels².
+const KERNEL_VARIANCE: f64 = 1.0 / 3.0;
+
+/// Mean of the picture's alpha over its middle.
+fn middle_alpha(picture: &Picture) -> f64 {
+    let [w, h] = picture.size.map(|n| n as usize);
+    let texels: Vec<f64> = (h / 2 - 2..h / 2 + 2)
+        .flat_map(|y| (w / 2 - 2..w / 2 + 2).map(move |x| y * w + x))
+        .map(|at| f64::from(picture.light[at][3]))
+        .collect();
+    texels.iter().sum::<f64>() / texels.len() as f64
+}
+
+/// No. 2: Light falls off exponentially in homogeneous material, times what the kernel does to an
+/// exponential: e^(μ²σ²/2) from the reverse splat, sinh(μΔs/2)/(μΔs/2) from the slab.
+fn beer_lambert_in_a_homogeneous_block(engine: Engine) {
+    let n = 48;
+    let face = 8;
+    let loaded =
+        Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
+    for (per_voxel, slab, tolerance) in BEER_LAMBERT {
+        for (quadrature, power) in [(Quadrature::One, 1), (Quadrature::Two, 2)] {
+            let mut settings = base(engine, per_voxel);
+            settings.shadows.slab = slab;
+            settings.shadows.quadrature = quadrature;
+            let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+            let half = per_voxel * slab / 2.0;
+            let factor =
+                (per_voxel * per_voxel * KERNEL_VARIANCE / 2.0).exp() * (half.sinh() / half).powi(power);
+            for z in face + 3..n - face - 3 {
+                // Light comes from +z; the block's upper face is at z = n − face − ½.
+                let depth = (n - face) as f64 - 0.5 - z as f64;
+                let expected = (-per_voxel * depth).exp() * factor;
+                let found = f64::from(volume[n / 2 + n * (n / 2 + n * z)]);
+                if expected > 1e-3 {
+                    let error = (found / expected - 1.0).abs();
+                    assert!(
+                        error <= tolerance,
+                        "μ {per_voxel}, Δs {slab}, {quadrature:?}: {found} not {expected} at depth {depth}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// No. 2, for rays from the voxels: nothing is blurred on the way back, so light falls as e^(−μ·depth)
+/// and no faster. Sampled twice per voxel, where the midpoint rule meets the faces exactly.
+#[test]
+fn beer_lambert_by_rays() {
+    let n = 48;
+    let face = 8;
+    let loaded =
+        Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
+    for per_voxel in [0.1, 0.3, 0.7] {
+        let mut settings = base(Engine::Gather, per_voxel);
+        settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+        settings.shadows.slab = 0.5;
+        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        for z in face + 3..n - face - 3 {
+            let depth = (n - face) as f64 - 0.5 - z as f64;
+            let expected = (-per_voxel * depth).exp();
+            let found = f64::from(volume[n / 2 + n * (n / 2 + n * z)]);
+            // Rays end at 1/4096 of the light.
+            if expected > 1e-3 {
+                let error = (found / expected - 1.0).abs();
+                assert!(error <= RAY_BEER_LAMBERT, "μ {per_voxel}: {found} not {expected} at depth {depth}");
+            }
+        }
+    }
+}
+
+/// No. 3: What a ray sees of homogeneous material is 1 − e^(−μ·chord), whatever the slab.
+fn opacity_of_a_chord(engine: Engine) {
+    let n = 48;
+    let block = Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (12..36).contains(c))));
+    let ball = Dataset::new(scenes::ball(n, DVec3::splat(23.5), 14.0));
+    for (name, loaded, chord) in [("block", &block, 24.0f64), ("ball", &ball, 28.0)] {
+        let mut means = Vec::new();
+        for (slab, quadrature) in
+            [(0.25, Quadrature::One), (0.5, Quadrature::One), (1.0, Quadrature::One), (2.0, Quadrature::Two)]
+        {
+            let mut settings = base(engine, 0.05);
+            settings.sampling.slab = slab;
+            settings.sampling.quadrature = quadrature;
+            let picture = render(&mut renderer(), loaded, &settings, [96, 96]);
+            let expected = 1.0 - (-0.05 * chord).exp();
+            let found = if name == "ball" {
+                f64::from(picture.light[48 * 96 + 48][3])
+            } else {
+                middle_alpha(&picture)
+            };
+            // Half a pixel off the middle shortens the ball's chord by less than 0.1 %.
+            assert!((found - expected).abs() <= CHORD_OPACITY, "{name}, Δs {slab}: {found} not {expected}");
+            means.push(picture.light.iter().map(|texel| f64::from(texel[3])).sum::<f64>());
+        }
+        assert!((means[2] / means[0] - 1.0).abs() <= SLAB_MEAN_CHANGE, "{name}: {means:?}");
+    }
+}
+
+/// No. 18: Path lengths are those of the oblique rays: a point light at 1.5 N, and a perspective eye.
+fn oblique_rays_have_longer_paths(engine: Engine) {
+    let n = 48;
+    let (low, high) = (8, 40);
+    let loaded = Dataset::new(scenes::block(n, |v| v.iter().all(|c| (low..high).contains(c))));
+    let per_voxel = 0.02;
+    let mut settings = base(engine, per_voxel);
+    settings.shadows.slab = 0.5;
+    // 1.5 N above the middle is 3 scene units: in index space 72 voxels from the centre.
+    settings.lights = vec![scenes::light(LightKind::Perspective, [0.0, 0.0, 3.0])];
+    let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+    let light = DVec3::new(23.5, 23.5, 23.5 + 72.0);
+    let chord_from = |from: DVec3, to: DVec3| {
+        let (a, b) = (DVec3::splat(low as f64 - 0.5), DVec3::splat(high as f64 - 0.5));
+        let (near, far) = ((a - from) / (to - from), (b - from) / (to - from));
+        let enter = near.min(far).max_element().max(0.0);
+        let leave = near.max(far).min_element().min(1.0);
+        (leave - enter).max(0.0) * to.distance(from)
+    };
+    // In each corner of the block, three voxels inside.
+    for (x, y) in [(11, 11), (36, 11), (11, 36), (36, 36), (23, 23)] {
+        let z = 11;
+        let voxel = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+        let expected = (-per_voxel * chord_from(light, voxel)).exp();
+        let found = f64::from(volume[x as usize + n * (y as usize + n * z as usize)]);
+        assert!((found / expected - 1.0).abs() <= OBLIQUE_CHORD, "at {voxel}: {found} not {expected}");
+    }
+    settings.camera = Camera {
+        distance: 1.6,
+        fov_y_deg: 60.0,
+        azimuth_deg: -90.0,
+        elevation_deg: 0.0,
+        ..Camera::default()
+    };
+    let size = [64, 64];
+    let picture = render(&mut renderer(), &loaded, &settings, size);
+    let scene = loaded.volume().scene();
+    // Rays that pass the near and the far face at least three voxels from their edges.
+    for (i, j) in [(32, 32), (19, 19), (44, 19), (19, 44), (44, 44)] {
+        let (origin, direction) =
+            settings.camera.ray_through(f64::from(i) + 0.5, f64::from(j) + 0.5, 64.0, 64.0);
+        let from = scene.index_from_scene.transform_point3(origin);
+        let to = scene.index_from_scene.transform_point3(origin + direction * 6.0);
+        let expected = 1.0 - (-per_voxel * chord_from(from, to)).exp();
+        let found = f64::from(picture.light[(i + 64 * j) as usize][3]);
+        assert!((found / expected - 1.0).abs() <= OBLIQUE_CHORD, "pixel {i} {j}: {found} not {expected}");
+    }
+}

@@ -1,0 +1,131 @@
+//! Lights and their shadows: at the eye, behind a ball, far away, and under a hood.
+
+use chiaroscuro::gpu::Picture;
+use chiaroscuro::model::{Deposit, Engine, Hood, LightKind, ShadowAlgorithm};
+use glam::DVec3;
+
+use super::{base, renderer, with_both_engines};
+use crate::common::{Dataset, attenuation, render};
+use crate::compare::{Limit, compare, wide};
+use crate::scenes;
+use crate::thresholds::{BALL_SHADOW, FAR_LIGHT, HEADLIGHT_COARSE, HEADLIGHT_FINE};
+
+with_both_engines! {
+    headlight_gives_one_half
+    shadow_of_a_ball
+    a_far_point_light_is_parallel
+    a_hood_is_a_cone_with_a_soft_rim
+}
+
+fn middle_red(picture: &Picture) -> f64 {
+    let [w, h] = picture.size.map(|n| n as usize);
+    f64::from(picture.light[h / 2 * w + w / 2][0])
+}
+
+fn headlight(engine: Engine, deposit: Deposit, slab: f64) -> f64 {
+    let n = 40;
+    let loaded = Dataset::new(scenes::block(n, |[x, y, z]| {
+        (6..26).contains(&y) && x > 2 && z > 2 && x < 37 && z < 37
+    }));
+    // From −y, as the eye of `straight(-90, 0)`.
+    let mut settings = base(engine, 0.7);
+    settings.lights[0].position = [0.0, -1.0, 0.0];
+    settings.shadows.deposit = deposit;
+    settings.shadows.slab = slab;
+    settings.sampling.slab = slab;
+    middle_red(&render(&mut renderer(), &loaded, &settings, [48, 48]))
+}
+
+/// No. 4: Light from the eye's direction, material that scatters evenly, optically thick:
+/// C = ∫ T·T dτ = ½, whatever the density.
+fn headlight_gives_one_half(engine: Engine) {
+    let errors = |deposit| [1.0, 0.5, 0.25].map(|slab| headlight(engine, deposit, slab) - 0.5);
+    let mean = errors(Deposit::SlabMean);
+    let front = errors(Deposit::Front);
+    println!("headlight: slab mean {mean:.4?}, front {front:.4?}");
+    assert!(mean[2].abs() <= 0.5 * HEADLIGHT_FINE, "slab mean: {mean:?}");
+    assert!(mean[0].abs() <= 0.5 * HEADLIGHT_COARSE, "slab mean: {mean:?}");
+    assert!(
+        front.iter().all(|&error| error > 0.0),
+        "in front of the slab there is always more light: {front:?}"
+    );
+    assert!(front[0] > mean[0], "the literal deposit is brighter");
+    // First order: halving the slab halves the error.
+    assert!(front[0] / front[1] > 1.6 && front[1] / front[2] > 1.4, "front: {front:?}");
+}
+
+/// No. 5: Behind a ball of radius r the light is e^(−2μ√(r² − b²)) at distance b from its axis.
+fn shadow_of_a_ball(engine: Engine) {
+    let n = 60;
+    let radius = 10.0;
+    let centre = DVec3::new(29.5, 29.5, 40.0);
+    let loaded = Dataset::new(scenes::ball(n, centre, radius));
+    let per_voxel = 0.1;
+    let settings = base(engine, per_voxel);
+    let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+    let plane = 15;
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    for (x, y) in (4..n - 4).flat_map(|x| (4..n - 4).map(move |y| (x, y))) {
+        let b = (x as f64 - centre.x).hypot(y as f64 - centre.y);
+        if (b - radius).abs() > 3.0 {
+            found.push(f64::from(volume[x + n * (y + n * plane)]));
+            expected.push((-2.0 * per_voxel * (radius * radius - b * b).max(0.0).sqrt()).exp());
+        }
+    }
+    let limit = Limit { max: f64::INFINITY, rmse: BALL_SHADOW };
+    compare("shadow of a ball", &found, &expected, limit).unwrap_or_else(|err| panic!("{err}"));
+    let middle = f64::from(volume[29 + n * (29 + n * plane)]);
+    let b2 = 0.5;
+    let exact = (-2.0 * per_voxel * (radius * radius - b2).sqrt()).exp();
+    assert!((middle - exact).abs() <= BALL_SHADOW, "{middle} not {exact}");
+}
+
+/// No. 15: A point light a hundred volumes away is a parallel light.
+fn a_far_point_light_is_parallel(engine: Engine) {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut settings = scenes::look();
+    settings.sampling.engine = engine;
+    let direction = DVec3::new(0.5, -0.6, 0.8).normalize_or_zero();
+    let mut volume = |kind| {
+        settings.lights = vec![scenes::light(kind, (direction * 200.0).into())];
+        wide(&attenuation(&mut renderer(), &loaded, &settings, 0))
+    };
+    let (near, far) = (volume(LightKind::Parallel), volume(LightKind::Perspective));
+    let limit = Limit { max: f64::INFINITY, rmse: FAR_LIGHT };
+    compare("far light", &far, &near, limit).unwrap_or_else(|err| panic!("{err}"));
+}
+
+/// No. 15: A hood lets nothing out beyond its rim, everything within, and fades smoothly between.
+fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
+    let n = 40;
+    // One voxel, that the volume is not empty; the light passes the rest unhindered.
+    let loaded = Dataset::new(scenes::block(n, |voxel| voxel == [0; 3]));
+    for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast] {
+        let mut settings = base(engine, 1.0);
+        settings.shadows.algorithm = algorithm;
+        settings.lights = vec![scenes::light(LightKind::Perspective, [0.0, 0.0, 4.0])];
+        settings.lights[0].hood = Hood { on: true, half_angle_deg: 11.0, rim_deg: 4.0 };
+        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        // The middle plane, from the axis outwards: 4 scene units from the light, a voxel is 2/n wide.
+        let middle = n / 2;
+        let row: Vec<(f64, f32)> = (middle..n)
+            .map(|x| {
+                let away = (x as f64 - (n as f64 - 1.0) / 2.0) * 2.0 / n as f64;
+                let z = 4.0 - (middle as f64 - (n as f64 - 1.0) / 2.0) * 2.0 / n as f64;
+                ((away / z).atan().to_degrees(), volume[x + n * (middle + n * middle)])
+            })
+            .collect();
+        // Two and a half voxels, the reverse kernel's reach and half a pixel, are 1.8° from here.
+        for (angle_deg, arriving) in &row {
+            match angle_deg {
+                angle if *angle > 11.0 + 1.8 => assert_eq!(*arriving, 0.0, "{algorithm:?}, {angle}°"),
+                angle if *angle < 7.0 - 1.8 => assert_eq!(*arriving, 1.0, "{algorithm:?}, {angle}°"),
+                _ => {}
+            }
+        }
+        assert!(row.windows(2).all(|pair| pair[1].1 <= pair[0].1), "{algorithm:?}: {row:?}");
+        let grey = row.iter().filter(|(_, arriving)| (0.02..0.98).contains(arriving)).count();
+        assert!(grey >= 4, "{algorithm:?}: a rim of 4° is {grey} voxels wide: {row:?}");
+        assert!(row.last().is_some_and(|(angle, _)| *angle > 13.0), "the row reaches beyond the rim");
+    }
+}

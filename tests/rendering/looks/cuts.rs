@@ -1,0 +1,256 @@
+//! The crop box and the clip plane: against the reference, against closed forms, and what they must leave
+//! alone.
+
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{
+    Classification, ClipPlane, CropBox, CutEffect, Cuts, Engine, Gradients, Length, LightKind, LightStorage,
+    Settings, ShadowAlgorithm, SheetOrder,
+};
+use chiaroscuro::reference::{Fault, Options, Reference};
+use glam::DVec3;
+
+use crate::against_reference::check_against;
+use crate::common::{Dataset, context, render};
+use crate::compare::{compare, flat32, flat64};
+use crate::scenes::{self, isotropic, linear_extinction, straight};
+use crate::thresholds::{CHORD_OPACITY, CUT_ORDERS, SAME_WEIGHTS};
+
+const SIZE: [u32; 2] = [64, 56];
+
+/// Faces across all axes and one across none, some of them through the middle of slabs and voxels.
+fn cuts(crop: CutEffect, plane: CutEffect) -> Cuts {
+    Cuts {
+        crop: CropBox { on: true, low: [0.21, 0.0, 0.13], high: [1.0, 0.73, 0.9], effect: crop },
+        plane: ClipPlane { on: true, normal: [0.6, -1.0, 0.7], offset: 0.17, effect: plane },
+    }
+}
+
+fn look(crop: CutEffect, plane: CutEffect) -> Settings {
+    Settings { cuts: cuts(crop, plane), ..scenes::look() }
+}
+
+fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
+    check_against(name, 40, spacing_mm, settings, Some(|value| half::f16::from_f32(value).to_f32()));
+}
+
+#[test]
+fn removed_parallel_and_perspective() {
+    let mut settings = look(CutEffect::Removed, CutEffect::Removed);
+    check("removed", DVec3::ONE, &settings);
+    settings.lights = vec![scenes::light(LightKind::Perspective, [1.6, -1.2, 2.2])];
+    check("removed, anisotropic", DVec3::new(1.0, 0.8, 1.6), &settings);
+}
+
+#[test]
+fn each_effect_for_each_of_them() {
+    check("hidden, shadowless", DVec3::ONE, &look(CutEffect::Hidden, CutEffect::Shadowless));
+    check("shadowless, hidden", DVec3::ONE, &look(CutEffect::Shadowless, CutEffect::Hidden));
+}
+
+#[test]
+fn by_rays() {
+    let mut settings = look(CutEffect::Removed, CutEffect::Removed);
+    settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+    check("rays from voxels", DVec3::ONE, &settings);
+    settings.shadows.algorithm = ShadowAlgorithm::Direct;
+    check("rays from samples", DVec3::ONE, &settings);
+    settings.cuts.crop.effect = CutEffect::Shadowless;
+    settings.cuts.plane.effect = CutEffect::Shadowless;
+    check("rays that only the light knows", DVec3::ONE, &settings);
+}
+
+#[test]
+fn classified_before_and_gradients_of_sheets() {
+    let mut settings = look(CutEffect::Removed, CutEffect::Hidden);
+    settings.sampling.classification = Classification::Pre;
+    settings.sampling.gradients = Gradients::Sheets;
+    settings.sampling.slab = 0.5;
+    check("pre-classified", DVec3::ONE, &settings);
+}
+
+#[test]
+fn stretched_kernels() {
+    let mut settings = look(CutEffect::Removed, CutEffect::Removed);
+    settings.camera.distance *= 4.0;
+    check("from afar", DVec3::ONE, &settings);
+}
+
+#[test]
+fn scattered() {
+    let mut settings = look(CutEffect::Removed, CutEffect::Shadowless);
+    settings.sampling.engine = Engine::Scatter;
+    check_against("scattered", 28, DVec3::new(1.0, 1.2, 1.6), &settings, None);
+}
+
+#[test]
+fn the_comparison_notices_whole_slabs() {
+    let mut settings = look(CutEffect::Removed, CutEffect::Removed);
+    settings.sampling.slab = 2.0;
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
+    let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
+    let options = Options { fault: Fault::WholeSlabs, rounding: Some(rounding), ..Options::default() };
+    let reference = Reference::new(loaded.volume(), &settings, options);
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let found = render(&mut renderer, &loaded, &settings, SIZE);
+    let expected = reference.picture(SIZE, &reference.attenuations());
+    assert!(compare("whole slabs", &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).is_err());
+}
+
+/// A homogeneous block of 32³ voxels in the middle of 48³, seen along z, of extinction ln 2 per 16 voxels.
+fn block() -> (Dataset, Settings) {
+    let per_voxel = 2.0_f64.ln() / 16.0;
+    let mut settings = Settings {
+        transfer: linear_extinction(per_voxel),
+        opacity_unit: Length::Voxels(1.0),
+        lights: vec![scenes::light(LightKind::Parallel, [0.0, 0.0, 1.0])],
+        camera: straight(-90.0, 90.0),
+        ..Settings::default()
+    };
+    isotropic(&mut settings);
+    let inside = |at: [usize; 3]| at.iter().all(|c| (8..40).contains(c));
+    (Dataset::new(scenes::block(48, inside)), settings)
+}
+
+/// Where a share of the block lies in the grid.
+fn of_block(share: f64) -> f64 {
+    (8.0 + 32.0 * share) / 48.0
+}
+
+/// Opacity and brightness in the middle of the picture.
+fn middle(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> (f64, f64) {
+    let picture = render(renderer, loaded, settings, [33, 33]);
+    let [red, .., alpha] = picture.light[16 * 33 + 16].map(f64::from);
+    (alpha, red)
+}
+
+#[test]
+fn a_chord_is_as_opaque_as_what_remains_of_it() {
+    let (loaded, mut settings) = block();
+    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let mut opacity = |settings: &Settings| middle(&mut renderer, &loaded, settings).0;
+    let close = |found: f64, chord: f64| {
+        let wanted = 1.0 - (-chord * 2.0_f64.ln() / 16.0).exp();
+        assert!((found - wanted).abs() < CHORD_OPACITY, "{found}, {wanted} for {chord} voxels");
+    };
+    close(opacity(&settings), 32.0);
+    for slab in [0.4, 1.0, 1.7] {
+        settings.sampling.slab = slab;
+        settings.cuts = Cuts::default();
+        settings.cuts.crop = CropBox { on: true, low: [0.0, 0.0, of_block(0.3)], ..CropBox::default() };
+        close(opacity(&settings), 32.0 * 0.7);
+        settings.cuts.crop.high[2] = of_block(0.42);
+        close(opacity(&settings), 32.0 * 0.12);
+        // Thinner than a slab.
+        settings.cuts.crop.high[2] = of_block(0.31);
+        close(opacity(&settings), 32.0 * 0.01);
+        // 24 voxels to a scene unit. The middle pixel looks through its centre.
+        settings.cuts.plane =
+            ClipPlane { on: true, normal: [0.0, 0.0, 3.0], offset: 0.25, ..Default::default() };
+        settings.cuts.crop.on = false;
+        close(opacity(&settings), 16.0 + 6.0);
+        settings.cuts.plane.normal = [0.0, 0.0, -1.0];
+        close(opacity(&settings), 16.0 + 6.0);
+        settings.cuts.plane.offset = -1.5;
+        close(opacity(&settings), 0.0);
+        settings.cuts.plane.offset = 1.5;
+        close(opacity(&settings), 32.0);
+    }
+}
+
+/// The light comes from where the eye is: what is removed in front of the rest takes no light, what is only
+/// hidden does.
+#[test]
+fn effects_tell_eye_and_light_apart() {
+    let (loaded, mut settings) = block();
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    settings.cuts.crop = CropBox { on: true, high: [1.0, 1.0, 0.5], ..CropBox::default() };
+    let mut with = |effect: CutEffect| {
+        settings.cuts.crop.effect = effect;
+        middle(&mut renderer, &loaded, &settings)
+    };
+    let (removed, hidden, shadowless) =
+        (with(CutEffect::Removed), with(CutEffect::Hidden), with(CutEffect::Shadowless));
+    // 16 voxels halve the light; half of it is met again in each case but the last.
+    assert!((removed.0 - 0.5).abs() < 0.01 && (hidden.0 - 0.5).abs() < 0.01, "{removed:?} {hidden:?}");
+    assert!((shadowless.0 - 0.75).abs() < 0.01, "{shadowless:?}");
+    // Below the face a voxel's worth of material lets light pass.
+    let wanted = 0.5 * 2.0_f64.powf(-1.0 / 16.0);
+    assert!((hidden.1 / removed.1 - wanted).abs() < 0.01, "{removed:?} {hidden:?}, wanted {wanted}");
+    assert!(shadowless.1 > removed.1, "the front is seen in full light: {removed:?} {shadowless:?}");
+}
+
+#[test]
+fn cuts_of_nothing_change_no_bit() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut settings = scenes::look();
+    let shown = |settings: &Settings| {
+        let mut renderer = Renderer::new(&context()).expect("a renderer");
+        render(&mut renderer, &loaded, settings, SIZE).light
+    };
+    let before = shown(&settings);
+    settings.cuts.crop = CropBox { on: true, ..CropBox::default() };
+    assert!(shown(&settings) == before, "a box around everything");
+    settings.cuts.plane = ClipPlane { on: true, offset: 2.0, ..ClipPlane::default() };
+    assert!(shown(&settings) == before, "a plane beyond everything");
+    settings.cuts.plane.offset = 0.2;
+    assert!(shown(&settings) != before);
+}
+
+#[test]
+fn the_light_is_kept_while_only_the_eye_is_concerned() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut settings = look(CutEffect::Hidden, CutEffect::Hidden);
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut rebuilds = |settings: &Settings| {
+        render(&mut renderer, &loaded, settings, SIZE);
+        renderer.light_rebuilds()[0]
+    };
+    assert_eq!(rebuilds(&settings), 1);
+    settings.cuts.plane.offset += 0.1;
+    settings.cuts.crop.low[0] += 0.1;
+    assert_eq!(rebuilds(&settings), 1);
+    settings.cuts.plane.effect = CutEffect::Removed;
+    assert_eq!(rebuilds(&settings), 2);
+    settings.cuts.crop.low[0] += 0.1;
+    assert_eq!(rebuilds(&settings), 2);
+}
+
+/// Volume-aligned sheets and single footprints are other sums; what is cut away must be the same.
+#[test]
+fn historical_orders_are_cut_too() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut settings = look(CutEffect::Removed, CutEffect::Removed);
+    settings.sampling.engine = Engine::Scatter;
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut alpha = |order: SheetOrder, cut: bool| {
+        settings.sampling.order = order;
+        (settings.cuts.crop.on, settings.cuts.plane.on) = (cut, cut);
+        let picture = render(&mut renderer, &loaded, &settings, SIZE);
+        picture.light.iter().map(|texel| f64::from(texel[3])).sum::<f64>()
+    };
+    let share = alpha(SheetOrder::ImageAligned, true) / alpha(SheetOrder::ImageAligned, false);
+    assert!(share < 0.8, "much is cut away: {share} remains");
+    for order in [SheetOrder::VolumeAligned, SheetOrder::EveryFootprint] {
+        let found = alpha(order, true) / alpha(order, false);
+        assert!((found - share).abs() < CUT_ORDERS, "{order:?}: {found} remains, not {share}");
+    }
+}
+
+#[test]
+fn collapsed_lights_know_the_faces() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut settings = look(CutEffect::Removed, CutEffect::Removed);
+    settings.shading.specular = 0.0;
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut shown = |storage: LightStorage, settings: &mut Settings| {
+        settings.shadows.storage = storage;
+        flat32(&render(&mut renderer, &loaded, settings, SIZE).light)
+    };
+    for offset in [0.17, 0.3] {
+        settings.cuts.plane.offset = offset;
+        let kept = shown(LightStorage::PerLight, &mut settings);
+        let combined = shown(LightStorage::Combined, &mut settings);
+        let limit = crate::thresholds::CUT_COLLAPSED;
+        compare("combined", &combined, &kept, limit).expect("nearly the same");
+    }
+}

@@ -1,0 +1,161 @@
+//! The floor: against the reference, against closed forms, and under the picture.
+
+use chiaroscuro::gpu::{RenderOptions, Renderer};
+use chiaroscuro::model::{
+    Background, Camera, Deposit, Floor, Hood, Kernel, Length, LightKind, Projection, Settings,
+    ShadowAlgorithm, ToneMap,
+};
+use chiaroscuro::reference::{Options, Reference};
+use glam::DVec3;
+
+use crate::common::{Dataset, context, render};
+use crate::compare::compare;
+use crate::scenes::{self, linear_extinction, straight};
+use crate::thresholds::{FLOOR_SHADOW, SAME_WEIGHTS};
+
+const SIZE: [u32; 2] = [96, 80];
+
+fn on(settings: Settings) -> Settings {
+    Settings { floor: Floor { on: true, height: -0.9, ..Floor::default() }, ..settings }
+}
+
+/// What is seen of the floor past the volume, by both sides.
+fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
+    let loaded = Dataset::new(scenes::creature(40, spacing_mm));
+    let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
+    let options = Options { rounding: Some(rounding), ..Options::default() };
+    let reference = Reference::new(loaded.volume(), settings, options);
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let picture = render(&mut renderer, &loaded, settings, SIZE);
+    let floor = renderer.read_floor().expect("a floor");
+    let past = |floor: [f64; 4], at: usize| {
+        let through = 1.0 - f64::from(picture.light[at][3]);
+        floor.map(|channel| channel * through)
+    };
+    let found: Vec<f64> =
+        floor.iter().enumerate().flat_map(|(at, texel)| past(texel.map(f64::from), at)).collect();
+    let expected: Vec<f64> =
+        reference.floor(SIZE).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
+    assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
+    compare(name, &found, &expected, SAME_WEIGHTS).unwrap_or_else(|err| panic!("{err}"));
+}
+
+#[test]
+fn floor_and_shadows_as_in_the_reference() {
+    let mut settings = on(scenes::look());
+    settings.shadows.balance = 1.7;
+    check("parallel light, perspective camera", DVec3::ONE, &settings);
+    settings.camera.projection = Projection::Orthographic;
+    settings.camera.elevation_deg = 50.0;
+    let mut lamp = scenes::light(LightKind::Perspective, [1.1, -0.8, 1.6]);
+    lamp.hood = Hood { on: true, half_angle_deg: 30.0, rim_deg: 8.0 };
+    settings.lights.push(lamp);
+    settings.lights[0].casts_shadows = false;
+    settings.shadows.gain = 1.3;
+    settings.shadows.ambient_offset = 0.1;
+    settings.shadows.kernel = Kernel::Prefiltered;
+    settings.shadows.deposit = Deposit::Front;
+    check("hood, cures, orthographic camera", DVec3::new(1.0, 0.8, 1.6), &settings);
+    settings.floor.shadow_only = true;
+    settings.floor.opacity = 0.8;
+    settings.lights[0].casts_shadows = true;
+    settings.cuts.plane.on = true;
+    check("shadow alone, and cut", DVec3::ONE, &settings);
+}
+
+#[test]
+fn every_algorithm_and_engine_has_it() {
+    let mut settings = on(scenes::look());
+    let loaded = Dataset::new(scenes::creature(24, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut shadows = Vec::new();
+    for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
+        settings.shadows.algorithm = algorithm;
+        render(&mut renderer, &loaded, &settings, SIZE);
+        shadows.push(renderer.read_floor().expect("a floor"));
+    }
+    // Pixels that the volume nearly covers are not drawn, and which these are may differ.
+    let differ = |a: &[[f32; 4]], b: &[[f32; 4]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+    for other in &shadows[1..] {
+        assert!(differ(&shadows[0], other) < shadows[0].len() / 100);
+    }
+    settings.shadows.algorithm = ShadowAlgorithm::Off;
+    render(&mut renderer, &loaded, &settings, SIZE);
+    let bare = renderer.read_floor().expect("a floor");
+    assert!(differ(&shadows[0], &bare) > 200, "shadows lie on the floor");
+    assert!(bare.iter().zip(&shadows[0]).all(|(bare, shadowed)| bare[0] >= shadowed[0] - 1e-3));
+}
+
+/// A block of 32³ voxels of extinction ln 2 per 16 voxels, under a light straight above it: a quarter of the
+/// light gets through.
+#[test]
+fn what_a_block_lets_through_falls_on_the_floor() {
+    let inside = |at: [usize; 3]| at.iter().all(|c| (8..40).contains(c));
+    let loaded = Dataset::new(scenes::block(48, inside));
+    let mut settings = Settings {
+        transfer: linear_extinction(2.0_f64.ln() / 16.0),
+        opacity_unit: Length::Voxels(1.0),
+        lights: vec![scenes::light(LightKind::Parallel, [0.0, 0.0, 1.0])],
+        // From above, past the block: it looks at the floor beside the middle.
+        camera: straight(-90.0, 60.0),
+        ..Settings::default()
+    };
+    settings.shading.ambient = 0.0;
+    settings.shading.diffuse = 1.0;
+    settings.floor = Floor { on: true, height: -3.0, color: [1.0; 3], radius: 50.0, ..Floor::default() };
+    let camera = settings.camera.clone();
+    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    // Where a point of the floor is seen.
+    settings.camera.target = [0.0, 0.0, -3.0];
+    let picture = render(&mut renderer, &loaded, &settings, [65, 65]);
+    let floor = renderer.read_floor().expect("a floor");
+    let at = 32 * 65 + 32;
+    assert_eq!(picture.light[at][3], 0.0, "the block is not in the way");
+    assert!((f64::from(floor[at][0]) - 0.25).abs() < FLOOR_SHADOW, "{:?}", floor[at]);
+    settings.camera.target = [1.5, 0.0, -3.0];
+    render(&mut renderer, &loaded, &settings, [65, 65]);
+    let floor = renderer.read_floor().expect("a floor");
+    assert!((f64::from(floor[at][0]) - 1.0).abs() < FLOOR_SHADOW, "beside the shadow: {:?}", floor[at]);
+    // From below there is none.
+    settings.camera = Camera { elevation_deg: -30.0, ..camera };
+    render(&mut renderer, &loaded, &settings, [65, 65]);
+    assert!(renderer.read_floor().expect("a floor").iter().all(|texel| *texel == [0.0; 4]));
+}
+
+#[test]
+fn it_lies_behind_the_volume_and_before_the_background() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut settings = scenes::look();
+    settings.output.background = Background { top: [0.2; 3], bottom: [0.2; 3] };
+    settings.output.tone_map = ToneMap::Clip;
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let bare = render(&mut renderer, &loaded, &settings, SIZE);
+    settings = on(settings);
+    let with = render(&mut renderer, &loaded, &settings, SIZE);
+    assert!(bare.light == with.light, "the volume is as it was");
+    let texel =
+        |bytes: &[u8], at: usize| [bytes[4 * at], bytes[4 * at + 1], bytes[4 * at + 2], bytes[4 * at + 3]];
+    let floor = renderer.read_floor().expect("a floor");
+    let mut seen = 0;
+    for (at, light) in bare.light.iter().enumerate() {
+        if light[3] > 0.9999 || floor[at][3] == 0.0 {
+            assert_eq!(texel(&bare.shown, at), texel(&with.shown, at));
+        } else if light[3] == 0.0 && floor[at][3] == 1.0 {
+            let srgb = |c: f32| if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+            for (found, wanted) in texel(&with.shown, at).iter().zip(&floor[at][..3]) {
+                assert!((f32::from(*found) - srgb(wanted.min(1.0)) * 255.0).abs() < 1.0);
+            }
+            seen += 1;
+        }
+    }
+    assert!(seen > 300, "{seen} pixels of the bare floor");
+    // On transparent pictures shadows are half-transparent black.
+    settings.floor.shadow_only = true;
+    let options = RenderOptions { transparent: true, ..RenderOptions::default() };
+    let picture = renderer.render(&loaded, &settings, SIZE, &options).expect("a picture");
+    let shadows = (0..bare.light.len()).filter(|&at| {
+        let [r, g, b, alpha] = texel(&picture.shown, at);
+        bare.light[at][3] == 0.0 && alpha > 100 && [r, g, b] == [0; 3]
+    });
+    assert!(shadows.count() > 100);
+}

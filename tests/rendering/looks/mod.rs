@@ -1,0 +1,7 @@
+//! What single settings do to a picture: combined lights, cuts, the floor, far away, other algorithms.
+
+mod combine;
+mod cuts;
+mod floor;
+mod stretch;
+mod variants;

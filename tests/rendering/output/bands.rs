@@ -1,0 +1,153 @@
+//! Pictures drawn in parts, with more samples, and in more than 8 bits.
+
+use chiaroscuro::export::Rows;
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{
+    Background, Depth, Engine, Floor, Projection, Sampling, Settings, ShadowAlgorithm, Shot,
+};
+use glam::DVec3;
+
+use crate::common::{Dataset, context};
+use crate::scenes;
+use crate::thresholds::PARTS;
+
+/// No multiple of a part's edge, and neither square.
+const SIZE: [u32; 2] = [93, 70];
+
+/// A look with everything that depends on where a pixel is: a background from top to bottom, a floor.
+fn look() -> Settings {
+    let mut settings = scenes::look();
+    settings.output.background = Background { top: [0.9, 0.2, 0.1], bottom: [0.1, 0.3, 0.8] };
+    settings.floor = Floor { on: true, height: -0.9, ..Floor::default() };
+    settings
+}
+
+fn picture(
+    renderer: &mut Renderer,
+    loaded: &Dataset,
+    settings: &Settings,
+    shot: &Shot,
+    parts: (u32, u32),
+) -> Vec<f32> {
+    let bands = renderer.bands_of(&loaded, settings, shot, parts);
+    let rows = bands.all().expect("the picture is rendered");
+    assert_eq!(matches!(rows, Rows::Bytes(_)), shot.depth == Depth::Eight);
+    rows.values()
+}
+
+fn largest(left: &[f32], right: &[f32]) -> f64 {
+    assert_eq!(left.len(), right.len());
+    left.iter().zip(right).map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max)
+}
+
+#[test]
+fn parts_are_the_whole_picture() {
+    let loaded = Dataset::new(scenes::creature(40, DVec3::new(1.0, 0.8, 1.6)));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut orthographic = look();
+    orthographic.camera.projection = Projection::Orthographic;
+    let mut direct = look();
+    direct.shadows.algorithm = ShadowAlgorithm::Direct;
+    let scatter = Settings { sampling: Sampling { engine: Engine::Scatter, ..look().sampling }, ..look() };
+    for (name, settings) in
+        [("perspective", look()), ("orthographic", orthographic), ("direct", direct), ("scatter", scatter)]
+    {
+        for depth in [Depth::Eight, Depth::Sixteen, Depth::Linear] {
+            let shot = Shot { depth, ..Shot::new(SIZE) };
+            let whole = picture(&mut renderer, &loaded, &settings, &shot, (4096, 1 << 20));
+            let fills = renderer.light_rebuilds().to_vec();
+            // Bands of whole rows, and bands in columns.
+            for parts in [(4096, 93 * 16), (40, 1 << 20), (33, 33 * 9)] {
+                let found = picture(&mut renderer, &loaded, &settings, &shot, parts);
+                let apart = largest(&found, &whole);
+                println!("{name} {depth:?} {parts:?}: {apart:.2e}");
+                // A rounded step of 8 bits, or what positions in 32 bits differ by.
+                let limit = if depth == Depth::Eight { 1.01 / 255.0 } else { PARTS };
+                assert!(apart <= limit, "{name} {depth:?} {parts:?}: {apart}");
+            }
+            assert_eq!(renderer.light_rebuilds(), fills, "parts share their light volumes");
+        }
+    }
+}
+
+#[test]
+fn parts_that_lie_elsewhere_are_noticed() {
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let shot = Shot { depth: Depth::Sixteen, ..Shot::new(SIZE) };
+    let whole = picture(&mut renderer, &loaded, &look(), &shot, (4096, 1 << 20));
+    // One pixel further right is the smallest mistake that parts can make.
+    let shifted: Vec<f32> = whole.iter().skip(4).chain(&whole[..4]).copied().collect();
+    assert!(largest(&shifted, &whole) > 50.0 * PARTS);
+}
+
+#[test]
+fn samples_are_the_mean_of_a_finer_picture() {
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    for samples in [2, 3] {
+        for transparent in [false, true] {
+            let shot = Shot { depth: Depth::Linear, transparent, samples, ..Shot::new(SIZE) };
+            let found = picture(&mut renderer, &loaded, &look(), &shot, (4096, 93 * 9 * 20));
+            let finer = Shot { size: SIZE.map(|n| n * samples), samples: 1, ..shot };
+            // The background of one colour: else it is that of the pixel's middle, not the mean.
+            let finer = picture(&mut renderer, &loaded, &look(), &finer, (4096, 1 << 20));
+            let mean = means(&finer, samples as usize);
+            let limit = if transparent { PARTS } else { 5e-3 };
+            let apart = largest(&found, &mean);
+            assert!(apart < limit, "{samples} {transparent}: {apart}");
+        }
+    }
+}
+
+/// Means over squares of `n` pixels of a picture [`SIZE`] times as large.
+fn means(finer: &[f32], n: usize) -> Vec<f32> {
+    let [width, height] = SIZE.map(|edge| edge as usize);
+    let value = |i: usize, j: usize, c: usize| {
+        let at = |a: usize, b: usize| finer[4 * ((j * n + b) * width * n + i * n + a) + c];
+        let sum: f32 = (0..n).flat_map(|b| (0..n).map(move |a| (a, b))).map(|(a, b)| at(a, b)).sum();
+        sum / (n * n) as f32
+    };
+    (0..height)
+        .flat_map(|j| (0..width).map(move |i| (i, j)))
+        .flat_map(|(i, j)| (0..4).map(move |c| (i, j, c)))
+        .map(|(i, j, c)| value(i, j, c))
+        .collect()
+}
+
+#[test]
+fn sixteen_bits_are_between_the_steps_of_eight() {
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let whole = (4096, 1 << 20);
+    for transparent in [false, true] {
+        let shot = Shot { transparent, ..Shot::new(SIZE) };
+        let coarse = picture(&mut renderer, &loaded, &look(), &shot, whole);
+        let fine = Shot { depth: Depth::Sixteen, ..shot };
+        let fine = picture(&mut renderer, &loaded, &look(), &fine, whole);
+        let apart = largest(&coarse, &fine);
+        assert!(apart < 0.51 / 255.0, "{apart}");
+        assert!(apart > 0.4 / 255.0, "nothing lies between: {apart}");
+    }
+}
+
+#[test]
+fn linear_light_is_what_the_display_shows() {
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut settings = look();
+    settings.output.tone_map = chiaroscuro::model::ToneMap::Clip;
+    settings.floor.on = false;
+    let whole = (4096, 1 << 20);
+    let shot = Shot { depth: Depth::Linear, ..Shot::new(SIZE) };
+    let linear = picture(&mut renderer, &loaded, &settings, &shot, whole);
+    let shown = Shot { depth: Depth::Sixteen, ..shot };
+    let shown = picture(&mut renderer, &loaded, &settings, &shown, whole);
+    let srgb = |c: f32| if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    // Nothing is brighter than white here, so that clipping and laying over commute.
+    assert!(linear.iter().all(|&value| value <= 1.0));
+    let expected: Vec<f32> =
+        linear.chunks(4).flat_map(|c| [srgb(c[0]), srgb(c[1]), srgb(c[2]), c[3]]).collect();
+    let apart = largest(&shown, &expected);
+    assert!(apart < 1e-3, "{apart}");
+}

@@ -1,0 +1,6 @@
+//! From linear light to what is written and shown: parts, samples, previews, fewer voxels, the window.
+
+mod bands;
+mod preview;
+mod reduced;
+mod window;

@@ -1,0 +1,73 @@
+//! What the window shows while something moves, beside what it shows at rest.
+
+use chiaroscuro::data::Histogram;
+use chiaroscuro::data::synthetic::builtin;
+use chiaroscuro::gpu::{RenderOptions, Renderer, mean_luminance};
+use chiaroscuro::model::{Kernel, Resolution, Settings, auto};
+use chiaroscuro::plan::{Request, preview_slab};
+
+use crate::common::{Dataset, context};
+use crate::thresholds::PREVIEW_BRIGHTNESS;
+
+const SIZE: [u32; 2] = [192, 144];
+
+/// The picture's mean luminance, at full quality or as a preview.
+fn brightness(
+    renderer: &mut Renderer,
+    loaded: &Dataset,
+    settings: &Settings,
+    size: [u32; 2],
+    coarse: Option<Resolution>,
+) -> f64 {
+    let (mut settings, options) =
+        (settings.clone(), RenderOptions { preview: coarse.is_some(), ..RenderOptions::default() });
+    if coarse.is_some() {
+        settings.sampling.kernel = Kernel::Prefiltered;
+        let slab = settings.sampling.slab;
+        settings.sampling.slab = preview_slab(&settings.camera, &loaded.volume().scene(), size, slab);
+        settings.shadows.kernel = Kernel::Prefiltered;
+    }
+    let request = Request { volume: loaded.volume().content_id(), settings, size, coarse };
+    let mut job = renderer.begin(&loaded, request, &options).expect("a job");
+    while job.step().expect("a step") {}
+    mean_luminance(&renderer.read_light().expect("light"))
+}
+
+/// The first preview of a drag is exposed to be as bright as the picture before it; until the light has
+/// moved a third of a right angle the exposure must stay right.
+#[test]
+fn previews_stay_as_bright_as_pictures() {
+    let context = context();
+    for name in ["chair", "cloud", "sphere", "marschner-lobb"] {
+        let volume = builtin(name, Some(64)).expect("a volume");
+        let home = auto::first_settings(&volume, &Histogram::of(&volume));
+        let loaded = Dataset::new(volume);
+        let mut renderer = Renderer::new(&context).expect("a renderer");
+        for (scale, resolution) in [1, 2, 4]
+            .into_iter()
+            .flat_map(|scale| [Resolution::Half, Resolution::Quarter].map(|r| (scale, r)))
+        {
+            let mut off = |angle_deg: f64| {
+                let mut settings = home.clone();
+                let turn = glam::DQuat::from_rotation_z(angle_deg.to_radians());
+                settings.lights[0].position = (turn * glam::DVec3::from(home.lights[0].position)).into();
+                let whole = brightness(&mut renderer, &loaded, &settings, SIZE, None);
+                // Moved by a hair, so that a coarse light volume is filled for it.
+                settings.lights[0].position[0] += 1e-6;
+                let size = SIZE.map(|n| n / scale);
+                brightness(&mut renderer, &loaded, &settings, size, Some(resolution)) / whole
+            };
+            let at_first = off(0.0);
+            if (scale, resolution) == (1, Resolution::Quarter) && name == "chair" {
+                assert!(at_first > 1.2, "without compensation shadows are too bright: {at_first}");
+            }
+            for angle_deg in [10.0, 30.0] {
+                let drift = (off(angle_deg) / at_first - 1.0).abs();
+                assert!(
+                    drift <= PREVIEW_BRIGHTNESS,
+                    "{name} / {scale}, {resolution:?}, {angle_deg}°: {drift}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Volumes whose voxels were averaged look like those that they stand for.
+
+use chiaroscuro::data::{Histogram, Volume};
+use chiaroscuro::gpu::{Renderer, fitted, mean_luminance};
+use chiaroscuro::model::{Settings, auto};
+use glam::DVec3;
+
+use crate::common::{Dataset, context, render};
+use crate::compare::{difference, flat32};
+use crate::scenes;
+use crate::thresholds::{AVERAGED, AVERAGED_MEAN};
+
+const SIZE: [u32; 2] = [96, 72];
+
+/// The automatic opacity unit in the look of a test: it is what follows the number of voxels.
+fn look(volume: &Volume) -> Settings {
+    let first = auto::first_settings(volume, &Histogram::of(volume));
+    Settings { opacity_unit: first.opacity_unit, ..scenes::look() }
+}
+
+#[test]
+fn averaged_voxels_look_like_those_that_they_stand_for() {
+    let whole = scenes::creature(64, DVec3::new(1.0, 0.8, 1.6));
+    let half = whole.clone().reduced([2; 3]).expect("a volume");
+    assert_eq!(half.dims(), [32; 3]);
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut picture = |volume: &Volume, settings: &Settings| {
+        render(&mut renderer, &Dataset::new(volume.clone()), settings, SIZE)
+    };
+    let (before, after) = (picture(&whole, &look(&whole)), picture(&half, &look(&half)));
+    let far = difference(&flat32(&after.light), &flat32(&before.light)).rmse;
+    let mean = mean_luminance(&after.light) / mean_luminance(&before.light);
+    println!("rmse {:.2}/255, mean {mean:.3}", far * 255.0);
+    assert!(far < AVERAGED && (mean - 1.0).abs() < AVERAGED_MEAN, "{far} {mean}");
+    // An opacity unit that is taken for that of the file is noticed.
+    let wrong = picture(&half, &look(&whole));
+    let mean = mean_luminance(&wrong.light) / mean_luminance(&before.light);
+    println!("with a unit of the averaged voxels: mean {mean:.3}");
+    assert!((mean - 1.0).abs() > AVERAGED_MEAN, "{mean}");
+}
+
+#[test]
+fn what_the_adapter_can_hold_stays_whole() {
+    let whole = scenes::creature(24, DVec3::ONE);
+    let id = whole.content_id();
+    let shown = fitted(&context(), whole).expect("it fits");
+    assert_eq!((shown.content_id(), shown.dims()), (id, shown.file_dims()));
+}

@@ -1,0 +1,105 @@
+//! What the window shows of a picture: every byte of it, whatever the window's format.
+
+use chiaroscuro::gpu::{Context, WindowPainter};
+
+use crate::common::context;
+
+/// Pixels of target and picture; a row of 256 bytes can be read back as it is.
+const SIZE: [u32; 2] = [64, 8];
+
+/// Bytes in which every value occurs in every channel.
+fn picture() -> Vec<u8> {
+    (0..SIZE[0] * SIZE[1]).flat_map(|i| [i as u8, (i * 5 + 3) as u8, (i * 11 + 7) as u8, 255]).collect()
+}
+
+/// The bytes of a target after something was drawn over black.
+fn drawn(
+    context: &Context,
+    format: wgpu::TextureFormat,
+    draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
+) -> Vec<u8> {
+    let [width, height] = SIZE;
+    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let target = context.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("target"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let view = target.create_view(&wgpu::TextureViewDescriptor::default());
+    let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("bytes"),
+        size: u64::from(4 * width * height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    draw(&mut pass);
+    drop(pass);
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+    encoder.copy_texture_to_buffer(
+        target.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        size,
+    );
+    context.queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("it can be read"));
+    context.wait().expect("the device works");
+    buffer.get_mapped_range(..).expect("it is mapped").to_vec()
+}
+
+#[test]
+fn pictures_reach_the_window_byte_for_byte() {
+    let context = context();
+    for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
+        let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
+        let shown = painter.place(None, SIZE, &picture(), true);
+        assert!(drawn(&context, format, |pass| shown.draw(pass, 255)) == picture(), "{format:?}");
+        // Another one in its place, and it alone.
+        let black = vec![[0, 0, 0, 255]; (SIZE[0] * SIZE[1]) as usize].concat();
+        let shown = painter.place(Some(shown), SIZE, &black, true);
+        assert!(drawn(&context, format, |pass| shown.draw(pass, 255)) == black, "{format:?}");
+    }
+}
+
+#[test]
+fn a_fading_picture_lets_the_ground_through() {
+    let context = context();
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
+    let floor = [40_u8, 80, 120];
+    let filled = drawn(&context, format, |pass| painter.fill(pass, floor));
+    assert!(filled.chunks(4).all(|pixel| pixel == [40, 80, 120, 255]), "{:?}", &filled[..4]);
+    let shown = painter.place(None, SIZE, &picture(), true);
+    for opacity in [0_u8, 85, 255] {
+        let both = drawn(&context, format, |pass| {
+            painter.fill(pass, floor);
+            shown.draw(pass, opacity);
+        });
+        let share = f64::from(opacity) / 255.0;
+        for (got, on_top) in both.chunks(4).zip(picture().chunks(4)) {
+            for channel in 0..3 {
+                let wanted = f64::from(on_top[channel]) * share + f64::from(floor[channel]) * (1.0 - share);
+                // Rounded where it is blended, to either side.
+                assert!((f64::from(got[channel]) - wanted).abs() <= 1.0, "{opacity}: {got:?}, {on_top:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! What makes Mesa's software driver slow is not in the shaders.
+
+use std::collections::BTreeSet;
+
+use crate::sources::{check, code_of, entry_shaders, joined};
+
+/// Uniforms that are not copied by the first statements of a shader's entry, or read from elsewhere.
+fn uniforms_read_late(source: &str) -> Vec<String> {
+    let code = code_of(source);
+    let entry = code.split("@compute").nth(1).and_then(|rest| rest.split_once(") {\n"));
+    let body = entry.map(|(_, body)| body).unwrap_or_default();
+    let copies: BTreeSet<_> =
+        body.lines().map(str::trim).take_while(|line| line.contains(" = bound_")).collect();
+    let declared = code.split("var<uniform> ").skip(1).filter_map(|rest| rest.split(':').next());
+    // Of an array whose index varies there is no copy.
+    let reads = |name: &str| code.replace(&format!("{name}.lights[i]"), "").matches(name).count();
+    let is_late = |name: &&str| {
+        let copy = name.strip_prefix("bound_").map(|own| format!("{own} = {name};"));
+        !copy.is_some_and(|copy| copies.contains(copy.as_str())) || reads(name) != 2
+    };
+    declared.filter(is_late).map(str::to_owned).collect()
+}
+
+/// A software driver reads them lane by lane behind a branch (density/volume.wgsl).
+#[test]
+fn uniforms_are_copied_before_anything_branches() {
+    let late: Vec<_> = entry_shaders()
+        .into_iter()
+        .map(|name| (name, uniforms_read_late(&joined(name))))
+        .filter(|(_, late)| !late.is_empty())
+        .collect();
+    assert!(late.is_empty(), "{late:?}");
+}
+
+#[test]
+fn uniforms_read_late_are_noticed() {
+    let source = joined("eye/gather.wgsl");
+    for (from, to, name) in [
+        ("    grid = bound_grid;\n", "", "bound_grid"),
+        ("grid = bound_grid;", "if (true) {}\n    grid = bound_grid;", "bound_grid"),
+        ("let s = eye.shading;", "let s = bound_eye.shading;", "bound_eye"),
+        ("var<uniform> bound_eye", "var<uniform> given_eye", "given_eye"),
+    ] {
+        assert!(source.contains(from), "{from}");
+        assert_eq!(uniforms_read_late(&source.replace(from, to)), [name], "{from}");
+    }
+}
+
+/// Whether an expression is made of uniforms and constants alone, and of any uniform.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    Constant,
+    Uniform,
+    Other,
+}
+
+fn origin_of(module: &naga::Module, function: &naga::Function, at: naga::Handle<naga::Expression>) -> Origin {
+    use naga::Expression as E;
+    let of = |at| origin_of(module, function, at);
+    let join = |parts: &[naga::Handle<E>]| {
+        parts.iter().map(|&part| of(part)).fold(Origin::Constant, |all, part| match (all, part) {
+            (Origin::Other, _) | (_, Origin::Other) => Origin::Other,
+            (Origin::Uniform, _) | (_, Origin::Uniform) => Origin::Uniform,
+            _ => Origin::Constant,
+        })
+    };
+    match &function.expressions[at] {
+        E::Literal(_) | E::Constant(_) | E::Override(_) | E::ZeroValue(_) => Origin::Constant,
+        // Private variables are copies of uniforms.
+        E::GlobalVariable(global)
+            if matches!(
+                module.global_variables[*global].space,
+                naga::AddressSpace::Uniform | naga::AddressSpace::Private
+            ) =>
+        {
+            Origin::Uniform
+        }
+        E::Load { pointer } => of(*pointer),
+        E::AccessIndex { base, .. } => of(*base),
+        E::Access { base, index } => join(&[*base, *index]),
+        E::Splat { value, .. } => of(*value),
+        E::Swizzle { vector, .. } => of(*vector),
+        E::Compose { components, .. } => join(components),
+        E::Unary { expr, .. } | E::As { expr, .. } => of(*expr),
+        E::Binary { left, right, .. } => join(&[*left, *right]),
+        E::Select { condition, accept, reject } => join(&[*condition, *accept, *reject]),
+        E::Relational { argument, .. } => of(*argument),
+        E::Math { arg, arg1, arg2, arg3, .. } => {
+            let all: Vec<_> = [Some(*arg), *arg1, *arg2, *arg3].into_iter().flatten().collect();
+            join(&all)
+        }
+        _ => Origin::Other,
+    }
+}
+
+fn branches_on_uniforms(module: &naga::Module, function: &naga::Function, block: &naga::Block) -> usize {
+    let inner = |block| branches_on_uniforms(module, function, block);
+    block
+        .iter()
+        .map(|statement| match statement {
+            naga::Statement::Block(block) => inner(block),
+            naga::Statement::If { condition, accept, reject } => {
+                let found = origin_of(module, function, *condition) == Origin::Uniform;
+                usize::from(found) + inner(accept) + inner(reject)
+            }
+            naga::Statement::Loop { body, continuing, .. } => inner(body) + inner(continuing),
+            naga::Statement::Switch { cases, .. } => cases.iter().map(|case| inner(&case.body)).sum(),
+            _ => 0,
+        })
+        .sum()
+}
+
+fn branches_on_uniforms_in(module: &naga::Module) -> usize {
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let entries = module.entry_points.iter().map(|entry| &entry.function);
+    functions.chain(entries).map(|function| branches_on_uniforms(module, function, &function.body)).sum()
+}
+
+/// Mesa's software driver writes uniforms that alone decide a branch into the shader: it makes the shader
+/// anew for each dispatch, which takes time, and keeps it, which takes 150 KiB.
+#[test]
+fn no_branch_depends_on_uniforms_alone() {
+    for name in entry_shaders() {
+        let module = check(&joined(name)).expect("the shader is valid");
+        assert_eq!(branches_on_uniforms_in(&module), 0, "{name}");
+    }
+    // And such branches are found.
+    let wrong = joined("output/display.wgsl").replacen(
+        "    if (any(",
+        "    if (display.clip + 1u > 1u) {\n        return;\n    }\n    if (any(",
+        1,
+    );
+    assert_eq!(branches_on_uniforms_in(&check(&wrong).expect("a valid shader")), 1);
+}

@@ -1,0 +1,241 @@
+//! How Rust lays out the structs that it shares with shaders.
+
+use chiaroscuro::gpu::uniforms;
+
+/// A field: its name, offset and type as WGSL calls it, `[f32; 3]` for a vector.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Field {
+    pub(crate) name: String,
+    pub(crate) offset: usize,
+    pub(crate) kind: String,
+}
+
+/// A struct as one of the two languages lays it out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Layout {
+    pub(crate) name: String,
+    pub(crate) size: usize,
+    pub(crate) fields: Vec<Field>,
+}
+
+/// The type of a field, without the modules in which structs live.
+pub(crate) fn kind_of<Whole, F>(_field: fn(&Whole) -> &F) -> String {
+    let full = std::any::type_name::<F>();
+    let (bracket, path) = full.split_at(usize::from(full.starts_with('[')));
+    format!("{bracket}{}", path.rsplit("::").next().unwrap_or(path))
+}
+
+/// The Rust layout of a struct of `gpu::uniforms`. A field that is left out does not compile.
+macro_rules! layout {
+    ($name:ident { $($field:ident),+ $(,)? }) => {{
+        let _all_fields = |whole: uniforms::$name| {
+            let uniforms::$name { $($field: _),+ } = whole;
+        };
+        Layout {
+            name: stringify!($name).to_owned(),
+            size: size_of::<uniforms::$name>(),
+            fields: vec![$(Field {
+                name: stringify!($field).to_owned(),
+                offset: std::mem::offset_of!(uniforms::$name, $field),
+                kind: kind_of(|whole: &uniforms::$name| &whole.$field),
+            }),+],
+        }
+    }};
+}
+
+/// Every mirrored struct, with a shader in which it appears.
+pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
+    let frame = layout!(SheetFrame {
+        origin,
+        first_depth,
+        origin_di,
+        slab,
+        origin_dj,
+        pitch,
+        direction,
+        inverse_distance,
+        direction_di,
+        voxel_edge,
+        direction_dj,
+        slab_count,
+        slope,
+        slope_di,
+        slope_dj,
+        size,
+    });
+    let grid = layout!(Grid { dims, dilation, density_scale, pad0, pyramid_scale, pad1, cell_scale, pad2 });
+    let light = layout!(Light {
+        place,
+        perspective,
+        color,
+        extinction_scale,
+        lookup,
+        hood_inner,
+        hood_axis,
+        hood_outer,
+        place_in_index,
+        pad0,
+    });
+    vec![
+        ("eye/gather.wgsl", frame.clone()),
+        ("light/march.wgsl", frame.clone()),
+        ("light/backproject.wgsl", frame),
+        ("eye/gather.wgsl", grid.clone()),
+        ("light/march.wgsl", grid),
+        ("eye/gather.wgsl", layout!(Cut { low, pad0, high, pad1, plane })),
+        (
+            "light/march.wgsl",
+            layout!(March {
+                frame,
+                begin,
+                end,
+                layers,
+                tiles,
+                extinction_scale,
+                hood_inner,
+                hood_outer,
+                reach,
+                hood_axis,
+                dark,
+                shading_cut,
+            }),
+        ),
+        (
+            "light/backproject.wgsl",
+            layout!(Backprojection {
+                frame,
+                light_from_index_x,
+                light_from_index_y,
+                light_from_index_z,
+                first_pixel,
+                kernel_edge,
+                voxel_step,
+                dims,
+                cube_face,
+                begin,
+                end,
+                layers,
+                bricks,
+                ring_scale,
+                pad0,
+                pad1,
+            }),
+        ),
+        ("light/raycast.wgsl", light.clone()),
+        (
+            "light/raycast.wgsl",
+            layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, pad0, shading_cut }),
+        ),
+        ("eye/gather.wgsl", light),
+        (
+            "eye/gather.wgsl",
+            layout!(Space {
+                scene_from_index_x,
+                scene_from_index_y,
+                scene_from_index_z,
+                index_from_scene_x,
+                index_from_scene_y,
+                index_from_scene_z,
+            }),
+        ),
+        (
+            "eye/gather.wgsl",
+            layout!(Shading {
+                emission,
+                ambient,
+                diffuse,
+                specular,
+                shininess,
+                surface_gradient,
+                strength,
+                ambient_offset,
+                gain,
+                bias,
+                ray_step,
+                dark_depth,
+            }),
+        ),
+        (
+            "eye/gather.wgsl",
+            layout!(Eye {
+                frame,
+                shading,
+                space,
+                eye,
+                first_row,
+                end_row,
+                dilation,
+                dark,
+                gradient_pixels,
+                gradient_slabs,
+                runs,
+                pad1,
+                combined_lookup,
+                pad2,
+                seen,
+                shading_cut,
+                lights
+            }),
+        ),
+        (
+            "scatter/splat.wgsl",
+            layout!(Scatter {
+                frame,
+                sheets_from_index_x,
+                sheets_from_index_y,
+                sheets_from_index_z,
+                half,
+                stretch,
+                dims,
+                k,
+                bricks,
+                layers,
+                first,
+                count,
+                pixel_share,
+                voxel_step,
+                light_dims,
+                cube_face,
+                first_pixel,
+                sheet_count,
+                first_slice,
+                axis,
+                slice_step,
+                extinction_unit,
+                pad0,
+                pad1,
+                pad2,
+            }),
+        ),
+        ("scatter/footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
+        ("light/combine.wgsl", layout!(Combine { dims, bricks, voxel_step, pad0, pad1, pad2 })),
+        (
+            "eye/floor.wgsl",
+            layout!(Floor {
+                frame,
+                space,
+                shading,
+                shading_cut,
+                plane,
+                color,
+                opacity,
+                radius,
+                fade,
+                light_share,
+                shadow_only,
+                first_row,
+                end_row,
+                runs,
+                pad0,
+                lights
+            }),
+        ),
+        (
+            "output/display.wgsl",
+            layout!(Display { top, bottom, transparent, clip, exposure, first_row, rows, pad0, pad1, pad2 }),
+        ),
+        ("volume/prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("volume/downsample.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("volume/gradients.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+    ]
+}

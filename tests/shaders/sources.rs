@@ -1,0 +1,42 @@
+//! Shaders as files, with their imports, and parsed.
+
+use chiaroscuro::gpu::{SHADERS, ShaderLibrary};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use wgpu::TextureFormat;
+
+/// The formats that storage textures can have.
+pub(crate) const FORMATS: [TextureFormat; 2] = [TextureFormat::R16Float, TextureFormat::R32Float];
+
+/// Shaders with an entry point.
+pub(crate) fn entry_shaders() -> Vec<&'static str> {
+    let has_entry = |text: &str| text.contains("@compute") || text.contains("@fragment");
+    SHADERS.iter().filter(|(_, text)| has_entry(text)).map(|(name, _)| *name).collect()
+}
+
+/// A shader with its imports.
+pub(crate) fn joined(name: &str) -> String {
+    ShaderLibrary::source(name, TextureFormat::R16Float, TextureFormat::R16Float)
+        .expect("the shader and its imports are there")
+}
+
+/// Parses and validates; no capability beyond what every adapter has is allowed.
+pub(crate) fn check(source: &str) -> Result<naga::Module, String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|err| err.emit_to_string(source))?;
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|err| err.emit_to_string(source))?;
+    Ok(module)
+}
+
+/// Text without line comments.
+pub(crate) fn code_of(text: &str) -> String {
+    text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// Files that a shader file imports itself.
+pub(crate) fn imports_of(text: &str) -> Vec<&str> {
+    text.lines()
+        .filter_map(|line| line.trim().strip_prefix("#import"))
+        .map(|rest| rest.trim().trim_matches('"'))
+        .collect()
+}

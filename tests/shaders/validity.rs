@@ -1,0 +1,50 @@
+//! Every shader is valid for every storage format, and needs nothing that an adapter might lack.
+
+use std::fmt::Write as _;
+
+use chiaroscuro::gpu::ShaderLibrary;
+use wgpu::TextureFormat;
+
+use crate::sources::{FORMATS, check, entry_shaders, joined};
+
+#[test]
+fn every_shader_is_valid_for_both_storage_formats() {
+    let mut failures = String::new();
+    for name in entry_shaders() {
+        for format in FORMATS {
+            let outcome = ShaderLibrary::source(name, format, format)
+                .map_err(|err| err.to_string())
+                .and_then(|source| check(&source));
+            if let Err(err) = outcome {
+                writeln!(failures, "{name} with {format:?}:\n{err}").expect("strings can be written to");
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures}");
+    assert!(entry_shaders().len() >= 6, "the check must see the passes: {:?}", entry_shaders());
+}
+
+#[test]
+fn storage_formats_reach_the_shader() {
+    for (format, wgsl) in [(TextureFormat::R16Float, "r16float"), (TextureFormat::R32Float, "r32float")] {
+        let source =
+            ShaderLibrary::source("volume/downsample.wgsl", format, format).expect("the shader is there");
+        assert!(source.contains(&format!("texture_storage_3d<{wgsl}, write>")), "{format:?}");
+        assert!(!source.contains("STORAGE_FORMAT"), "{format:?}");
+    }
+}
+
+#[test]
+fn broken_shaders_are_reported() {
+    let source = joined("output/display.wgsl");
+    assert!(check(&source).is_ok());
+    for (from, to, what) in [
+        ("let w = 1.0 - SHOULDER;", "let w = 1.0 - SHOULDERS;", "an unknown name"),
+        ("let w = 1.0 - SHOULDER;", "let w = 1.0 - SHOULDER", "a missing semicolon"),
+        ("let w = 1.0 - SHOULDER;", "let w = 1u - SHOULDER;", "a mix of types"),
+        ("@group(0) @binding(1)", "@group(0) @binding(0)", "two things in one binding"),
+    ] {
+        assert!(source.contains(from), "{from}");
+        assert!(check(&source.replace(from, to)).is_err(), "{what} must be noticed");
+    }
+}
