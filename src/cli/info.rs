@@ -14,7 +14,7 @@ const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
 /// Arguments of `info`.
 #[derive(Debug, Args)]
 pub(super) struct InfoArgs {
-    /// Volume: a file, or builtin:NAME[:N]
+    #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
     file: String,
     /// As JSON
     #[arg(long)]

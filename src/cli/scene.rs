@@ -162,7 +162,7 @@ pub(super) struct LookArgs {
 /// What is rendered, and how it looks.
 #[derive(Debug, Clone, Args)]
 pub(super) struct SceneArgs {
-    /// Volume: a file, or builtin:NAME[:N]
+    #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
     file: String,
     #[command(flatten)]
     look: LookArgs,

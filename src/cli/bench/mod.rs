@@ -39,8 +39,13 @@ pub(super) struct BenchArgs {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Volume: a file, or builtin:NAME[:N]; can be given several times
-    #[arg(long = "volume", value_name = "FILE", default_value = "builtin:chair:128")]
+    // Not a doc comment, here and at other volumes: rustdoc takes [:N] for a link.
+    #[arg(
+        long = "volume",
+        value_name = "FILE",
+        default_value = "builtin:chair:128",
+        help = "Volume: a file, or builtin:NAME[:N]; can be given several times"
+    )]
     volumes: Vec<String>,
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]

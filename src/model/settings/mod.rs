@@ -23,7 +23,8 @@ use super::{
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE};
 use crate::math::SceneSpace;
 
-/// Version of the JSON form. Older files are migrated, newer ones are read as far as possible.
+/// Version of the JSON form. Files of every version are read as far as possible: what they lack keeps its
+/// default, and what is not known here is reported.
 pub const SCHEMA: u32 = 1;
 
 /// Everything that decides what a picture of a volume looks like.
