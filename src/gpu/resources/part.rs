@@ -8,9 +8,6 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// Everything at once.
-    pub(crate) const WHOLE: Self = Self { index: 0, of: 1 };
-
     /// Whether no part comes before it.
     pub(crate) fn is_first(self) -> bool {
         self.index == 0
@@ -37,7 +34,7 @@ mod tests {
         let list = [1, 2, 3, 4, 5];
         let parts: Vec<_> = (0..3).map(|index| Part { index, of: 3 }.take(&list).to_vec()).collect();
         assert_eq!(parts.concat(), list);
-        assert_eq!(Part::WHOLE.take(&list), list);
+        assert_eq!(Part { index: 0, of: 1 }.take(&list), list);
         assert!(Part { index: 2, of: 3 }.is_last() && !Part { index: 1, of: 3 }.is_first());
     }
 }

@@ -23,7 +23,6 @@ pub enum LightKind {
 #[serde(rename_all = "snake_case")]
 pub enum LightLock {
     /// The scene: the light stays where it is when the camera turns.
-    #[serde(alias = "world")]
     Scene,
     /// The camera's axes (right, up, back) around the origin: the light turns with it. At
     /// `[0, 0, z]` it is a headlight.
