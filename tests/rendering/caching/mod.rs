@@ -10,6 +10,7 @@ use crate::scenes;
 use crate::thresholds::F16_STEP;
 
 mod bits;
+mod recomputes;
 
 const SIZE: [u32; 2] = [64, 48];
 
