@@ -17,14 +17,14 @@ struct Combine {
     pad2: f32,
 }
 
-@group(0) @binding(1) var<uniform> bound_collapse: Combine;
+@group(0) @binding(1) var<uniform> bound_combine: Combine;
 var<private> combine: Combine;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var combined: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    combine = bound_collapse;
+    combine = bound_combine;
     eye = bound_eye;
     grid = bound_grid;
     let listed = listed_brick(group);

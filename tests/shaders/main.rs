@@ -1,6 +1,7 @@
 //! Every shader is valid, and agrees with the Rust code about structs, constants and sizes. Needs no
 //! GPU: shaders are parsed and looked into.
 
+mod bindings;
 mod constants;
 mod driver_rules;
 mod imports;

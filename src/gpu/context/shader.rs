@@ -7,6 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::pipeline_cache::PipelineCache;
 use super::shader_files::SHADERS;
 use crate::export::ExportError;
+use crate::gpu::resources::binding::{Group, Pipeline, Slot};
+use crate::gpu::resources::layouts::LAYOUTS;
+use crate::gpu::resources::variant::Variant;
 use crate::gpu::{Context, GpuError};
 
 /// The format of the ring of sheets where single channels are stored in `format`.
@@ -23,14 +26,22 @@ pub struct ShaderLibrary {
     pub(crate) context: Context,
     /// Replacements in the joined source; see [`Self::with_mutation`].
     mutation: Option<(String, String)>,
-    pipelines: Arc<Mutex<HashMap<String, wgpu::ComputePipeline>>>,
+    pipelines: Arc<Mutex<HashMap<PipelineKey, Pipeline>>>,
+    /// Groups of bindings, by the address of their slots and the format of light volumes.
+    groups: Arc<Mutex<HashMap<GroupKey, Group>>>,
     cache: Option<PipelineCache>,
 }
 
 impl ShaderLibrary {
     /// An empty library for a device.
     pub fn new(context: &Context) -> Self {
-        Self { context: context.clone(), mutation: None, pipelines: Arc::default(), cache: None }
+        Self {
+            context: context.clone(),
+            mutation: None,
+            pipelines: Arc::default(),
+            groups: Arc::default(),
+            cache: None,
+        }
     }
 
     /// A library that keeps what the driver makes of its shaders in a folder, where the backend can.
@@ -81,43 +92,79 @@ impl ShaderLibrary {
             .replace("RING_FORMAT", ring))
     }
 
-    /// The pipeline of a shader with these override constants, made on first use.
+    /// The pipeline of a variant, made on first use.
     ///
     /// # Errors
-    /// When the shader is not there or the driver refuses it.
-    pub fn pipeline(&self, name: &str, constants: &[(&str, f64)]) -> Result<wgpu::ComputePipeline, GpuError> {
-        self.pipeline_into(name, constants, self.context.storage_format)
+    /// When the driver refuses it.
+    pub(crate) fn pipeline(&self, variant: &impl Variant) -> Result<Pipeline, GpuError> {
+        self.pipeline_into(variant, self.context.storage_format)
     }
 
-    /// The same for a shader that writes a light volume of some format.
+    /// The pipeline of a variant that writes a light volume of some format.
     ///
     /// # Errors
     /// As [`Self::pipeline`].
-    pub fn pipeline_into(
+    pub(crate) fn pipeline_into(
         &self,
-        name: &str,
-        constants: &[(&str, f64)],
+        variant: &impl Variant,
         attenuation: wgpu::TextureFormat,
-    ) -> Result<wgpu::ComputePipeline, GpuError> {
-        let key = format!("{name} {constants:?} {attenuation:?}");
+    ) -> Result<Pipeline, GpuError> {
+        let (shader, constants) = (variant.shader(), variant.constants());
+        let key = PipelineKey::new(shader, &constants, attenuation);
         let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines().get(&key) {
             return Ok(pipeline.clone());
         }
         // Not locked meanwhile: a window must not wait for the variants that another thread makes.
-        let mut source = Self::source(name, self.context.storage_format, attenuation)?;
+        let pipeline = self.make(shader, &constants, attenuation)?;
+        pipelines().insert(key, pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// How many pipelines were made.
+    pub fn pipeline_count(&self) -> usize {
+        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
+    }
+
+    /// The groups of bindings of a shader, of which equal ones are shared by all.
+    fn groups_of(&self, shader: &str, attenuation: wgpu::TextureFormat) -> Result<Arc<[Group]>, GpuError> {
+        let declared = LAYOUTS.iter().find(|(known, _)| *known == shader);
+        let (_, groups) =
+            declared.ok_or_else(|| GpuError::Refused(format!("there is no layout for {shader}")))?;
+        let mut known = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
+        let group = |slots: &&'static [Slot]| {
+            let fresh = || Group::new(&self.context, slots, attenuation);
+            known.entry((slots, attenuation)).or_insert_with(fresh).clone()
+        };
+        Ok(groups.iter().map(group).collect())
+    }
+
+    fn make(
+        &self,
+        shader: &'static str,
+        constants: &[(&'static str, f64)],
+        attenuation: wgpu::TextureFormat,
+    ) -> Result<Pipeline, GpuError> {
+        let mut source = Self::source(shader, self.context.storage_format, attenuation)?;
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
         }
+        let groups = self.groups_of(shader, attenuation)?;
         let device = &self.context.device;
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(name),
+            label: Some(shader),
             source: wgpu::ShaderSource::Wgsl(source.into()),
         });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(&key),
-            layout: None,
+        let layouts: Vec<_> = groups.iter().map(|group| Some(&group.layout)).collect();
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(shader),
+            bind_group_layouts: &layouts,
+            immediate_size: 0,
+        });
+        let raw = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(&format!("{shader} {constants:?} {attenuation:?}")),
+            layout: Some(&layout),
             module: &module,
             entry_point: Some("main"),
             compilation_options: wgpu::PipelineCompilationOptions {
@@ -126,11 +173,34 @@ impl ShaderLibrary {
             },
             cache: self.cache.as_ref().map(|known| &known.cache),
         });
-        if let Some(err) = pollster::block_on(scope.pop()) {
-            return Err(GpuError::Refused(format!("{name}: {err}")));
+        match pollster::block_on(scope.pop()) {
+            Some(err) => Err(GpuError::Refused(format!("{shader}: {err}"))),
+            None => Ok(Pipeline { raw, groups }),
         }
-        pipelines().insert(key, pipeline.clone());
-        Ok(pipeline)
+    }
+}
+
+/// Where the slots of a group are declared, and the format of light volumes.
+type GroupKey = (&'static [Slot], wgpu::TextureFormat);
+
+/// A shader with its override constants, whatever their order, and the format of light volumes that it writes.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct PipelineKey {
+    shader: &'static str,
+    /// Names and the bits of their values, by name.
+    constants: Vec<(&'static str, u64)>,
+    attenuation: wgpu::TextureFormat,
+}
+
+impl PipelineKey {
+    fn new(
+        shader: &'static str,
+        constants: &[(&'static str, f64)],
+        attenuation: wgpu::TextureFormat,
+    ) -> Self {
+        let mut constants: Vec<_> = constants.iter().map(|(name, value)| (*name, value.to_bits())).collect();
+        constants.sort_unstable();
+        Self { shader, constants, attenuation }
     }
 }
 

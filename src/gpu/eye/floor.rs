@@ -1,12 +1,14 @@
 //! The floor pass: the light on the floor under the volume.
 
 use super::gather::{EyePass, pack_light};
-use crate::gpu::light::raycast as light_raycast;
+use crate::gpu::light::raycast::RaycastVariant;
 use crate::gpu::output::target::Target;
+use crate::gpu::resources::binding::{buffer, view_of};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
-use crate::gpu::volume::{Gpu, Levels, entry};
+use crate::gpu::resources::variant::{Constants, LightCount, Variant};
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{Floor, MAX_LIGHTS, Settings, linear_from_srgb};
@@ -36,8 +38,8 @@ pub(crate) fn draw(
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, .. } = gpu;
     let frame = eye.frame();
-    let count = (lit.all().len(), lit.shadowed().len());
-    let pipeline = shaders.pipeline("eye/floor.wgsl", &constants(settings, count))?;
+    let lights = LightCount { all: lit.all().len() as u32, shadowed: lit.shadowed().len() as u32 };
+    let pipeline = shaders.pipeline(&FloorVariant::of(settings, lights))?;
     let tiles = pass::tiles([frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
     let uniform = uniforms::Floor {
@@ -52,11 +54,11 @@ pub(crate) fn draw(
         &pipeline,
         0,
         &[
-            entry(0, uniform.as_entire_binding()),
-            entry(1, tables.lighting.buffer.as_entire_binding()),
-            view_entry(2, &tables.light_distances),
-            view_entry(3, &target.light.value.plane.view),
-            view_entry(4, &target.floor.value.view),
+            buffer("bound_floor_disc", &uniform),
+            buffer("table", &tables.lighting.buffer),
+            view_of("distances", &tables.light_distances),
+            view_of("picture", &target.light.value.plane.view),
+            view_of("floor_light", &target.floor.value.view),
         ],
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
@@ -66,12 +68,30 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// The variant of the shader for so many lights, of which so many are attenuated; rays to them are those from the
-/// voxels of a light volume.
-pub(crate) fn constants(settings: &Settings, (lights, shadowed): (usize, usize)) -> Vec<(&'static str, f64)> {
-    let mut constants = light_raycast::constants(settings).to_vec();
-    constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
-    constants
+/// What tells one pipeline of the floor from another: rays to lights are those from the voxels of a light volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct FloorVariant {
+    rays: RaycastVariant,
+    lights: LightCount,
+}
+
+impl FloorVariant {
+    /// The floor under so many lights.
+    pub(crate) fn of(settings: &Settings, lights: LightCount) -> Self {
+        Self { rays: RaycastVariant::of(settings), lights }
+    }
+}
+
+impl Variant for FloorVariant {
+    fn shader(&self) -> &'static str {
+        "eye/floor.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.rays.constants();
+        constants.extend(self.lights.constants());
+        constants
+    }
 }
 
 /// What the shader knows of the eye, the floor and the lights; no rows yet.

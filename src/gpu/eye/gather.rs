@@ -2,19 +2,20 @@
 
 use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::{LightVolume, light_bind_group};
-use crate::gpu::resources::kernel::{
-    classification_constant, cut_constant, kernel_constants, quadrature_constant,
-};
+use crate::gpu::resources::binding::{buffer, view_of};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
+use crate::gpu::resources::variant::{
+    Constants, LightCount, Reconstruction, Variant, classification_constant, deposit_constant, flag, is_cut,
+};
 use crate::gpu::scatter::eye::scatter_dilation;
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
-use crate::gpu::volume::{Gpu, Levels, entry};
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{
-    Deposit, Gradients, LightKind, MAX_LIGHTS, Projection, Sampling, SceneLight, Settings, ShadowAlgorithm,
-    Shadows,
+    Classification, Deposit, Gradients, LightKind, MAX_LIGHTS, Projection, SceneLight, Settings,
+    ShadowAlgorithm,
 };
 use crate::plan::eye_frame;
 use crate::plan::{LitLight, PixelWindow, SheetFrame, ray_reach, sample_reach};
@@ -38,7 +39,7 @@ pub(crate) struct EyePass {
     takes_gradients: bool,
     /// What kernels reach of the pyramid.
     levels: Levels,
-    constants: Vec<(&'static str, f64)>,
+    variant: GatherVariant,
 }
 
 impl EyePass {
@@ -59,14 +60,7 @@ impl EyePass {
             *slot = pack_light(&input.lit.light, input.volume, scene, settings);
         }
         let stretch_level = frame.max_stretch_level();
-        let mut constants =
-            constants(&settings.sampling, &settings.shadows, stretch_level > 0.0, (lights.len(), shadowed));
-        if combined.is_some() {
-            constants.push(("COMBINED", 1.0));
-        }
         let (remains, shading_cut) = (settings.cuts.seen(), settings.cuts.shading());
-        // Rays to lights are the eye pass's own.
-        constants.push(cut_constant(if direct && remains.is_everything() { shading_cut } else { remains }));
         let (eye, w) = match settings.camera.projection {
             Projection::Perspective => (settings.camera.eye(), 1.0),
             Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
@@ -99,7 +93,9 @@ impl EyePass {
         // Between levels of the pyramid differences and interpolation do not commute exactly.
         let takes_gradients = stretch_level <= 0.0 || options.preview;
         let levels = Levels::of(stretch_level > 0.0);
-        Self { frame, uniform, dilation, takes_gradients, levels, constants }
+        let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
+        let variant = GatherVariant::of(settings, count, combined.is_some(), stretch_level > 0.0);
+        Self { frame, uniform, dilation, takes_gradients, levels, variant }
     }
 
     /// Slabs of the stack.
@@ -123,13 +119,9 @@ impl EyePass {
         self.uniform
     }
 
-    /// The variant of shaders that only shade: the number of lights.
-    pub(crate) fn scatter_constants(&self) -> Vec<(&'static str, f64)> {
-        self.constants
-            .iter()
-            .filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED" | "COMBINED" | "CUT"))
-            .copied()
-            .collect()
+    /// What shaders have to know that only shade.
+    pub(crate) fn shading_variant(&self) -> ShadingVariant {
+        self.variant.shading
     }
 
     /// Draws some rows of the picture. `attenuation` holds the volumes of its lights in their order, or the
@@ -145,9 +137,8 @@ impl EyePass {
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, volume, .. } = gpu;
         let gradients = volume.gradients_views.as_ref().filter(|_| self.takes_gradients);
-        let mut constants = self.constants.clone();
-        constants.push(gradient_constant(gradients.is_some()));
-        let pipeline = shaders.pipeline("eye/gather.wgsl", &constants)?;
+        let variant = self.variant.with_gradients(gradients.is_some());
+        let pipeline = shaders.pipeline(&variant)?;
         let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
         let runs = pass::runs(context, tiles);
         let uniform = uniforms::Eye { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
@@ -157,13 +148,13 @@ impl EyePass {
             &pipeline,
             0,
             &[
-                entry(0, uniform.as_entire_binding()),
-                entry(1, tables.eye.buffer.as_entire_binding()),
-                view_entry(2, &tables.eye_distances),
-                view_entry(3, picture),
-                entry(4, tables.lighting.buffer.as_entire_binding()),
-                view_entry(5, &tables.light_distances),
-                view_entry(6, gradients.map_or(gpu.placeholder, |views| self.levels.choose(views))),
+                buffer("bound_eye", &uniform),
+                buffer("table", &tables.eye.buffer),
+                view_of("distances", &tables.eye_distances),
+                view_of("picture", picture),
+                buffer("lighting_table", &tables.lighting.buffer),
+                view_of("light_distances", &tables.light_distances),
+                view_of("gradients", gradients.map_or(gpu.placeholder, |views| self.levels.choose(views))),
             ],
         );
         let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels);
@@ -173,31 +164,89 @@ impl EyePass {
     }
 }
 
-/// The variant of the shader for a kernel, for pixels wider than voxels or not, and for so many
-/// lights, of which some are attenuated.
-pub(crate) fn constants(
-    sampling: &Sampling,
-    shadows: &Shadows,
-    stretch: bool,
-    (lights, shadowed): (usize, usize),
-) -> Vec<(&'static str, f64)> {
-    let flag = |on: bool| f64::from(u8::from(on));
-    let mut constants = kernel_constants(sampling.kernel).to_vec();
-    constants.push(quadrature_constant(sampling.quadrature));
-    constants.push(("STRETCH", flag(stretch)));
-    constants.push(classification_constant(sampling.classification));
-    constants.push(("SHEET_GRADIENTS", flag(sampling.gradients == Gradients::Sheets)));
-    constants.extend([("LIGHTS", lights as f64), ("SHADOWED", shadowed as f64)]);
-    if shadows.algorithm == ShadowAlgorithm::Direct {
-        constants.push(("DIRECT", 1.0));
-        constants.push(("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)));
-    }
-    constants
+/// What tells pipelines apart of passes that shade.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct ShadingVariant {
+    lights: LightCount,
+    /// The diffuse light of shadowed lights is in one volume.
+    is_combined: bool,
+    is_cut: bool,
 }
 
-/// `GRADIENT_TEXTURE`.
-pub(crate) fn gradient_constant(takes_gradients: bool) -> (&'static str, f64) {
-    ("GRADIENT_TEXTURE", f64::from(u8::from(takes_gradients)))
+impl ShadingVariant {
+    /// The override constants of shading.
+    pub(crate) fn constants(self) -> Constants {
+        let mut constants = self.lights.constants();
+        constants.push(flag("CUT", self.is_cut));
+        if self.is_combined {
+            constants.push(("COMBINED", 1.0));
+        }
+        constants
+    }
+}
+
+/// What tells one pipeline of the eye pass from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct GatherVariant {
+    reconstruction: Reconstruction,
+    classification: Classification,
+    /// Pixels are wider than voxels somewhere.
+    is_stretched: bool,
+    sheet_gradients: bool,
+    shading: ShadingVariant,
+    /// Samples cast rays to lights, which deposit so.
+    rays: Option<Deposit>,
+    /// Normals come from the texture of gradients.
+    has_gradients: bool,
+}
+
+impl GatherVariant {
+    /// The eye pass under so many lights, with pixels that are wider than voxels somewhere or not, and without the
+    /// texture of gradients.
+    pub(crate) fn of(settings: &Settings, lights: LightCount, is_combined: bool, is_stretched: bool) -> Self {
+        let Settings { sampling, shadows, cuts, .. } = settings;
+        let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
+        Self {
+            reconstruction: Reconstruction::new(sampling.kernel, sampling.quadrature),
+            classification: sampling.classification,
+            is_stretched,
+            sheet_gradients: sampling.gradients == Gradients::Sheets,
+            shading: ShadingVariant {
+                lights,
+                is_combined,
+                // Rays to lights are the eye pass's own.
+                is_cut: is_cut(cuts.seen()) || casts_rays && is_cut(cuts.shading()),
+            },
+            rays: casts_rays.then_some(shadows.deposit),
+            has_gradients: false,
+        }
+    }
+
+    /// The same pass whose normals come from the texture of gradients, or do not.
+    pub(crate) fn with_gradients(self, has_gradients: bool) -> Self {
+        Self { has_gradients, ..self }
+    }
+}
+
+impl Variant for GatherVariant {
+    fn shader(&self) -> &'static str {
+        "eye/gather.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.reconstruction.constants();
+        constants.extend(self.shading.constants());
+        constants.extend([
+            classification_constant(self.classification),
+            flag("STRETCH", self.is_stretched),
+            flag("SHEET_GRADIENTS", self.sheet_gradients),
+            flag("GRADIENT_TEXTURE", self.has_gradients),
+        ]);
+        if let Some(deposit) = self.rays {
+            constants.extend([("DIRECT", 1.0), deposit_constant(deposit)]);
+        }
+        constants
+    }
 }
 
 /// A light for the shaders.

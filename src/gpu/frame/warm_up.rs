@@ -3,14 +3,20 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::gpu::eye::{floor, gather as eye};
-use crate::gpu::light::{backproject as light_backproject, march as light_march};
-use crate::gpu::resources::kernel::cut_constant;
+use crate::gpu::eye::floor::FloorVariant;
+use crate::gpu::eye::gather::GatherVariant;
+use crate::gpu::light::backproject::BackprojectVariant;
+use crate::gpu::light::march::MarchVariant;
+use crate::gpu::output::display::DisplayVariant;
+use crate::gpu::resources::variant::{LightCount, Only, Variant};
 use crate::gpu::{GpuError, ShaderLibrary};
 use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows};
 
-/// Lights of a first look, and how many of them cast shadows.
-const FIRST_LIGHTS: (usize, usize) = (2, 1);
+/// Lights of a first look.
+const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
+
+/// Kernels of previews and of pictures.
+const KERNELS: [Kernel; 2] = [Kernel::Prefiltered, Kernel::BSpline];
 
 impl ShaderLibrary {
     /// Makes the usual variants of every shader, until `stop`. To be called on a thread of its own.
@@ -18,20 +24,17 @@ impl ShaderLibrary {
     /// # Errors
     /// When the driver refuses a shader.
     pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
-        for shader in [
-            "volume/prefilter.wgsl",
-            "volume/downsample.wgsl",
-            "volume/gradients.wgsl",
-            "output/display.wgsl",
-        ] {
-            self.warm(shader, &[], stop)?;
+        for shader in ["volume/prefilter.wgsl", "volume/downsample.wgsl", "volume/gradients.wgsl"] {
+            self.warm(&Only(shader), stop)?;
         }
+        self.warm(&Only("light/clear_margin.wgsl"), stop)?;
+        self.warm(&DisplayVariant { samples: 1, is_linear: false, is_deep: false }, stop)?;
         self.warm_up_passes(&Cuts::default(), stop)
     }
 
-    fn warm(&self, shader: &str, constants: &[(&str, f64)], stop: &AtomicBool) -> Result<(), GpuError> {
+    fn warm(&self, variant: &impl Variant, stop: &AtomicBool) -> Result<(), GpuError> {
         if !stop.load(Ordering::Relaxed) {
-            self.pipeline(shader, constants)?;
+            self.pipeline(variant)?;
         }
         Ok(())
     }
@@ -42,10 +45,10 @@ impl ShaderLibrary {
     /// # Errors
     /// As [`Self::warm_up`].
     pub fn warm_up_rest(&self, stop: &AtomicBool) -> Result<(), GpuError> {
-        for kernel in [Kernel::Prefiltered, Kernel::BSpline] {
+        for kernel in KERNELS {
             let shadows = Shadows { kernel, ..Shadows::default() };
             let settings = Settings { shadows, ..Settings::default() };
-            self.warm("eye/floor.wgsl", &floor::constants(&settings, FIRST_LIGHTS), stop)?;
+            self.warm(&FloorVariant::of(&settings, FIRST_LIGHTS), stop)?;
         }
         let plane = ClipPlane { on: true, ..ClipPlane::default() };
         self.warm_up_passes(&Cuts { plane, ..Cuts::default() }, stop)
@@ -53,22 +56,20 @@ impl ShaderLibrary {
 
     /// The passes of a splatted picture, of whole volumes or of what remains of them.
     fn warm_up_passes(&self, cuts: &Cuts, stop: &AtomicBool) -> Result<(), GpuError> {
-        for flag in [false, true] {
-            for kernel in [Kernel::Prefiltered, Kernel::BSpline] {
-                let sampling = Sampling { kernel, ..Sampling::default() };
-                let mut constants = eye::constants(&sampling, &Shadows::default(), flag, FIRST_LIGHTS);
-                constants.push(cut_constant(cuts.seen()));
+        for is_stretched in [false, true] {
+            for kernel in KERNELS {
+                let settings = Settings {
+                    sampling: Sampling { kernel, ..Sampling::default() },
+                    shadows: Shadows { kernel, ..Shadows::default() },
+                    cuts: cuts.clone(),
+                    ..Settings::default()
+                };
+                let eye = GatherVariant::of(&settings, FIRST_LIGHTS, false, is_stretched);
                 // Of stretched kernels only in previews.
-                constants.push(eye::gradient_constant(!flag || kernel == Kernel::Prefiltered));
-                self.warm("eye/gather.wgsl", &constants, stop)?;
-                let shadows = Shadows { kernel, ..Shadows::default() };
-                self.warm(
-                    "light/backproject.wgsl",
-                    &light_backproject::constants(&self.context, &shadows, flag),
-                    stop,
-                )?;
-                let settings = Settings { shadows, cuts: cuts.clone(), ..Settings::default() };
-                self.warm("light/march.wgsl", &light_march::constants(&settings, flag), stop)?;
+                let has_gradients = !is_stretched || kernel == Kernel::Prefiltered;
+                self.warm(&eye.with_gradients(has_gradients), stop)?;
+                self.warm(&BackprojectVariant::of(&self.context, &settings.shadows, is_stretched), stop)?;
+                self.warm(&MarchVariant::of(&settings, is_stretched), stop)?;
             }
         }
         Ok(())

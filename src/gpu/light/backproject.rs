@@ -7,13 +7,14 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::march::Sheets;
 use super::volume::LightVolume;
 use crate::data::BRICK_EDGE;
-use crate::gpu::resources::kernel::{kernel_constants, quadrature_constant};
+use crate::gpu::resources::binding::{buffer, sampler, view_of};
 use crate::gpu::resources::listed_bricks::{self, Listed};
 use crate::gpu::resources::part::Part;
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms::{self, rows};
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, view_entry};
-use crate::gpu::volume::{Gpu, entry};
+use crate::gpu::resources::variant::{Constants, Reconstruction, Variant, flag};
+use crate::gpu::volume::Gpu;
+use crate::gpu::volume::transfer_tables::EVERYWHERE;
 use crate::gpu::{Context, GpuError};
 use crate::math::SceneSpace;
 use crate::model::{Quadrature, Shadows};
@@ -101,19 +102,43 @@ fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
     DAffine3 { matrix3: to_light, translation: -(to_light * view.anchor) } * scene.scene_from_index
 }
 
-/// The variant of the shader for a kernel, anywhere wider than a pixel or a slab or not.
-pub(crate) fn constants(context: &Context, shadows: &Shadows, wide: bool) -> [(&'static str, f64); 6] {
-    let [kernel, sigma] = kernel_constants(shadows.kernel);
-    let flag = |on: bool| f64::from(u8::from(on));
-    [
-        kernel,
-        sigma,
-        quadrature_constant(shadows.quadrature),
-        ("FIRST_TOUCH", flag(shadows.first_touch)),
-        ("WIDE", flag(wide)),
-        // A software driver's vector does a whole brick, and what comes before its first voxel once.
-        ("LANES", if context.is_software() { 8.0 } else { 64.0 }),
-    ]
+/// What tells one pipeline of the back-projection from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct BackprojectVariant {
+    reconstruction: Reconstruction,
+    first_touch: bool,
+    /// Kernels are wider than a pixel or a slab somewhere.
+    is_wide: bool,
+    /// A software driver's vector does a whole brick, and what comes before its first voxel once.
+    lanes: u32,
+}
+
+impl BackprojectVariant {
+    /// The back-projection with kernels that are wider than a pixel or a slab somewhere or not.
+    pub(crate) fn of(context: &Context, shadows: &Shadows, is_wide: bool) -> Self {
+        Self {
+            reconstruction: Reconstruction::new(shadows.kernel, shadows.quadrature),
+            first_touch: shadows.first_touch,
+            is_wide,
+            lanes: if context.is_software() { 8 } else { 64 },
+        }
+    }
+}
+
+impl Variant for BackprojectVariant {
+    fn shader(&self) -> &'static str {
+        "light/backproject.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.reconstruction.constants();
+        constants.extend([
+            flag("FIRST_TOUCH", self.first_touch),
+            flag("WIDE", self.is_wide),
+            ("LANES", f64::from(self.lanes)),
+        ]);
+        constants
+    }
 }
 
 /// Writes the voxels that some slabs complete: those in a part of the bricks.
@@ -134,11 +159,8 @@ pub(crate) fn backproject(
         return Ok(());
     }
     let is_wide = !view.kernel_is_narrow() || shadows.quadrature == Quadrature::Two;
-    let pipeline = shaders.pipeline_into(
-        "light/backproject.wgsl",
-        &constants(context, shadows, is_wide),
-        light.texture.format(),
-    )?;
+    let variant = BackprojectVariant::of(context, shadows, is_wide);
+    let pipeline = shaders.pipeline_into(&variant, light.texture.format())?;
     let [x, y, z] = rows(&light_from_index(&volume.scene, view));
     let uniform = uniforms::Backprojection {
         frame: uniforms::SheetFrame::new(&view.frame),
@@ -165,11 +187,11 @@ pub(crate) fn backproject(
         &pipeline,
         0,
         &[
-            entry(0, uniform.as_entire_binding()),
-            entry(1, list.as_entire_binding()),
-            view_entry(2, &sheets.ring_view),
-            entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
-            view_entry(4, &light.view),
+            buffer("bound_view", &uniform),
+            buffer("bricks", &list),
+            view_of("ring", &sheets.ring_view),
+            sampler("ring_sampler", &volume.clamped),
+            view_of("attenuation", &light.view),
         ],
     );
     pass::dispatch(

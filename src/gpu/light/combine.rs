@@ -3,17 +3,32 @@
 use std::sync::Arc;
 
 use super::volume::{LightVolume, light_bind_group};
-use crate::gpu::eye::gather::{EyePass, LightInput};
+use crate::gpu::eye::gather::{EyePass, LightInput, ShadingVariant};
+use crate::gpu::resources::binding::{buffer, view_of};
 use crate::gpu::resources::listed_bricks::{self, Listed};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
-use crate::gpu::volume::transfer_tables::view_entry;
-use crate::gpu::volume::{Gpu, entry, texture_3d};
+use crate::gpu::resources::variant::{Constants, Variant};
+use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError};
 use crate::plan::CellSet;
 
 /// Bricks per submission: 2048 × 512 voxels take a software adapter some 0.1 s.
 pub(crate) const BRICKS_PER_STEP: usize = 2048;
+
+/// What tells one pipeline that combines lights from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct CombineVariant(ShadingVariant);
+
+impl Variant for CombineVariant {
+    fn shader(&self) -> &'static str {
+        "light/combine.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        self.0.constants()
+    }
+}
 
 /// The diffuse light of all lights that cast shadows.
 #[derive(Debug)]
@@ -67,7 +82,7 @@ impl CombinedLight {
         let attenuation: Vec<_> =
             lights.iter().filter_map(|input| input.volume).map(|volume| &volume.view).collect();
         let Gpu { shaders, .. } = gpu;
-        let pipeline = shaders.pipeline("light/combine.wgsl", &pass.scatter_constants())?;
+        let pipeline = shaders.pipeline(&CombineVariant(pass.shading_variant()))?;
         let eye = gpu.uniform("Combine::eye", pass.uniform());
         let uniform = uniforms::Combine {
             dims: self.dims.map(|n| n as u32),
@@ -84,10 +99,10 @@ impl CombinedLight {
             &pipeline,
             0,
             &[
-                entry(0, eye.as_entire_binding()),
-                entry(1, uniform.as_entire_binding()),
-                entry(3, list.as_entire_binding()),
-                view_entry(4, &self.view),
+                buffer("bound_eye", &eye),
+                buffer("bound_combine", &uniform),
+                buffer("bricks", &list),
+                view_of("combined", &self.view),
             ],
         );
         let of_volume = gpu.bind_pyramid(&pipeline);

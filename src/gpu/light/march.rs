@@ -3,18 +3,19 @@
 use std::ops::Range;
 
 use crate::gpu::context::shader::ring_format;
-use crate::gpu::resources::kernel::{
-    classification_constant, cut_constant, kernel_constants, quadrature_constant,
-};
+use crate::gpu::resources::binding::{Named, buffer, view_of};
 use crate::gpu::resources::listed_bricks::single_workgroups;
 use crate::gpu::resources::pass;
 use crate::gpu::resources::tools::Tools;
 use crate::gpu::resources::uniforms;
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
-use crate::gpu::volume::{Gpu, Levels, entry};
+use crate::gpu::resources::variant::{
+    Constants, Reconstruction, Variant, classification_constant, deposit_constant, flag, is_cut,
+};
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::Region;
-use crate::model::{Deposit, SceneLight, Settings};
+use crate::model::{Classification, Deposit, SceneLight, Settings};
 use crate::plan::{LightView, sample_reach};
 
 /// Slabs that share a texel of the ring.
@@ -129,13 +130,13 @@ impl Sheets {
         uniform: &'a wgpu::Buffer,
         table: &'a wgpu::Buffer,
         distances: &'a wgpu::TextureView,
-    ) -> [wgpu::BindGroupEntry<'a>; 5] {
+    ) -> [Named<'a>; 5] {
         [
-            entry(0, uniform.as_entire_binding()),
-            entry(1, table.as_entire_binding()),
-            view_entry(2, distances),
-            entry(3, self.transmittance.as_entire_binding()),
-            view_entry(4, &self.ring_view),
+            buffer("bound_march", uniform),
+            buffer("table", table),
+            view_of("distances", distances),
+            buffer("transmittance", &self.transmittance),
+            view_of("ring", &self.ring_view),
         ]
     }
 
@@ -148,20 +149,46 @@ impl Sheets {
     }
 }
 
-/// The variant of the shader for a kernel and deposit, for pixels wider than voxels or not.
-pub(crate) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f64); 7] {
-    let shadows = &settings.shadows;
-    let [kernel, sigma] = kernel_constants(shadows.kernel);
-    let flag = |on: bool| f64::from(u8::from(on));
-    [
-        kernel,
-        sigma,
-        quadrature_constant(shadows.quadrature),
-        classification_constant(settings.sampling.classification),
-        ("STRETCH", flag(stretch)),
-        cut_constant(settings.cuts.shading()),
-        ("DEPOSIT_FRONT", flag(shadows.deposit == Deposit::Front)),
-    ]
+/// What tells one pipeline of the march from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct MarchVariant {
+    reconstruction: Reconstruction,
+    classification: Classification,
+    /// Pixels are wider than voxels somewhere.
+    is_stretched: bool,
+    is_cut: bool,
+    deposit: Deposit,
+}
+
+impl MarchVariant {
+    /// The march through sheets whose pixels are wider than voxels or not.
+    pub(crate) fn of(settings: &Settings, is_stretched: bool) -> Self {
+        let shadows = &settings.shadows;
+        Self {
+            reconstruction: Reconstruction::new(shadows.kernel, shadows.quadrature),
+            classification: settings.sampling.classification,
+            is_stretched,
+            is_cut: is_cut(settings.cuts.shading()),
+            deposit: shadows.deposit,
+        }
+    }
+}
+
+impl Variant for MarchVariant {
+    fn shader(&self) -> &'static str {
+        "light/march.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.reconstruction.constants();
+        constants.extend([
+            classification_constant(self.classification),
+            flag("STRETCH", self.is_stretched),
+            flag("CUT", self.is_cut),
+            deposit_constant(self.deposit),
+        ]);
+        constants
+    }
 }
 
 /// What the shaders know about the light, what attenuates it and some slabs of a view.
@@ -207,7 +234,7 @@ pub(crate) fn march(
     }
     // Slabs near a perspective light have narrower pixels than those behind.
     let is_stretched = view.frame.max_stretch_level_of(slabs.clone()) > 0.0;
-    let pipeline = shaders.pipeline("light/march.wgsl", &constants(settings, is_stretched))?;
+    let pipeline = shaders.pipeline(&MarchVariant::of(settings, is_stretched))?;
     let cut = settings.cuts.shading().region(&volume.scene);
     let count = tiles.len() as u32;
     let uniform = uniforms::March { tiles: count, ..march_uniform(light, &cut, view, sheets, slabs) };
@@ -215,7 +242,7 @@ pub(crate) fn march(
     let list = gpu.list_with_room("March::tiles", &shared_out(tiles, pass::threads(context)), TILE_ROOM);
     let mut entries =
         sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances).to_vec();
-    entries.push(entry(5, list.as_entire_binding()));
+    entries.push(buffer("tiles", &list));
     let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
     let empty_space_skipping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);

@@ -2,12 +2,13 @@
 
 use super::volume::LightVolume;
 use crate::gpu::eye::gather::pack_light;
-use crate::gpu::resources::kernel::{cut_constant, kernel_constants, quadrature_constant};
+use crate::gpu::resources::binding::{buffer, view_of};
 use crate::gpu::resources::listed_bricks::{self, Listed};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
-use crate::gpu::volume::{Gpu, Levels, entry};
+use crate::gpu::resources::variant::{Constants, Reconstruction, Variant, deposit_constant, flag, is_cut};
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Deposit, SceneLight, Settings};
 use crate::plan::ray_reach;
@@ -16,18 +17,36 @@ use crate::plan::ray_reach;
 /// software adapter some 0.2 s.
 pub(crate) const BRICKS_PER_STEP: usize = 16;
 
-/// The variant of the shader for a kernel.
-pub(crate) fn constants(settings: &Settings) -> [(&'static str, f64); 5] {
-    let shadows = &settings.shadows;
-    let [kernel, sigma] = kernel_constants(shadows.kernel);
-    let front = f64::from(u8::from(shadows.deposit == Deposit::Front));
-    [
-        kernel,
-        sigma,
-        quadrature_constant(shadows.quadrature),
-        ("DEPOSIT_FRONT", front),
-        cut_constant(settings.cuts.shading()),
-    ]
+/// What tells one pipeline of rays to lights from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct RaycastVariant {
+    reconstruction: Reconstruction,
+    deposit: Deposit,
+    is_cut: bool,
+}
+
+impl RaycastVariant {
+    /// Rays through what attenuates light.
+    pub(crate) fn of(settings: &Settings) -> Self {
+        let shadows = &settings.shadows;
+        Self {
+            reconstruction: Reconstruction::new(shadows.kernel, shadows.quadrature),
+            deposit: shadows.deposit,
+            is_cut: is_cut(settings.cuts.shading()),
+        }
+    }
+}
+
+impl Variant for RaycastVariant {
+    fn shader(&self) -> &'static str {
+        "light/raycast.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.reconstruction.constants();
+        constants.extend([deposit_constant(self.deposit), flag("CUT", self.is_cut)]);
+        constants
+    }
 }
 
 /// Fills the listed bricks of a light volume.
@@ -44,8 +63,7 @@ pub(crate) fn raycast(
         return Ok(());
     }
     let Gpu { shaders, volume, .. } = gpu;
-    let pipeline =
-        shaders.pipeline_into("light/raycast.wgsl", &constants(settings), target.texture.format())?;
+    let pipeline = shaders.pipeline_into(&RaycastVariant::of(settings), target.texture.format())?;
     let uniform = uniforms::Raycast {
         light: pack_light(light, Some(target), &volume.scene, settings),
         space: uniforms::Space::new(&volume.scene),
@@ -64,11 +82,11 @@ pub(crate) fn raycast(
         &pipeline,
         0,
         &[
-            entry(0, uniform.as_entire_binding()),
-            entry(1, tables.lighting.buffer.as_entire_binding()),
-            view_entry(2, &tables.light_distances),
-            entry(3, list.as_entire_binding()),
-            view_entry(4, &target.view),
+            buffer("bound_raycast", &uniform),
+            buffer("table", &tables.lighting.buffer),
+            view_of("distances", &tables.light_distances),
+            buffer("bricks", &list),
+            view_of("attenuation", &target.view),
         ],
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));

@@ -4,12 +4,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::data::BRICK_EDGE;
+use crate::gpu::resources::binding::{Named, Pipeline, view_of};
+use crate::gpu::resources::layouts::ATTENUATION;
 use crate::gpu::resources::listed_bricks::{self, Listed};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::transfer_tables::view_entry;
-use crate::gpu::volume::{Gpu, GpuVolume, entry, texture_3d};
+use crate::gpu::resources::variant::Only;
+use crate::gpu::volume::{Gpu, GpuVolume, texture_3d};
 use crate::gpu::{Context, GpuError};
-use crate::model::{MAX_LIGHTS, Precision};
+use crate::model::Precision;
 use crate::plan::{BrickSet, CellSet, LightKey, LightView, reverse_reach_voxels};
 
 /// One light's attenuation volume.
@@ -101,13 +103,16 @@ impl LightVolume {
             return Ok(());
         }
         let Gpu { shaders, .. } = gpu;
-        let pipeline = shaders.pipeline_into("light/clear_margin.wgsl", &[], self.texture.format())?;
+        let pipeline = shaders.pipeline_into(&Only("light/clear_margin.wgsl"), self.texture.format())?;
         let list = listed_bricks::upload(gpu, bricks);
         let own = gpu.bind(
             "LightVolume::clear_margin",
             &pipeline,
             0,
-            &[entry(0, listed_bricks::exactly(&list, bricks)), view_entry(1, &self.view)],
+            &[
+                Named { name: "bricks", resource: listed_bricks::exactly(&list, bricks) },
+                view_of("attenuation", &self.view),
+            ],
         );
         pass::dispatch(
             encoder,
@@ -160,11 +165,11 @@ pub(crate) fn attenuation_texture(
 /// Bind group 2 of the passes that shade: the light volumes, in the order of their lights.
 pub(crate) fn light_bind_group(
     gpu: Gpu<'_>,
-    pipeline: &wgpu::ComputePipeline,
+    pipeline: &Pipeline,
     attenuation: &[&wgpu::TextureView],
 ) -> wgpu::BindGroup {
-    let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
-    let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
+    let of_light = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
+    let views: Vec<_> = (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect();
     gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
 }
 

@@ -1,13 +1,41 @@
 //! The display pass: the mean of a pixel's samples, tone map, background and sRGB.
 
 use super::target::{Shape, Target};
+use crate::gpu::resources::binding::{buffer, view_of};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::tools::Tools;
 use crate::gpu::resources::uniforms;
-use crate::gpu::volume::entry;
-use crate::gpu::volume::transfer_tables::view_entry;
+use crate::gpu::resources::variant::{Constants, Variant};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Depth, Output, ToneMap};
+
+/// What tells one pipeline of the display from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct DisplayVariant {
+    /// Samples of a pixel along an edge.
+    pub samples: u32,
+    /// Light is written as it is.
+    pub is_linear: bool,
+    /// More than 8 bits are written.
+    pub is_deep: bool,
+}
+
+impl Variant for DisplayVariant {
+    fn shader(&self) -> &'static str {
+        if self.is_deep { "output/display_deep.wgsl" } else { "output/display.wgsl" }
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = Vec::new();
+        if self.samples > 1 {
+            constants.push(("SAMPLES", f64::from(self.samples)));
+        }
+        if self.is_linear {
+            constants.push(("LINEAR", 1.0));
+        }
+        constants
+    }
+}
 
 /// Turns the linear picture into the shown one, with all light multiplied by the exposure.
 pub(crate) fn display(
@@ -18,15 +46,8 @@ pub(crate) fn display(
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Shape { size, samples, deep, .. } = target.shape;
-    let mut constants = Vec::new();
-    if samples > 1 {
-        constants.push(("SAMPLES", f64::from(samples)));
-    }
-    if options.depth == Depth::Linear {
-        constants.push(("LINEAR", 1.0));
-    }
-    let pipeline = shaders
-        .pipeline(if deep { "output/display_deep.wgsl" } else { "output/display.wgsl" }, &constants)?;
+    let variant = DisplayVariant { samples, is_linear: options.depth == Depth::Linear, is_deep: deep };
+    let pipeline = shaders.pipeline(&variant)?;
     let (first_row, rows) = options.part.map_or((0, size[1]), |part| (part.first[1], part.whole[1]));
     let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let uniform = uniforms::Display {
@@ -48,10 +69,10 @@ pub(crate) fn display(
         &pipeline,
         0,
         &[
-            entry(0, uniform.as_entire_binding()),
-            view_entry(1, &target.light.value.plane.view),
-            view_entry(2, &target.shown.value.view),
-            view_entry(3, &target.floor.value.view),
+            buffer("bound_display", &uniform),
+            view_of("picture", &target.light.value.plane.view),
+            view_of("shown", &target.shown.value.view),
+            view_of("floor_light", &target.floor.value.view),
         ],
     );
     pass::dispatch(

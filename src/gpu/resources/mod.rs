@@ -1,7 +1,9 @@
 //! What every pass is made of: buffers and textures that are used again, lists, uniforms, dispatches.
 
+pub(super) mod binding;
 pub(super) mod cached;
-pub(super) mod kernel;
+pub(super) mod layouts;
+
 pub(super) mod listed_bricks;
 pub(super) mod part;
 pub(super) mod pass;
@@ -9,3 +11,4 @@ pub(super) mod pool;
 pub(super) mod readback;
 pub(super) mod tools;
 pub mod uniforms;
+pub(super) mod variant;

@@ -1,19 +1,21 @@
 //! What every compute pass is made of: bind groups, and a dispatch.
 
+use super::binding::{Named, Pipeline};
 use crate::gpu::Context;
 
 /// Binds resources to a group of a pipeline.
 pub(crate) fn bind(
     context: &Context,
     label: &str,
-    pipeline: &wgpu::ComputePipeline,
-    group: u32,
-    entries: &[wgpu::BindGroupEntry<'_>],
+    pipeline: &Pipeline,
+    group: usize,
+    named: &[Named<'_>],
 ) -> wgpu::BindGroup {
+    let group = &pipeline.groups[group];
     context.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(label),
-        layout: &pipeline.get_bind_group_layout(group),
-        entries,
+        layout: &group.layout,
+        entries: &group.entries(named),
     })
 }
 
@@ -21,13 +23,13 @@ pub(crate) fn bind(
 pub(crate) fn dispatch(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,
-    pipeline: &wgpu::ComputePipeline,
+    pipeline: &Pipeline,
     groups: &[&wgpu::BindGroup],
     [x, y, z]: [u32; 3],
 ) {
     let mut pass = encoder
         .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
-    pass.set_pipeline(pipeline);
+    pass.set_pipeline(&pipeline.raw);
     for (group, bound) in (0..).zip(groups) {
         pass.set_bind_group(group, *bound, &[]);
     }

@@ -4,6 +4,7 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
+use super::binding::{Named, Pipeline};
 use super::pass;
 use crate::gpu::Context;
 use crate::gpu::light::march::Sheets;
@@ -38,9 +39,8 @@ struct Shelf {
 
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct GroupKey {
-    pipeline: wgpu::ComputePipeline,
-    group: u32,
-    bound: Vec<(u32, Bound)>,
+    layout: wgpu::BindGroupLayout,
+    bound: Vec<(&'static str, Bound)>,
 }
 
 #[derive(Debug, PartialEq, Eq, Hash)]
@@ -130,15 +130,15 @@ impl ResourcePool {
         &self,
         context: &Context,
         label: &str,
-        pipeline: &wgpu::ComputePipeline,
-        group: u32,
-        entries: &[wgpu::BindGroupEntry<'_>],
+        pipeline: &Pipeline,
+        group: usize,
+        entries: &[Named<'_>],
     ) -> wgpu::BindGroup {
-        let bound = entries.iter().map(|entry| Some((entry.binding, Bound::of(&entry.resource)?)));
+        let bound = entries.iter().map(|named| Some((named.name, Bound::of(&named.resource)?)));
         let Some(bound) = bound.collect() else {
             return pass::bind(context, label, pipeline, group, entries);
         };
-        let key = GroupKey { pipeline: pipeline.clone(), group, bound };
+        let key = GroupKey { layout: pipeline.groups[group].layout.clone(), bound };
         let inner = &mut *self.0.borrow_mut();
         if inner.groups.len() >= MOST_GROUPS {
             inner.groups.clear();

@@ -3,14 +3,16 @@
 use std::ops::Range;
 
 use super::footprints::{Footprints, Inputs};
-use super::splat::{Scatterer, Splat, sums, widest_stretch};
+use super::splat::{ScatterVariant, Scatterer, Splat, sums, widest_stretch};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
-use crate::gpu::eye::gather::EyePass;
+use crate::gpu::eye::gather::{EyePass, ShadingVariant};
 use crate::gpu::light::volume::light_bind_group;
+use crate::gpu::resources::binding::{buffer, sampler, view_of};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::transfer_tables::{Tables, upload_distances, view_entry};
-use crate::gpu::volume::{Gpu, entry};
+use crate::gpu::resources::variant::{Constants, Only, Variant};
+use crate::gpu::volume::Gpu;
+use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Classification, Settings, SheetOrder};
 use crate::plan::{BrickSet, SheetFrame};
@@ -18,6 +20,25 @@ use crate::plan::{BrickSet, SheetFrame};
 /// Slabs per submission: each is splatted and composited, which takes a software adapter some
 /// milliseconds.
 pub(crate) const SLABS_PER_STEP: u32 = 2;
+
+/// What tells one pipeline that composites sheets from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct ScatterEyeVariant {
+    shading: ShadingVariant,
+    sheets: ScatterVariant,
+}
+
+impl Variant for ScatterEyeVariant {
+    fn shader(&self) -> &'static str {
+        "scatter/eye.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.shading.constants();
+        constants.extend(self.sheets.sheet_constants());
+        constants
+    }
+}
 
 /// The eye's sheets, and what its rays have gathered so far.
 #[derive(Debug)]
@@ -109,18 +130,17 @@ impl EyeScatter {
             }
             return if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) };
         }
-        let mut constants = eye.scatter_constants();
-        constants.extend_from_slice(&self.scatterer.constants()[3..]);
-        let pipeline = shaders.pipeline("scatter/eye.wgsl", &constants)?;
+        let variant = ScatterEyeVariant { shading: eye.shading_variant(), sheets: self.scatterer.variant() };
+        let pipeline = shaders.pipeline(&variant)?;
         let own = pass::bind(
             context,
             "EyeScatter::bind_group",
             &pipeline,
             0,
             &[
-                entry(0, uniform.as_entire_binding()),
-                entry(1, tables.eye.buffer.as_entire_binding()),
-                view_entry(2, &self.distances),
+                buffer("bound_eye", &uniform),
+                buffer("table", &tables.eye.buffer),
+                view_of("distances", &self.distances),
             ],
         );
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
@@ -146,10 +166,10 @@ impl EyeScatter {
                 &pipeline,
                 1,
                 &[
-                    entry(0, slab.as_entire_binding()),
-                    entry(1, self.scatterer.sheets.as_entire_binding()),
-                    entry(3, self.rays.as_entire_binding()),
-                    entry(4, wgpu::BindingResource::Sampler(&self.clamped)),
+                    buffer("bound_scatter", &slab),
+                    buffer("sheets", &self.scatterer.sheets),
+                    buffer("rays", &self.rays),
+                    sampler("clamped", &self.clamped),
                 ],
             );
             pass::dispatch(
@@ -171,17 +191,17 @@ impl EyeScatter {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline("scatter/resolve.wgsl", &[])?;
+        let pipeline = shaders.pipeline(&Only("scatter/resolve.wgsl"))?;
         let uniform = self.scatterer.uniform_buffer(context, 0, 1.0);
         let own = pass::bind(
             context,
             "EyeScatter::picture",
             &pipeline,
             0,
-            &[entry(0, self.rays.as_entire_binding()), view_entry(1, picture)],
+            &[buffer("rays", &self.rays), view_of("picture", picture)],
         );
         let shared =
-            pass::bind(context, "EyeScatter::frame", &pipeline, 1, &[entry(0, uniform.as_entire_binding())]);
+            pass::bind(context, "EyeScatter::frame", &pipeline, 1, &[buffer("bound_scatter", &uniform)]);
         pass::dispatch(
             encoder,
             "EyeScatter::resolve",

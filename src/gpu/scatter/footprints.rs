@@ -1,16 +1,37 @@
 //! Every footprint composited by itself: voxels of a slice in turns, so that no two of one dispatch
 //! touch a pixel.
 
-use super::splat::Scatterer;
+use super::splat::{ScatterVariant, Scatterer};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::GpuError;
-use crate::gpu::eye::gather::EyePass;
+use crate::gpu::eye::gather::{EyePass, ShadingVariant};
 use crate::gpu::light::volume::light_bind_group;
+use crate::gpu::resources::binding::{buffer, sampler};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
 use crate::gpu::resources::uniforms::Phase;
-use crate::gpu::volume::{Gpu, entry};
+use crate::gpu::resources::variant::{Constants, Variant};
+use crate::gpu::volume::Gpu;
+
+/// What tells one pipeline that composites footprints from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct FootprintsVariant {
+    shading: ShadingVariant,
+    footprints: ScatterVariant,
+}
+
+impl Variant for FootprintsVariant {
+    fn shader(&self) -> &'static str {
+        "scatter/footprints.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.shading.constants();
+        constants.extend(self.footprints.constants());
+        constants
+    }
+}
 
 /// What a slice is composited from, and into.
 #[derive(Clone, Copy)]
@@ -85,21 +106,20 @@ impl Footprints {
             return Ok(());
         }
         let Gpu { context, shaders, .. } = gpu;
-        let mut constants = eye.scatter_constants();
-        constants.extend_from_slice(scatterer.constants());
-        let pipeline = shaders.pipeline("scatter/footprints.wgsl", &constants)?;
+        let variant = FootprintsVariant { shading: eye.shading_variant(), footprints: scatterer.variant() };
+        let pipeline = shaders.pipeline(&variant)?;
         let own = pass::bind(
             context,
             "Footprints::bind_group",
             &pipeline,
             0,
             &[
-                entry(0, eye_uniform.as_entire_binding()),
-                entry(1, table.as_entire_binding()),
-                entry(3, scattering.voxels.first_words.as_entire_binding()),
-                entry(4, scatterer.bricks().as_entire_binding()),
-                entry(5, scattering.counter.as_entire_binding()),
-                entry(6, scattering.voxels.buffer.as_entire_binding()),
+                buffer("bound_eye", &eye_uniform),
+                buffer("table", &table),
+                buffer("first_words", &scattering.voxels.first_words),
+                buffer("bricks", &scatterer.bricks()),
+                buffer("splats", &scattering.counter),
+                buffer("voxels", &scattering.voxels.buffer),
             ],
         );
         let uniform: uniforms::Scatter = scatterer.uniform(k, 1.0);
@@ -110,21 +130,16 @@ impl Footprints {
             &pipeline,
             1,
             &[
-                entry(0, slab.as_entire_binding()),
-                entry(2, scatterer.footprints().as_entire_binding()),
-                entry(3, rays.as_entire_binding()),
-                entry(4, wgpu::BindingResource::Sampler(clamped)),
+                buffer("bound_scatter", &slab),
+                buffer("footprint_table", &scatterer.footprints()),
+                buffer("rays", &rays),
+                sampler("clamped", &clamped),
             ],
         );
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         for phase in &self.phases {
-            let turn = pass::bind(
-                context,
-                "Footprints::phase",
-                &pipeline,
-                3,
-                &[entry(0, phase.as_entire_binding())],
-            );
+            let turn =
+                pass::bind(context, "Footprints::phase", &pipeline, 3, &[buffer("bound_phase", &phase)]);
             let groups = [&own, &shared, &of_lights, &turn];
             pass::dispatch(
                 encoder,

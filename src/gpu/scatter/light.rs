@@ -6,15 +6,42 @@ use std::ops::Range;
 use super::eye::{scatter_dilation, splatted_bricks};
 use super::splat::{Scatterer, Splat, sums};
 use super::voxels::Scattering;
-use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, constants as march_constants, march_uniform};
+use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, march_uniform};
 use crate::gpu::light::volume::LightVolume;
+use crate::gpu::resources::binding::{buffer, view_of};
 use crate::gpu::resources::listed_bricks::{self, Listed};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::transfer_tables::{Tables, upload_distances, view_entry};
-use crate::gpu::volume::{Gpu, entry};
+use crate::gpu::resources::variant::{Constants, Only, Variant, deposit_constant, flag, is_cut};
+use crate::gpu::volume::Gpu;
+use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Classification, SceneLight, Settings, SheetOrder};
+use crate::model::{Classification, Deposit, SceneLight, Settings, SheetOrder};
 use crate::plan::{BrickSet, LightView};
+
+/// What tells one pipeline of the march over scattered sheets from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct ScatterMarchVariant {
+    is_cut: bool,
+    deposit: Deposit,
+    splat: Splat,
+    /// Bricks around a sample's own that it sees.
+    dilation: i32,
+}
+
+impl Variant for ScatterMarchVariant {
+    fn shader(&self) -> &'static str {
+        "scatter/light.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        vec![
+            flag("CUT", self.is_cut),
+            deposit_constant(self.deposit),
+            self.splat.constant(),
+            ("DILATION", f64::from(self.dilation)),
+        ]
+    }
+}
 
 /// The sheets of one view of a light, and what was splatted back into the grid.
 #[derive(Debug)]
@@ -97,15 +124,17 @@ impl LightScatter {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
-        let [.., cut, deposit] = march_constants(settings, false);
-        let splat = self.scatterer.constants()[4];
-        let constants = [cut, deposit, splat, ("DILATION", f64::from(self.dilation))];
-        let pipeline = shaders.pipeline("scatter/light.wgsl", &constants)?;
+        let pipeline = shaders.pipeline(&ScatterMarchVariant {
+            is_cut: is_cut(settings.cuts.shading()),
+            deposit: settings.shadows.deposit,
+            splat: self.scatterer.variant().splat,
+            dilation: self.dilation,
+        })?;
         let cut = settings.cuts.shading().region(&gpu.volume.scene);
         let uniform = march_uniform(lamp, &cut, view, sheets, slabs.clone());
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
         let mut entries = sheets.march_entries(&uniform, table, &self.distances).to_vec();
-        entries.push(entry(5, self.deposits.as_entire_binding()));
+        entries.push(buffer("deposits", &self.deposits));
         let own = pass::bind(context, "LightScatter::march", &pipeline, 0, &entries);
         for k in slabs {
             if self.scatterer.is_filled(k) {
@@ -117,7 +146,7 @@ impl LightScatter {
                 "LightScatter::sheets",
                 &pipeline,
                 1,
-                &[entry(0, slab.as_entire_binding()), entry(1, self.scatterer.sheets.as_entire_binding())],
+                &[buffer("bound_scatter", &slab), buffer("sheets", &self.scatterer.sheets)],
             );
             pass::dispatch(
                 encoder,
@@ -139,17 +168,17 @@ impl LightScatter {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline("scatter/reverse.wgsl", self.scatterer.constants())?;
+        let pipeline = shaders.pipeline(&self.scatterer.variant().of("scatter/reverse.wgsl"))?;
         let own = pass::bind(
             context,
             "LightScatter::grid",
             &pipeline,
             0,
             &[
-                view_entry(0, &self.distances),
-                view_entry(1, &sheets.ring_view),
-                entry(2, self.light.as_entire_binding()),
-                entry(3, self.weights.as_entire_binding()),
+                view_of("distances", &self.distances),
+                view_of("ring", &sheets.ring_view),
+                buffer("light", &self.light),
+                buffer("weights", &self.weights),
             ],
         );
         for k in slabs {
@@ -178,7 +207,7 @@ impl LightScatter {
             return Ok(());
         }
         let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline_into("scatter/normalise.wgsl", &[], target.texture.format())?;
+        let pipeline = shaders.pipeline_into(&Only("scatter/normalise.wgsl"), target.texture.format())?;
         let list = listed_bricks::upload(gpu, bricks);
         let mut uniform = self.scatterer.uniform(0, 1.0);
         uniform.count = bricks.len() as u32;
@@ -189,14 +218,14 @@ impl LightScatter {
             &pipeline,
             0,
             &[
-                entry(0, list.as_entire_binding()),
-                entry(1, self.light.as_entire_binding()),
-                entry(2, self.weights.as_entire_binding()),
-                view_entry(3, &target.view),
+                buffer("bricks", &list),
+                buffer("light", &self.light),
+                buffer("weights", &self.weights),
+                view_of("attenuation", &target.view),
             ],
         );
         let shared =
-            pass::bind(context, "LightScatter::slab", &pipeline, 1, &[entry(0, uniform.as_entire_binding())]);
+            pass::bind(context, "LightScatter::slab", &pipeline, 1, &[buffer("bound_scatter", &uniform)]);
         pass::dispatch(
             encoder,
             "LightScatter::normalise",

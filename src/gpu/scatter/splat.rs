@@ -6,12 +6,13 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::footprint_table::{RADIUS, footprint_table};
 use super::sheet_lists::{slab_lists, slice_lists};
 use super::voxels::{ScatterVoxels, Scattering};
-use crate::gpu::resources::kernel::{kernel_constants, quadrature_constant};
+use crate::gpu::resources::binding::{Pipeline, buffer};
 use crate::gpu::resources::listed_bricks;
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms::{self, rows};
+use crate::gpu::resources::variant::{Constants, Reconstruction, Variant};
+use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::Table;
-use crate::gpu::volume::{Gpu, entry};
 use crate::gpu::{Context, GpuError};
 use crate::model::{Kernel, Quadrature, SheetOrder};
 use crate::plan::{BrickSet, SheetFrame, SliceOrder};
@@ -21,8 +22,7 @@ use crate::plan::{BrickSet, SheetFrame, SliceOrder};
 pub(crate) struct Scatterer {
     /// Rays and slabs.
     pub frame: SheetFrame,
-    /// Kernel and quadrature, as override constants.
-    constants: [(&'static str, f64); 5],
+    variant: ScatterVariant,
     /// Slices of voxels, if sheets are along the volume.
     slices: Option<SliceOrder>,
     /// What does not change from slab to slab.
@@ -42,7 +42,7 @@ pub(crate) struct Scatterer {
 }
 
 /// What of a voxel is splatted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Splat {
     /// Its density.
     Density,
@@ -54,12 +54,13 @@ pub(crate) enum Splat {
 
 impl Splat {
     /// `SPLAT` of `scatter/slab.wgsl`.
-    fn code(self) -> f64 {
-        match self {
+    pub(crate) fn constant(self) -> (&'static str, f64) {
+        let code = match self {
             Self::Density => 0.0,
             Self::Extinction => 1.0,
             Self::Material => 2.0,
-        }
+        };
+        ("SPLAT", code)
     }
 
     /// Sums per pixel.
@@ -68,6 +69,55 @@ impl Splat {
             Self::Density | Self::Extinction => 1,
             Self::Material => 5,
         }
+    }
+}
+
+/// What tells one pipeline of the scattering passes from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct ScatterVariant {
+    pub reconstruction: Reconstruction,
+    pub order: SheetOrder,
+    pub splat: Splat,
+}
+
+impl ScatterVariant {
+    /// The variant of one of the passes.
+    pub(crate) fn of(self, shader: &'static str) -> ScatterPass {
+        ScatterPass { shader, variant: self }
+    }
+
+    /// `ORDER` and `SPLAT`: what passes know that do not evaluate kernels.
+    pub(crate) fn sheet_constants(self) -> [(&'static str, f64); 2] {
+        let order = match self.order {
+            SheetOrder::ImageAligned => 0.0,
+            SheetOrder::VolumeAligned => 1.0,
+            SheetOrder::EveryFootprint => 2.0,
+        };
+        [("ORDER", order), self.splat.constant()]
+    }
+
+    /// All that there is.
+    pub(crate) fn constants(self) -> Constants {
+        let mut constants = self.reconstruction.constants();
+        constants.extend(self.sheet_constants());
+        constants
+    }
+}
+
+/// One of the passes that evaluate kernels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct ScatterPass {
+    shader: &'static str,
+    variant: ScatterVariant,
+}
+
+impl Variant for ScatterPass {
+    fn shader(&self) -> &'static str {
+        self.shader
+    }
+
+    fn constants(&self) -> Constants {
+        self.variant.constants()
     }
 }
 
@@ -113,16 +163,13 @@ impl Scatterer {
             extinction_unit: table.largest_extinction().max(1e-9),
             ..bytemuck::Zeroable::zeroed()
         };
-        let [kernel_code, sigma] = kernel_constants(kernel);
         Ok(Self {
             frame: frame.clone(),
-            constants: [
-                kernel_code,
-                sigma,
-                quadrature_constant(quadrature),
-                order_constant(order),
-                ("SPLAT", what.code()),
-            ],
+            variant: ScatterVariant {
+                reconstruction: Reconstruction::new(kernel, quadrature),
+                order,
+                splat: what,
+            },
             slices,
             uniform,
             half,
@@ -154,9 +201,9 @@ impl Scatterer {
         self
     }
 
-    /// Kernel and quadrature, as override constants.
-    pub(crate) fn constants(&self) -> &[(&'static str, f64)] {
-        &self.constants
+    /// What tells pipelines of its passes from others.
+    pub(crate) fn variant(&self) -> ScatterVariant {
+        self.variant
     }
 
     /// Sheets of the stack.
@@ -216,14 +263,13 @@ impl Scatterer {
     pub(crate) fn bind_group(
         &self,
         context: &Context,
-        pipeline: &wgpu::ComputePipeline,
+        pipeline: &Pipeline,
         uniform: &wgpu::Buffer,
         with_sheets: bool,
     ) -> wgpu::BindGroup {
-        let mut entries =
-            vec![entry(0, uniform.as_entire_binding()), entry(2, self.footprints.as_entire_binding())];
+        let mut entries = vec![buffer("bound_scatter", uniform), buffer("footprint_table", &self.footprints)];
         if with_sheets {
-            entries.push(entry(1, self.sheets.as_entire_binding()));
+            entries.push(buffer("sheets", &self.sheets));
         }
         pass::bind(context, "Scatterer::bind_group", pipeline, 1, &entries)
     }
@@ -237,7 +283,7 @@ impl Scatterer {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline("scatter/splat.wgsl", &self.constants)?;
+        let pipeline = shaders.pipeline(&self.variant.of("scatter/splat.wgsl"))?;
         let uniform = self.uniform_buffer(context, k, 1.0);
         let own = pass::bind(
             context,
@@ -245,10 +291,10 @@ impl Scatterer {
             &pipeline,
             0,
             &[
-                entry(0, self.bricks.as_entire_binding()),
-                entry(1, self.table.as_entire_binding()),
-                entry(6, voxels.buffer.as_entire_binding()),
-                entry(2, counter.as_entire_binding()),
+                buffer("bricks", &self.bricks),
+                buffer("table", &self.table),
+                buffer("voxels", &voxels.buffer),
+                buffer("splats", &counter),
             ],
         );
         let shared = self.bind_group(context, &pipeline, &uniform, true);
@@ -308,15 +354,6 @@ fn round(kernel: Kernel) -> Kernel {
 }
 
 /// `ORDER` of `scatter/slab.wgsl`.
-fn order_constant(order: SheetOrder) -> (&'static str, f64) {
-    let code = match order {
-        SheetOrder::ImageAligned => 0.0,
-        SheetOrder::VolumeAligned => 1.0,
-        SheetOrder::EveryFootprint => 2.0,
-    };
-    ("ORDER", code)
-}
-
 /// Index space to (w·i, w·j, z), where w = 1 + z · `inverse_distance`: the inverse of the frame's rays,
 /// point = origin + w·i · right + w·j · down + z · forward.
 fn sheets_from_index(frame: &SheetFrame) -> DAffine3 {

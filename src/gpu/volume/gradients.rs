@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
+use super::GpuVolume;
 use super::prefilter::{level_of, uniform_and_list};
-use super::{GpuVolume, entry};
+use crate::gpu::resources::binding::{buffer, view_of};
 use crate::gpu::resources::listed_bricks;
 use crate::gpu::resources::pass;
+use crate::gpu::resources::variant::Only;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 
 /// Most bytes that gradients may take: 512³ voxels need 1.29 GB, with coarser levels. Beyond that, a
@@ -49,7 +51,7 @@ pub(crate) fn fill(
 ) -> Result<(), GpuError> {
     let Some(gradients) = &volume.gradients else { return Ok(()) };
     let bricks = &volume.filled_levels[level as usize][range.clone()];
-    let pipeline = shaders.pipeline("volume/gradients.wgsl", &[])?;
+    let pipeline = shaders.pipeline(&Only("volume/gradients.wgsl"))?;
     let (uniform, list) = uniform_and_list(context, level, bricks);
     let bind_group = pass::bind(
         context,
@@ -57,10 +59,10 @@ pub(crate) fn fill(
         &pipeline,
         0,
         &[
-            entry(0, wgpu::BindingResource::TextureView(&level_of(&volume.pyramid, level))),
-            entry(3, uniform.as_entire_binding()),
-            entry(4, wgpu::BindingResource::TextureView(&level_of(gradients, level))),
-            entry(5, list.as_entire_binding()),
+            view_of("source", &level_of(&volume.pyramid, level)),
+            buffer("bound_resample", &uniform),
+            view_of("gradients", &level_of(gradients, level)),
+            buffer("bricks", &list),
         ],
     );
     let groups = listed_bricks::workgroups(bricks.len().max(1) as u32);

@@ -14,6 +14,7 @@ use super::resources::tools::Tools;
 use super::resources::uniforms::Grid;
 use super::{Context, GpuError};
 use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
+use crate::gpu::resources::binding::{Named, Pipeline, buffer, sampler, view_of};
 use crate::math::SceneSpace;
 use crate::plan::MAX_STRETCH_LEVEL;
 
@@ -70,15 +71,15 @@ impl Gpu<'_> {
     pub(crate) fn bind(
         &self,
         label: &str,
-        pipeline: &wgpu::ComputePipeline,
-        group: u32,
-        entries: &[wgpu::BindGroupEntry<'_>],
+        pipeline: &Pipeline,
+        group: usize,
+        entries: &[Named<'_>],
     ) -> wgpu::BindGroup {
         self.pool.bind(self.context, label, pipeline, group, entries)
     }
 
     /// Bind group 1 of passes that look at the pyramid alone.
-    pub(crate) fn bind_pyramid(&self, pipeline: &wgpu::ComputePipeline) -> wgpu::BindGroup {
+    pub(crate) fn bind_pyramid(&self, pipeline: &Pipeline) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
         self.bind(
@@ -86,20 +87,15 @@ impl Gpu<'_> {
             pipeline,
             1,
             &[
-                entry(0, grid.as_entire_binding()),
-                entry(2, wgpu::BindingResource::TextureView(&volume.pyramid_views.all)),
-                entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
+                buffer("bound_grid", &grid),
+                view_of("pyramid_texture", &volume.pyramid_views.all),
+                sampler("clamped", &volume.clamped),
             ],
         )
     }
 
     /// Bind group 1 of the passes that sample density.
-    pub(crate) fn bind_volume(
-        &self,
-        pipeline: &wgpu::ComputePipeline,
-        dilation: i32,
-        levels: Levels,
-    ) -> wgpu::BindGroup {
+    pub(crate) fn bind_volume(&self, pipeline: &Pipeline, dilation: i32, levels: Levels) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(dilation));
         self.bind(
@@ -107,11 +103,11 @@ impl Gpu<'_> {
             pipeline,
             1,
             &[
-                entry(0, grid.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(&volume.density_view)),
-                entry(2, wgpu::BindingResource::TextureView(levels.choose(&volume.pyramid_views))),
-                entry(3, wgpu::BindingResource::Sampler(&volume.clamped)),
-                entry(4, wgpu::BindingResource::Sampler(&volume.nearest)),
+                buffer("bound_grid", &grid),
+                view_of("density_texture", &volume.density_view),
+                view_of("pyramid_texture", levels.choose(&volume.pyramid_views)),
+                sampler("clamped", &volume.clamped),
+                sampler("nearest", &volume.nearest),
             ],
         )
     }
@@ -324,11 +320,6 @@ pub(crate) fn textures(
 /// Texels of the pyramid: whole ones on every level, so that a level's texel is exactly 2³ of the finer one's.
 fn padded(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
-}
-
-/// One entry of a bind group.
-pub(crate) fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource }
 }
 
 /// A 3D texture without mip levels.

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
-use super::{GpuVolume, entry};
+use super::GpuVolume;
 use crate::data::Bricks;
+use crate::gpu::resources::binding::{buffer, sampler, view_of};
 use crate::gpu::resources::listed_bricks;
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
+use crate::gpu::resources::variant::Only;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 use crate::plan::BrickSet;
 
@@ -90,7 +92,7 @@ pub(crate) fn fill(
         0 => ("volume/prefilter.wgsl", volume.density_view.clone()),
         _ => ("volume/downsample.wgsl", level_of(&volume.pyramid, level - 1)),
     };
-    let pipeline = shaders.pipeline(shader, &[])?;
+    let pipeline = shaders.pipeline(&Only(shader))?;
     let (uniform, list) = uniform_and_list(context, level, bricks);
     let bind_group = pass::bind(
         context,
@@ -98,11 +100,11 @@ pub(crate) fn fill(
         &pipeline,
         0,
         &[
-            entry(0, wgpu::BindingResource::TextureView(&source)),
-            entry(1, wgpu::BindingResource::Sampler(&volume.clamped)),
-            entry(2, wgpu::BindingResource::TextureView(&level_of(&volume.pyramid, level))),
-            entry(3, uniform.as_entire_binding()),
-            entry(5, list.as_entire_binding()),
+            view_of("source", &source),
+            sampler("clamped", &volume.clamped),
+            view_of("level", &level_of(&volume.pyramid, level)),
+            buffer("bound_resample", &uniform),
+            buffer("bricks", &list),
         ],
     );
     let groups = listed_bricks::workgroups(bricks.len().max(1) as u32);

@@ -189,8 +189,3 @@ pub(crate) fn upload_distances(
     );
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
-
-/// A bind group entry for a texture view.
-pub(crate) fn view_entry(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
-    entry(binding, wgpu::BindingResource::TextureView(view))
-}

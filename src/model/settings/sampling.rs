@@ -19,7 +19,7 @@ pub enum Kernel {
 }
 
 /// How many points per slab the kernel's integral over the slab takes (Gauss–Legendre).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quadrature {
     /// The middle of the slab.
@@ -41,7 +41,7 @@ impl Quadrature {
 }
 
 /// Where normals come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gradients {
     /// Differences of the reconstructed volume around the sample.
@@ -51,7 +51,7 @@ pub enum Gradients {
 }
 
 /// How sheets are filled and emptied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Engine {
     /// Every pixel, and every voxel of a light volume, gathers what splats would bring: the same
@@ -63,7 +63,7 @@ pub enum Engine {
 }
 
 /// When the transfer function is applied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Classification {
     /// To the sheets: sharp edges, however coarse the voxels (P §3.5).
@@ -74,7 +74,7 @@ pub enum Classification {
 }
 
 /// What the scattering engine composites for the eye.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SheetOrder {
     /// Sheets across the line of sight (the paper's references 17 and 18).

@@ -36,7 +36,7 @@ impl ShadowAlgorithm {
 
 /// Which transmittance of a slab counts: in a sheet what it deposits in the light volume, on a ray
 /// to the light where the first slab lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Deposit {
     /// In front of the slab: P eq. 7, 8 and 10 read literally; first order in the slab's thickness.

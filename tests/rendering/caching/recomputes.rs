@@ -2,7 +2,7 @@
 
 use chiaroscuro::data::Dataset;
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, Runs, ShaderLibrary};
-use chiaroscuro::model::{ControlPoint, Light, LightKind, Settings, TransferFunction, apply_path};
+use chiaroscuro::model::{Camera, ControlPoint, Light, LightKind, Settings, TransferFunction, apply_path};
 use glam::DVec3;
 
 use crate::common::context;
@@ -127,12 +127,18 @@ fn every_setting_costs_what_it_should() {
         ("output.background.top", "[0,0,0]", Cost::Display),
         ("output.background.bottom", "[0,0,0]", Cost::Display),
         ("output.tone_map", "clip", Cost::Display),
-        ("views", r#"{"1": {}}"#, Cost::Nothing),
     ];
     let bench = Bench::new();
     for (path, value, expected) in table {
         assert_eq!(bench.cost_of(path, value), expected, "{path} = {value}");
     }
+}
+
+#[test]
+fn a_saved_view_costs_nothing() {
+    let mut kept = home();
+    kept.views.insert(1, Camera::default());
+    assert_eq!(cost(Bench::new().runs(&home(), &kept, &RenderOptions::default())), Cost::Nothing);
 }
 
 #[test]

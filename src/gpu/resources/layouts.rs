@@ -1,0 +1,287 @@
+//! What every shader binds, by the names that it gives its bindings: group by group, with their numbers, kinds and
+//! sizes. Compared with the shaders themselves by a test (`tests/shaders/bindings.rs`).
+
+use super::binding::{Access, Format, Shape, Slot};
+use super::uniforms;
+
+/// Entries of a lookup table: [`crate::model::LUT_SIZE`] times four floats.
+const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 16;
+
+/// Pairs of floats in a table of footprints, as `scatter/footprint.wgsl` declares it.
+const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;
+
+/// Density, with a pyramid for kernels that perspective stretches.
+const VOLUME: &[Slot] = &[
+    Slot::uniform::<uniforms::Grid>(0, "bound_grid"),
+    Slot::sampled(1, "density_texture", Shape::Volume),
+    Slot::sampled(2, "pyramid_texture", Shape::Volume),
+    Slot::sampler(3, "clamped"),
+    Slot::sampler(4, "nearest"),
+];
+
+/// The pyramid alone.
+const PYRAMID: &[Slot] = &[
+    Slot::uniform::<uniforms::Grid>(0, "bound_grid"),
+    Slot::sampled(2, "pyramid_texture", Shape::Volume),
+    Slot::sampler(3, "clamped"),
+];
+
+/// Names of the light volumes, in the order of their lights.
+pub(crate) const ATTENUATION: [&str; 8] = [
+    "attenuation_0",
+    "attenuation_1",
+    "attenuation_2",
+    "attenuation_3",
+    "attenuation_4",
+    "attenuation_5",
+    "attenuation_6",
+    "attenuation_7",
+];
+
+/// The light volumes.
+const LIGHTS: &[Slot] = &[
+    Slot::sampled(0, ATTENUATION[0], Shape::Volume),
+    Slot::sampled(1, ATTENUATION[1], Shape::Volume),
+    Slot::sampled(2, ATTENUATION[2], Shape::Volume),
+    Slot::sampled(3, ATTENUATION[3], Shape::Volume),
+    Slot::sampled(4, ATTENUATION[4], Shape::Volume),
+    Slot::sampled(5, ATTENUATION[5], Shape::Volume),
+    Slot::sampled(6, ATTENUATION[6], Shape::Volume),
+    Slot::sampled(7, ATTENUATION[7], Shape::Volume),
+];
+
+/// A level of the pyramid in the making.
+const RESAMPLE: &[Slot] = &[
+    Slot::sampled(0, "source", Shape::Volume),
+    Slot::sampler(1, "clamped"),
+    Slot::target(2, "level", Shape::Volume, Format::Storage),
+    Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
+    Slot::list(5, "bricks", 4, Access::Read),
+];
+
+/// A table, and what the eye and its lights are.
+const EYE: Slot = Slot::uniform::<uniforms::Eye>(0, "bound_eye");
+const TABLE: Slot = Slot::list(1, "table", TABLE_BYTES, Access::Read);
+const SCATTER: Slot = Slot::uniform::<uniforms::Scatter>(0, "bound_scatter");
+const SHEETS: Slot = Slot::list(1, "sheets", 4, Access::ReadWrite);
+const FOOTPRINT_TABLE: Slot = Slot::list(2, "footprint_table", FOOTPRINT_TABLE_BYTES, Access::Read);
+const RAYS: Slot = Slot::list(3, "rays", 16, Access::ReadWrite);
+
+/// What display passes read; `shown` is what they write.
+const fn display(shown: Format) -> [Slot; 4] {
+    [
+        Slot::uniform::<uniforms::Display>(0, "bound_display"),
+        Slot::loaded(1, "picture", Shape::Picture),
+        Slot::target(2, "shown", Shape::Picture, shown),
+        Slot::loaded(3, "floor_light", Shape::Picture),
+    ]
+}
+
+const DISPLAY: &[Slot] = &display(Format::Of(wgpu::TextureFormat::Rgba8Unorm));
+const DISPLAY_DEEP: &[Slot] = &display(Format::Of(wgpu::TextureFormat::Rgba32Float));
+
+/// The groups of a shader.
+pub(crate) type Groups = &'static [&'static [Slot]];
+
+/// Every compute shader, and what it binds.
+pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
+    (
+        "eye/floor.wgsl",
+        &[
+            &[
+                Slot::uniform::<uniforms::Floor>(0, "bound_floor_disc"),
+                TABLE,
+                Slot::sampled(2, "distances", Shape::Volume),
+                Slot::loaded(3, "picture", Shape::Picture),
+                Slot::target(4, "floor_light", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            ],
+            VOLUME,
+        ],
+    ),
+    (
+        "eye/gather.wgsl",
+        &[
+            &[
+                EYE,
+                TABLE,
+                Slot::sampled(2, "distances", Shape::Volume),
+                Slot::target(3, "picture", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba32Float)),
+                Slot::list(4, "lighting_table", TABLE_BYTES, Access::Read),
+                Slot::sampled(5, "light_distances", Shape::Volume),
+                Slot::sampled(6, "gradients", Shape::Volume),
+            ],
+            VOLUME,
+            LIGHTS,
+        ],
+    ),
+    (
+        "light/backproject.wgsl",
+        &[&[
+            Slot::uniform::<uniforms::Backprojection>(0, "bound_view"),
+            Slot::list(1, "bricks", 16, Access::Read),
+            Slot::sampled(2, "ring", Shape::Sheets),
+            Slot::sampler(3, "ring_sampler"),
+            Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
+        ]],
+    ),
+    (
+        "light/clear_margin.wgsl",
+        &[&[
+            Slot::list(0, "bricks", 16, Access::Read),
+            Slot::target(1, "attenuation", Shape::Volume, Format::Attenuation),
+        ]],
+    ),
+    (
+        "light/combine.wgsl",
+        &[
+            &[
+                EYE,
+                Slot::uniform::<uniforms::Combine>(1, "bound_combine"),
+                Slot::list(3, "bricks", 16, Access::Read),
+                Slot::target(4, "combined", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            ],
+            PYRAMID,
+            LIGHTS,
+        ],
+    ),
+    (
+        "light/march.wgsl",
+        &[
+            &[
+                Slot::uniform::<uniforms::March>(0, "bound_march"),
+                TABLE,
+                Slot::sampled(2, "distances", Shape::Volume),
+                Slot::list(3, "transmittance", 4, Access::ReadWrite),
+                Slot::target(4, "ring", Shape::Sheets, Format::Ring),
+                Slot::list(5, "tiles", 4, Access::Read),
+            ],
+            VOLUME,
+        ],
+    ),
+    (
+        "light/raycast.wgsl",
+        &[
+            &[
+                Slot::uniform::<uniforms::Raycast>(0, "bound_raycast"),
+                TABLE,
+                Slot::sampled(2, "distances", Shape::Volume),
+                Slot::list(3, "bricks", 16, Access::Read),
+                Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
+            ],
+            VOLUME,
+        ],
+    ),
+    ("output/display.wgsl", &[DISPLAY]),
+    ("output/display_deep.wgsl", &[DISPLAY_DEEP]),
+    (
+        "scatter/eye.wgsl",
+        &[
+            &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume)],
+            &[SCATTER, SHEETS, RAYS, Slot::sampler(4, "clamped")],
+            LIGHTS,
+        ],
+    ),
+    (
+        "scatter/footprints.wgsl",
+        &[
+            &[
+                EYE,
+                TABLE,
+                Slot::list(3, "first_words", 4, Access::Read),
+                Slot::list(4, "bricks", 8, Access::Read),
+                Slot::list(5, "splats", 4, Access::ReadWrite),
+                Slot::list(6, "voxels", 4, Access::Read),
+            ],
+            &[SCATTER, FOOTPRINT_TABLE, RAYS, Slot::sampler(4, "clamped")],
+            LIGHTS,
+            &[Slot::uniform::<uniforms::Phase>(0, "bound_phase")],
+        ],
+    ),
+    (
+        "scatter/light.wgsl",
+        &[
+            &[
+                Slot::uniform::<uniforms::March>(0, "bound_march"),
+                TABLE,
+                Slot::integers(2, "distances", Shape::Volume),
+                Slot::list(3, "transmittance", 4, Access::ReadWrite),
+                Slot::target(4, "ring", Shape::Sheets, Format::Ring),
+                Slot::list(5, "deposits", 16, Access::ReadWrite),
+            ],
+            &[SCATTER, SHEETS],
+        ],
+    ),
+    (
+        "scatter/normalise.wgsl",
+        &[
+            &[
+                Slot::list(0, "bricks", 16, Access::Read),
+                Slot::list(1, "light", 4, Access::Read),
+                Slot::list(2, "weights", 4, Access::Read),
+                Slot::target(3, "attenuation", Shape::Volume, Format::Attenuation),
+            ],
+            &[SCATTER],
+        ],
+    ),
+    (
+        "scatter/resolve.wgsl",
+        &[
+            &[
+                Slot::list(0, "rays", 16, Access::Read),
+                Slot::target(1, "picture", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba32Float)),
+            ],
+            &[SCATTER],
+        ],
+    ),
+    (
+        "scatter/reverse.wgsl",
+        &[
+            &[
+                Slot::integers(0, "distances", Shape::Volume),
+                Slot::loaded(1, "ring", Shape::Sheets),
+                Slot::list(2, "light", 4, Access::ReadWrite),
+                Slot::list(3, "weights", 4, Access::ReadWrite),
+            ],
+            &[SCATTER, FOOTPRINT_TABLE],
+        ],
+    ),
+    (
+        "scatter/splat.wgsl",
+        &[
+            &[
+                Slot::list(0, "bricks", 8, Access::Read),
+                TABLE,
+                Slot::list(2, "splats", 4, Access::ReadWrite),
+                Slot::list(6, "voxels", 4, Access::Read),
+            ],
+            &[SCATTER, SHEETS, FOOTPRINT_TABLE],
+        ],
+    ),
+    ("volume/downsample.wgsl", &[RESAMPLE]),
+    (
+        "volume/gradients.wgsl",
+        &[&[
+            Slot::loaded(0, "source", Shape::Volume),
+            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
+            Slot::target(4, "gradients", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            Slot::list(5, "bricks", 4, Access::Read),
+        ]],
+    ),
+    ("volume/prefilter.wgsl", &[RESAMPLE]),
+];
+
+/// What a compute shader binds: its name, and for each group the name and the entry of each binding.
+pub type ShaderBindings = (&'static str, Vec<Vec<(&'static str, wgpu::BindGroupLayoutEntry)>>);
+
+/// The bindings of every compute shader, where single channels are stored in `storage`, for light volumes of
+/// `attenuation`: for whoever compares them with the shaders.
+#[doc(hidden)]
+pub fn shader_bindings(
+    storage: wgpu::TextureFormat,
+    attenuation: wgpu::TextureFormat,
+) -> Vec<ShaderBindings> {
+    let group = |slots: &&'static [Slot]| {
+        slots.iter().map(|slot| (slot.name, slot.entry(storage, attenuation))).collect()
+    };
+    LAYOUTS.iter().map(|(shader, groups)| (*shader, groups.iter().map(group).collect())).collect()
+}
