@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use super::{GpuVolume, brick_dims, entry};
+use super::{GpuVolume, brick_dims};
 use crate::gpu::{Context, GpuError};
 use crate::model::{BakedTransfer, Settings};
 use crate::plan::{BrickSet, CellDistances, CellSet, TablesKey};
