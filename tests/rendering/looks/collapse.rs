@@ -3,7 +3,7 @@
 use crate::common::{Loaded, context, render};
 use crate::compare::{compare, difference, flat32};
 use crate::scenes::{self, isotropic};
-use crate::thresholds::COLLAPSED;
+use crate::thresholds::{COLLAPSED, COLLAPSED_NORMALS};
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{Light, LightKind, LightStorage, Settings};
 use glam::DVec3;
@@ -55,7 +55,11 @@ fn collapsed_light_is_the_sum_of_the_lights() {
     let together = render(&mut renderer, &loaded, &settings, SIZE);
     let found = difference(&flat32(&together.light), &flat32(&apart.light));
     println!("collapsed with normals: RMSE {:.2e}, largest {:.2e}", found.rmse, found.max);
-    assert!(found.rmse > 0.0 && found.rmse < 0.02, "interpolated normals differ a little: {}", found.rmse);
+    assert!(
+        found.rmse > 0.0 && found.rmse < COLLAPSED_NORMALS,
+        "interpolated normals differ a little: {}",
+        found.rmse
+    );
 }
 
 /// One volume is kept in place of those of the lights, until one of them changes.
