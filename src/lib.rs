@@ -15,13 +15,15 @@
 //! | [`export`] | files that go out: pictures, pictures that move |
 //! | [`mod@reference`] | the paper in f64, literal and slow |
 //! | [`gpu`] | the renderer |
-//! | [`app`] | the window |
-//! | [`cli`] | the command line |
+//! | `app` | the window; with the feature `window` |
+//! | `cli` | the command line; with the feature `cli` |
 //!
 //! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's
 //! longest edge spans [−1, 1]) → sheets (pixels and depth along an axis of projection).
 
+#[cfg(feature = "window")]
 pub mod app;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod data;
 pub mod export;

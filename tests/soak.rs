@@ -2,11 +2,10 @@
 //!
 //! `script/soak HOURS` drags for hours and looks at frame times, too.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::data::{Bricks, Histogram, Volume};
+use chiaroscuro::data::{Dataset, Histogram};
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, device_descriptor};
 use chiaroscuro::model::{Engine, Kernel, Resolution, Settings, auto};
 use chiaroscuro::plan::Request;
@@ -28,8 +27,7 @@ const MAX_DRIFT: f64 = 0.05;
 struct Soak {
     instance: wgpu::Instance,
     renderer: Renderer,
-    volume: Arc<Volume>,
-    bricks: Arc<Bricks>,
+    dataset: Dataset,
     settings: Settings,
     /// Slabs of light that are marched at a time.
     chunk: Option<u32>,
@@ -44,10 +42,9 @@ impl Soak {
             pollster::block_on(adapter.request_device(&device_descriptor(adapter))).expect("a device");
         let context = Context::new(adapter, device, queue).expect("a usable device");
         let volume = builtin("chair", Some(32)).expect("the chair");
-        let settings = auto::first_settings(&volume, &Histogram::of(&volume, 256));
-        let bricks = Arc::new(Bricks::of(&volume));
+        let settings = auto::first_settings(&volume, &Histogram::of(&volume));
         let renderer = Renderer::new(&context).expect("a renderer");
-        Self { instance, renderer, volume: Arc::new(volume), bricks, settings, chunk: None }
+        Self { instance, renderer, dataset: Dataset::new(volume), settings, chunk: None }
     }
 
     /// Moves the light, and sometimes the camera and the transfer function; a preview, or a whole picture.
@@ -75,14 +72,14 @@ impl Soak {
             settings.shadows.kernel = Kernel::Prefiltered;
         }
         let request = Request {
-            volume: self.volume.content_id(),
+            volume: self.dataset.volume().content_id(),
             settings,
             size: if is_rest { [96, 72] } else { [48, 36] },
             coarse: (!is_rest).then_some(Resolution::Quarter),
         };
         let options = RenderOptions { preview: !is_rest, chunk: self.chunk, ..RenderOptions::default() };
-        let mut job = self.renderer.begin(&self.volume, &self.bricks, request, &options).expect("a job");
-        while self.renderer.step(&mut job).expect("a step") {}
+        let mut job = self.renderer.begin(&self.dataset, request, &options).expect("a job");
+        while job.step().expect("a step") {}
         self.renderer.context().wait().expect("it is done");
         self.renderer.read_shown().expect("a picture");
     }

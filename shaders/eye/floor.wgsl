@@ -7,7 +7,7 @@
 #import "common/space.wgsl"
 #import "sheets/tiles.wgsl"
 
-struct Ground {
+struct Floor {
     frame: SheetFrame,
     space: Space,
     shading: Shading,
@@ -34,8 +34,8 @@ struct Ground {
     lights: array<Light, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_ground: Ground;
-var<private> ground: Ground;
+@group(0) @binding(0) var<uniform> bound_floor_disc: Floor;
+var<private> floor_disc: Floor;
 // g: distance to the nearest cell that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var picture: texture_2d<f32>;
@@ -66,11 +66,11 @@ fn fallen(light: Light, p: vec3f, place: vec3f, shadowed: bool) -> Fallen {
     let towards = to_light(light, place);
     let hood = hood_share(light, towards.direction);
     let bare = light.color * max(towards.direction.z, 0.0);
-    let s = ground.shading;
+    let s = floor_disc.shading;
     var left = 0.0;
     if (shadowed && towards.direction.z > 0.0 && hood > 0.0) {
-        let direction = to_index(ground.space, towards.direction);
-        let cut = ground.shading_cut;
+        let direction = to_index(floor_disc.space, towards.direction);
+        let cut = floor_disc.shading_cut;
         let scale = light.extinction_scale;
         left = shadow_ray(p, direction, towards.distance, s.ray_step, scale, s.dark_depth, cut);
     }
@@ -84,38 +84,38 @@ fn main(
     @builtin(local_invocation_id) local: vec3u,
 ) {
     grid = bound_grid;
-    ground = bound_ground;
-    let pixel = tile_of(group, groups.y, ground.runs) * 8u + local.xy + vec2u(0u, ground.first_row);
-    if (pixel.x >= ground.frame.size.x || pixel.y >= ground.end_row) {
+    floor_disc = bound_floor_disc;
+    let pixel = tile_of(group, groups.y, floor_disc.runs) * 8u + local.xy + vec2u(0u, floor_disc.first_row);
+    if (pixel.x >= floor_disc.frame.size.x || pixel.y >= floor_disc.end_row) {
         return;
     }
-    let ray = ray_of(ground.frame, vec2f(pixel));
-    let speed = dot(ground.plane.xyz, ray.direction);
-    let depth = (ground.plane.w - dot(ground.plane.xyz, ray.origin)) / min(speed, -1e-9);
+    let ray = ray_of(floor_disc.frame, vec2f(pixel));
+    let speed = dot(floor_disc.plane.xyz, ray.direction);
+    let depth = (floor_disc.plane.w - dot(floor_disc.plane.xyz, ray.origin)) / min(speed, -1e-9);
     let p = ray.origin + ray.direction * depth;
-    let place = place_of(ground.space, p);
-    let t = clamp((ground.radius - length(place.xy)) / ground.fade, 0.0, 1.0);
+    let place = place_of(floor_disc.space, p);
+    let t = clamp((floor_disc.radius - length(place.xy)) / floor_disc.fade, 0.0, 1.0);
     // From above, and in front of a perspective eye.
-    let is_seen = speed < 0.0 && 1.0 + depth * ground.frame.inverse_distance > 1e-3;
-    let presence = select(0.0, ground.opacity * t * t * (3.0 - 2.0 * t), is_seen);
+    let is_seen = speed < 0.0 && 1.0 + depth * floor_disc.frame.inverse_distance > 1e-3;
+    let presence = select(0.0, floor_disc.opacity * t * t * (3.0 - 2.0 * t), is_seen);
     var result = vec4f(0.0);
     if (presence * (1.0 - textureLoad(picture, pixel, 0).a) > LEAST) {
         var light = vec3f(0.0);
         var bare = vec3f(0.0);
         for (var i = 0u; i < LIGHTS; i += 1u) {
             // Not from the copy: an index that varies would keep that as an array in memory.
-            let one = fallen(bound_ground.lights[i], p, place, i < SHADOWED);
+            let one = fallen(bound_floor_disc.lights[i], p, place, i < SHADOWED);
             light += one.light;
             bare += one.bare;
         }
-        let s = ground.shading;
-        let shown = s.ambient + s.diffuse * ground.light_share * light;
+        let s = floor_disc.shading;
+        let shown = s.ambient + s.diffuse * floor_disc.light_share * light;
         let luminance = vec3f(0.2126, 0.7152, 0.0722);
-        let unshadowed = dot(luminance, s.ambient + s.diffuse * ground.light_share * bare);
+        let unshadowed = dot(luminance, s.ambient + s.diffuse * floor_disc.light_share * bare);
         let missing = clamp(1.0 - dot(luminance, shown) / max(unshadowed, 1e-6), 0.0, 1.0);
-        let whole = vec4f(ground.color * shown, 1.0);
+        let whole = vec4f(floor_disc.color * shown, 1.0);
         let shadow = vec4f(0.0, 0.0, 0.0, missing);
-        result = presence * mix(whole, shadow, ground.shadow_only);
+        result = presence * mix(whole, shadow, floor_disc.shadow_only);
     }
     textureStore(floor_light, pixel, result);
 }

@@ -6,7 +6,7 @@
 #import "common/listed_bricks.wgsl"
 #import "density/gradient.wgsl"
 
-struct Collapse {
+struct Combine {
     dims: vec3u,
     // Bricks listed for this dispatch.
     bricks: u32,
@@ -17,25 +17,25 @@ struct Collapse {
     pad2: f32,
 }
 
-@group(0) @binding(1) var<uniform> bound_collapse: Collapse;
-var<private> collapse: Collapse;
+@group(0) @binding(1) var<uniform> bound_collapse: Combine;
+var<private> combine: Combine;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
-@group(0) @binding(4) var collapsed: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(4) var combined: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    collapse = bound_collapse;
+    combine = bound_collapse;
     eye = bound_eye;
     grid = bound_grid;
     let listed = listed_brick(group);
-    if (listed >= collapse.bricks) {
+    if (listed >= combine.bricks) {
         return;
     }
     let voxel = voxel_in(bricks[listed].x, group, local);
-    if (!is_listed(bricks[listed], group, local) || any(voxel >= collapse.dims)) {
+    if (!is_listed(bricks[listed], group, local) || any(voxel >= combine.dims)) {
         return;
     }
-    let p = (vec3f(voxel) + 0.5) * collapse.voxel_step - 0.5;
+    let p = (vec3f(voxel) + 0.5) * combine.voxel_step - 0.5;
     let slope = gradient_to_scene(eye.space, index_gradient(p, 0.0) + face_gradient(eye.seen, p, 0.0));
-    textureStore(collapsed, voxel, vec4f(lit_through_material(surface_at(p, slope)).diffuse, 1.0));
+    textureStore(combined, voxel, vec4f(lit_through_material(surface_at(p, slope)).diffuse, 1.0));
 }

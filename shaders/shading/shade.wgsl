@@ -27,8 +27,8 @@ struct Eye {
     // Runs of rows of tiles (sheets/tiles.wgsl).
     runs: u32,
     pad1: i32,
-    // Index space to texture coordinates of the volume into which lights have been collapsed.
-    collapsed_lookup: vec3f,
+    // Index space to texture coordinates of the volume into which lights have been combined.
+    combined_lookup: vec3f,
     pad2: f32,
     // What is seen.
     seen: Cut,
@@ -53,7 +53,7 @@ override LIGHTS: u32 = 1u;
 // How many of them have one, or would have.
 override SHADOWED: u32 = 1u;
 // The diffuse light of those that have one is in the first volume, as colours (P §4).
-override COLLAPSED: bool = false;
+override COMBINED: bool = false;
 
 // Where the light of a sample is looked up: the bias nearer to the source.
 fn biased(light: Light, surface: Surface, towards: Towards) -> vec3f {
@@ -112,8 +112,8 @@ fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
     let s = eye.shading;
     let surface = surface_at(p, slope);
     var lit: Lit;
-    if (COLLAPSED) {
-        lit = Lit(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.collapsed_lookup, 0.0).rgb, vec3f(0.0));
+    if (COMBINED) {
+        lit = Lit(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));
     } else {
         lit = lit_through_material(surface);
     }

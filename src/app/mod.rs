@@ -34,7 +34,7 @@ use self::viewport::cut_handles::CutHandles;
 use self::viewport::hints::Hints;
 use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
-use self::viewport::overlay::Marks;
+use self::viewport::overlay::Overlay;
 use self::viewport::{Facts, Viewport, paint_callback as plate};
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
@@ -79,7 +79,7 @@ pub struct App {
     handles: LightHandles,
     cut_handles: CutHandles,
     compare: Compare,
-    marks: Marks,
+    marks: Overlay,
     probe: LightProbe,
     palette: Palette,
     light_slice: LightSlice,
@@ -143,7 +143,7 @@ impl App {
             handles: LightHandles::default(),
             cut_handles: CutHandles::default(),
             compare: Compare::default(),
-            marks: Marks::default(),
+            marks: Overlay::default(),
             probe: LightProbe::default(),
             palette: Palette::default(),
             light_slice: LightSlice::default(),

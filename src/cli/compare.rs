@@ -46,7 +46,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         let variant = Variant::PLAIN.into_iter().find(|variant| variant.name() == name);
         let settings = variant.unwrap_or(Variant::Current).of(&settings);
         let options = RenderOptions::default();
-        let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, args.size, &options)?;
+        let picture = renderer.render(&loaded, &settings, args.size, &options)?;
         let first = pictures.first().unwrap_or(&picture);
         let Distance { rmse, largest } = Distance::between(&first.shown, &picture.shown);
         print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"));

@@ -3,8 +3,9 @@
 use clap::Args;
 use serde_json::json;
 
-use super::scene::{LoadArgs, Loaded};
+use super::scene::LoadArgs;
 use super::{CliError, print_line};
+use crate::data::Dataset;
 use crate::data::load::{LoadControl, open};
 
 /// Percentiles that are listed.
@@ -13,7 +14,7 @@ const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
 /// Arguments of `info`.
 #[derive(Debug, Args)]
 pub(super) struct InfoArgs {
-    /// Volume: a file, or builtin:NAME[:N]
+    #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
     file: String,
     /// As JSON
     #[arg(long)]
@@ -24,10 +25,10 @@ pub(super) struct InfoArgs {
 
 /// Prints what is known about a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
-    let loaded = Loaded::new(open(&args.file, &args.load.load_options()?, &LoadControl::new())?);
-    let volume = &loaded.volume;
+    let loaded = Dataset::new(open(&args.file, &args.load.load_options()?, &LoadControl::new())?);
+    let volume = loaded.volume();
     let (min, max) = volume.value_range();
-    let percentile = |p: u32| volume.value_of(loaded.histogram.percentile(f64::from(p) / 100.0));
+    let percentile = |p: u32| volume.value_of(loaded.histogram().percentile(f64::from(p) / 100.0));
     let percentiles: serde_json::Map<_, _> =
         PERCENTILES.iter().map(|&p| (format!("p{p}"), json!(percentile(p)))).collect();
     let spacing = volume.spacing_mm();
@@ -40,7 +41,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "type": volume.samples().voxel_type().name(),
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
         "range": [min, max],
-        "odd_voxels": volume.odd_voxels(),
+        "non_finite_voxels": volume.non_finite_voxels(),
         "percentiles": percentiles,
         "cpu_bytes": voxels * volume.samples().voxel_type().bytes() as u64,
         "gpu_bytes_with_one_light": gpu_bytes,
@@ -56,8 +57,8 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  values       {min} … {max}"));
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
     print_line(&format!("  percentiles  {}", listed.join(", ")));
-    if volume.odd_voxels() > 0 {
-        print_line(&format!("  not finite   {} voxels", volume.odd_voxels()));
+    if volume.non_finite_voxels() > 0 {
+        print_line(&format!("  not finite   {} voxels", volume.non_finite_voxels()));
     }
     print_line(&format!("  memory       {} MiB on the GPU with one light", gpu_bytes >> 20));
     Ok(())

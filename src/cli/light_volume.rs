@@ -44,13 +44,13 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
     let mut settings = look.settings(&mut renderer, &loaded)?;
-    // Collapsed with others, it would be gone.
+    // Combined with others, it would be gone.
     settings.shadows.storage = LightStorage::PerLight;
     let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
     let size = [16, 16];
-    renderer.draw(&loaded.volume, &loaded.bricks, &settings, size, &options)?;
+    renderer.draw(&loaded, &settings, size, &options)?;
     let lights = settings.lights.len();
-    let request = Request { volume: loaded.volume.content_id(), settings, size, coarse: None };
+    let request = Request { volume: loaded.volume().content_id(), settings, size, coarse: None };
     let attenuation = renderer.attenuation(&request, args.light)?.ok_or_else(|| {
         CliError::Usage(format!(
             "--light: light {} has no attenuation volume: it must be one of {lights}, be on and cast shadows, and shadows must be on (command line, --light)",
@@ -58,7 +58,7 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
         ))
     })?;
     match args.slice {
-        None => write_atomically(&args.output, &light_volume_nrrd(&loaded.volume, &attenuation))?,
+        None => write_atomically(&args.output, &light_volume_nrrd(loaded.volume(), &attenuation))?,
         Some((axis, index)) => {
             let slice = attenuation.slice(axis, index).ok_or_else(|| {
                 CliError::Usage(format!(

@@ -27,7 +27,7 @@ use scene::LoadArgs;
 struct Args {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Volume to view: a file, or builtin:NAME[:N]
+    #[arg(help = "Volume to view: a file, or builtin:NAME[:N]")]
     file: Option<String>,
     /// Session to continue; Ctrl+S saves to it
     #[arg(long, value_name = "FILE")]

@@ -54,14 +54,14 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         // It measures a whole picture, light volumes included, not what the balance left over.
         renderer = Renderer::new(&context)?;
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
-        let picture = renderer.render(&loaded.volume, &loaded.bricks, &settings, shot.size, &options)?;
+        let picture = renderer.render(&loaded, &settings, shot.size, &options)?;
         let took = renderer.report();
         report = Some(json!({
             "adapter": context.info.name,
             "driver": format!("{} {}", context.info.driver, context.info.driver_info),
             "image_size": shot.size,
-            "volume_dims": loaded.volume.dims(),
-            "volume_file_dims": loaded.volume.file_dims(),
+            "volume_dims": loaded.volume().dims(),
+            "volume_file_dims": loaded.volume().file_dims(),
             "stages_ms": {
                 "upload": took.upload_ms,
                 "bricks": took.bricks_ms,
@@ -82,10 +82,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         }));
     }
     let folder = args.output.parent();
-    let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
+    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().content_id(), folder);
     let how = PictureRecord::new(shot, context.description());
     let record = Record::text(&settings, Some(&volume), Some(&how));
-    let mut bands = renderer.bands(&loaded.volume, &loaded.bricks, &settings, &shot);
+    let mut bands = renderer.bands(&loaded, &settings, &shot);
     let mut rows = || -> Result<_, CliError> {
         let (done, total) = bands.progress();
         if total > 1 && done < total {

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::scene::{LoadArgs, Loaded};
+use super::scene::LoadArgs;
 use super::{CliError, print_line, warn_line};
+use crate::data::Dataset;
 use crate::export::{Rows, check_picture, read_picture, read_record, write_picture};
 use crate::gpu::{Distance, Renderer};
 use crate::model::{PresetError, Record, Settings};
@@ -48,7 +49,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     for warning in warnings {
         warn_line(&format!("warning: {warning} ({path})"));
     }
-    let loaded = Loaded::new(volume);
+    let loaded = Dataset::new(volume);
     if how.adapter != context.description() {
         warn_line(&format!("made on {}, again on {}", how.adapter, context.description()));
     }
@@ -64,7 +65,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         check_picture(output, &shot)?;
     }
     let mut renderer = Renderer::new(&context)?;
-    let again = renderer.bands(&loaded.volume, &loaded.bricks, &settings, &shot).all()?;
+    let again = renderer.bands(&loaded, &settings, &shot).all()?;
     let again = again.as_written(&shot);
     if let Some(output) = &args.output {
         let mut rows = Some(again.clone());

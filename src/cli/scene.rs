@@ -1,14 +1,13 @@
 //! Arguments that say what is rendered, common to most commands.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use serde_json::Value;
 
 use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
-use crate::data::{Bricks, Histogram, Volume, VoxelType, read_small};
+use crate::data::{Dataset, Volume, VoxelType, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance, fitted};
 use crate::model::{Engine, MAX_EDGE, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
@@ -163,44 +162,28 @@ pub(super) struct LookArgs {
 /// What is rendered, and how it looks.
 #[derive(Debug, Clone, Args)]
 pub(super) struct SceneArgs {
-    /// Volume: a file, or builtin:NAME[:N]
+    #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
     file: String,
     #[command(flatten)]
     look: LookArgs,
 }
 
-/// A volume with everything the renderer wants to know about it.
-pub(super) struct Loaded {
-    pub(super) volume: Arc<Volume>,
-    pub(super) bricks: Arc<Bricks>,
-    pub(super) histogram: Histogram,
-}
-
-impl Loaded {
-    /// Finds bricks and histogram.
-    pub(super) fn new(volume: Volume) -> Self {
-        let bricks = Arc::new(Bricks::of(&volume));
-        let histogram = Histogram::of(&volume, auto::BINS);
-        Self { volume: Arc::new(volume), bricks, histogram }
+/// A volume with what follows from it, after a word about values that are odd.
+fn checked(volume: Volume) -> Dataset {
+    if volume.non_finite_voxels() > 0 {
+        warn_line(&format!(
+            "warning: {} voxels are not finite and count as nothing",
+            volume.non_finite_voxels()
+        ));
     }
-
-    /// The same, and says what is odd about the values.
-    fn checked(volume: Volume) -> Self {
-        if volume.odd_voxels() > 0 {
-            warn_line(&format!(
-                "warning: {} voxels are not finite and count as nothing",
-                volume.odd_voxels()
-            ));
-        }
-        Self::new(volume)
-    }
+    Dataset::new(volume)
 }
 
 impl SceneArgs {
     /// Loads the volume, and opens the adapter that shows it.
-    pub(super) fn load(&self) -> Result<(Loaded, Context), CliError> {
+    pub(super) fn load(&self) -> Result<(Dataset, Context), CliError> {
         let (volume, context) = self.look.load.open(&self.file)?;
-        Ok((Loaded::checked(volume), context))
+        Ok((checked(volume), context))
     }
 
     /// What is to be loaded.
@@ -209,22 +192,22 @@ impl SceneArgs {
     }
 
     /// Finds the look.
-    pub(super) fn look(&self, loaded: &Loaded) -> Result<Look, CliError> {
+    pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
         self.look.look(loaded)
     }
 }
 
 impl LookArgs {
     /// Loads a volume for an adapter that is open.
-    pub(super) fn load(&self, source: &str, context: &Context) -> Result<Loaded, CliError> {
+    pub(super) fn load(&self, source: &str, context: &Context) -> Result<Dataset, CliError> {
         let whole = open(source, &self.load.load_options()?, &LoadControl::new())?;
-        Ok(Loaded::checked(fitted_for(source, whole, context)?))
+        Ok(checked(fitted_for(source, whole, context)?))
     }
 
     /// The automatic look, with preset and session laid over it, and the single settings to come.
     /// All of them are checked here, before anything slow begins.
-    pub(super) fn look(&self, loaded: &Loaded) -> Result<Look, CliError> {
-        let mut settings = auto::first_settings(&loaded.volume, &loaded.histogram);
+    pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
+        let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
         let mut balanced = false;
         let overlays =
             [("preset", self.preset.as_deref().map(PathBuf::from)), ("session", self.session.clone())];
@@ -232,7 +215,7 @@ impl LookArgs {
             let Some(path) = path else { continue };
             let (overlay, name) = read_overlay(what, &path)?;
             balanced |= overlay.pointer("/shadows/balance").is_some();
-            let range = loaded.volume.value_range();
+            let range = loaded.volume().value_range();
             let (next, warnings) = apply_relative(&settings, &overlay, range)
                 .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
             for warning in warnings {
@@ -260,10 +243,10 @@ pub(super) struct Look {
 impl Look {
     /// The settings. Lights are balanced as the viewer does on load, unless preset or session say
     /// how; single settings are laid over the result.
-    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Loaded) -> Result<Settings, CliError> {
+    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Dataset) -> Result<Settings, CliError> {
         let mut settings = self.settings.clone();
         if !self.balanced {
-            settings.shadows.balance = balance(renderer, &loaded.volume, &loaded.bricks, &settings)?;
+            settings.shadows.balance = balance(renderer, &loaded, &settings)?;
         }
         self.with_single_settings(settings)
     }

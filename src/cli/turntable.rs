@@ -55,13 +55,13 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let (size, frames, transparent) = (args.size, args.frames, args.transparent);
     let mut file = Animation::create(&args.output, &Reel { size, frames, rate: args.rate, transparent })?;
     let folder = AnimationFormat::record_folder(&args.output);
-    let volume = VolumeRecord::new(args.scene.source(), loaded.volume.content_id(), folder);
+    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().content_id(), folder);
     let shot = Shot { transparent, ..Shot::new(size) };
     let how = PictureRecord::new(shot, context.description());
     let options = RenderOptions::of_shot(&shot);
     for frame in 0..args.frames {
         let settings = settings.turned(light, f64::from(frame) / f64::from(args.frames));
-        let shown = renderer.render_shown(&loaded.volume, &loaded.bricks, &settings, size, &options)?;
+        let shown = renderer.render_shown(&loaded, &settings, size, &options)?;
         file.add(&shown, &Record::text(&settings, Some(&volume), Some(&how)))?;
         if args.progress {
             warn_line(&format!("{} of {}", frame + 1, args.frames));

@@ -2,6 +2,9 @@
 
 use super::Volume;
 
+/// Bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
+pub const HISTOGRAM_BINS: usize = 1024;
+
 /// Counts of densities in equal bins over the volume's value range.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Histogram {
@@ -12,8 +15,12 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Counts a volume's voxels in `bins` bins.
-    pub fn of(volume: &Volume, bins: usize) -> Self {
+    /// Counts a volume's voxels in [`HISTOGRAM_BINS`] bins.
+    pub fn of(volume: &Volume) -> Self {
+        Self::with_bins(volume, HISTOGRAM_BINS)
+    }
+
+    fn with_bins(volume: &Volume, bins: usize) -> Self {
         use rayon::prelude::*;
         let empty = || vec![0u64; bins];
         let counts = (0..volume.dims()[2])
@@ -55,7 +62,7 @@ mod tests {
     fn counts_and_percentiles() {
         let values = Samples::U8((0..=255).collect());
         let volume = Volume::with_spacing("ramp", [16, 4, 4], DVec3::ONE, values).unwrap();
-        let histogram = Histogram::of(&volume, 256);
+        let histogram = Histogram::with_bins(&volume, 256);
         assert_eq!(histogram.counts.iter().sum::<u64>(), 256);
         assert!((histogram.percentile(0.5) - 0.5).abs() < 0.01);
         assert_eq!(histogram.percentile(0.0), 0.0);

@@ -4,6 +4,7 @@
 
 mod bricks;
 mod cells;
+mod dataset;
 mod histogram;
 pub mod load;
 mod reduce;
@@ -13,7 +14,8 @@ mod volume;
 
 pub use bricks::{BRICK_EDGE, Bricks};
 pub use cells::{BOUNDED_SIGMA, CELL_EDGE, CELLS, CellBounds, SIGMA_TOLERANCE};
-pub use histogram::Histogram;
+pub use dataset::Dataset;
+pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use reduce::reduced_dims;
 pub use small_file::read_small;
 pub use volume::{Samples, Volume, VolumeError, VoxelType};

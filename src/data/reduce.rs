@@ -103,6 +103,6 @@ mod tests {
         assert_eq!(half.dims(), [3, 1, 1]);
         assert_eq!((half.value(0, 0, 0), half.value(2, 0, 0)), (1.0, 4.5));
         assert!(half.value(1, 0, 0).is_nan());
-        assert_eq!(half.odd_voxels(), 1);
+        assert_eq!(half.non_finite_voxels(), 1);
     }
 }

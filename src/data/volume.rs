@@ -169,7 +169,7 @@ pub struct Volume {
     samples: Samples,
     min_value: f64,
     max_value: f64,
-    odd_voxels: usize,
+    non_finite_voxels: usize,
     unit_mm: Option<f64>,
     is_anatomical: bool,
     content_id: u64,
@@ -201,7 +201,8 @@ impl Volume {
         if !(world_from_index.is_finite() && lengths.min_element() > 0.0 && flatness > 1e-6) {
             return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
         }
-        let (min_value, max_value, odd_voxels) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+        let (min_value, max_value, non_finite_voxels) =
+            samples.finite_range().ok_or(VolumeError::NothingFinite)?;
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
@@ -215,7 +216,7 @@ impl Volume {
             samples,
             min_value,
             max_value,
-            odd_voxels,
+            non_finite_voxels,
             unit_mm: None,
             is_anatomical: false,
             content_id,
@@ -317,8 +318,8 @@ impl Volume {
     }
 
     /// How many voxels hold NaN or an infinity; they count as the smallest value.
-    pub fn odd_voxels(&self) -> usize {
-        self.odd_voxels
+    pub fn non_finite_voxels(&self) -> usize {
+        self.non_finite_voxels
     }
 
     /// Identifies values and geometry: equal volumes have equal ids.
@@ -368,7 +369,7 @@ mod tests {
         let samples = Samples::F32(vec![f32::NAN, -1000.0, 0.0, 1000.0]);
         let volume = Volume::with_spacing("t", [4, 1, 1], DVec3::ONE, samples).unwrap();
         assert_eq!(volume.value_range(), (-1000.0, 1000.0));
-        assert_eq!(volume.odd_voxels(), 1);
+        assert_eq!(volume.non_finite_voxels(), 1);
         assert_eq!(volume.slice_densities(0), [0.0, 0.0, 0.5, 1.0]);
         assert_eq!(volume.value_of(0.5), 0.0);
     }

@@ -7,10 +7,7 @@
 use glam::DVec3;
 
 use super::{ControlPoint, Interpolation, Length, Rig, Sampling, Settings, TransferFunction};
-use crate::data::{Histogram, Volume};
-
-/// Histogram bins used here: fine enough for 12-bit data whose object spans a tenth of the range.
-pub const BINS: usize = 1024;
+use crate::data::{HISTOGRAM_BINS, Histogram, Volume};
 
 /// Share of the picture's height (and width, at 4:3) that the object fills.
 const FILL: f64 = 0.8;
@@ -151,10 +148,10 @@ fn outline(settings: &Settings, volume: &Volume) -> Vec<DVec3> {
     let scene = volume.scene();
     let [nx, ny, nz] = volume.dims();
     // Whether each of many densities is shown: a look-up per voxel.
-    let shown: Vec<bool> = (0..=BINS)
-        .map(|bin| settings.transfer.opacity_at(volume.value_of(bin as f64 / BINS as f64)) > SHOWN)
+    let shown: Vec<bool> = (0..=HISTOGRAM_BINS)
+        .map(|bin| settings.transfer.opacity_at(volume.value_of(bin as f64 / HISTOGRAM_BINS as f64)) > SHOWN)
         .collect();
-    let is_shown = |density: &f32| shown[(density * BINS as f32) as usize];
+    let is_shown = |density: &f32| shown[(density * HISTOGRAM_BINS as f32) as usize];
     (0..nz)
         .into_par_iter()
         .flat_map_iter(|z| {
@@ -191,7 +188,7 @@ fn frame_object(settings: &mut Settings, volume: &Volume) {
     if corners.is_empty() {
         return;
     }
-    settings.ground.height = floor_under(&corners) - volume.scene().smallest_edge() / 2.0;
+    settings.floor.height = floor_under(&corners) - volume.scene().smallest_edge() / 2.0;
     let camera = &mut settings.camera;
     let view = camera.scene_from_view();
     let half_angle = (camera.fov_y_deg.to_radians() / 2.0).tan();
@@ -240,17 +237,17 @@ mod tests {
     #[test]
     fn the_floor_lies_under_the_object() {
         let volume = ball(200.0, 0.0);
-        let settings = first_settings(&volume, &Histogram::of(&volume, BINS));
+        let settings = first_settings(&volume, &Histogram::of(&volume));
         // The ball's radius is ten of 32 voxels, and a scene unit 16.
-        assert!((settings.ground.height + 10.0 / 16.0).abs() < 0.07, "{}", settings.ground.height);
-        assert!(!settings.ground.on);
+        assert!((settings.floor.height + 10.0 / 16.0).abs() < 0.07, "{}", settings.floor.height);
+        assert!(!settings.floor.on);
     }
 
     #[test]
     fn the_object_is_shown_and_its_surroundings_are_not() {
         for (inside, outside) in [(200.0, 0.0), (1200.0, -1000.0), (60.0, 40.0)] {
             let volume = ball(inside, outside);
-            let function = transfer(&volume, &Histogram::of(&volume, BINS));
+            let function = transfer(&volume, &Histogram::of(&volume));
             assert_eq!(function.opacity_at(f64::from(outside) + 6.0), 0.0, "{inside} {outside}");
             assert!(function.opacity_at(f64::from(inside) + 6.0) > 0.1, "{inside} {outside}");
         }
@@ -265,7 +262,7 @@ mod tests {
             Volume::with_spacing("one", [8; 3], DVec3::ONE, Samples::U8(values)).unwrap()
         };
         for volume in [constant, one] {
-            let function = transfer(&volume, &Histogram::of(&volume, BINS));
+            let function = transfer(&volume, &Histogram::of(&volume));
             assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{function:?}");
         }
     }
@@ -273,7 +270,7 @@ mod tests {
     #[test]
     fn the_object_fills_the_picture() {
         let volume = ball(200.0, 0.0);
-        let settings = first_settings(&volume, &Histogram::of(&volume, BINS));
+        let settings = first_settings(&volume, &Histogram::of(&volume));
         let (_, top, _) = settings.camera.pixel_from_scene(DVec3::ZERO, 400.0, 300.0).unwrap();
         assert!((top - 150.0).abs() < 20.0, "the ball's centre is at row {top}");
         assert!(settings.camera.distance > 1.0 && settings.camera.distance < 8.0);

@@ -13,9 +13,9 @@ mod turn;
 
 pub use self::settings::camera::{Camera, Projection};
 pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
-pub use self::settings::floor::{Ground, MAX_GROUND_HEIGHT, MAX_GROUND_RADIUS};
+pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::length::Length;
-pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS};
+pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, SceneLight};
 pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder,
 };

@@ -113,7 +113,7 @@ mod tests {
             assert!(!lights[0].is_empty());
             for (a, b) in lights[0].iter().zip(&lights[1]) {
                 let seen = |light: &Light, camera: &Camera| {
-                    camera.scene_from_view().transpose() * DVec3::from(light.in_world(camera).position)
+                    camera.scene_from_view().transpose() * DVec3::from(light.in_scene(camera).position)
                 };
                 assert!((seen(a, &front) - seen(b, &side)).length() < 1e-9, "{rig:?} {}", a.name);
                 assert!((DVec3::from(a.position).length() - DISTANCE).abs() < 1e-9, "{rig:?} {}", a.name);

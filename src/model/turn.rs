@@ -14,9 +14,9 @@ impl Settings {
             None => turned.camera.azimuth_deg = (self.camera.azimuth_deg + 360.0 * share).rem_euclid(360.0),
             Some(index) => {
                 if let Some(lamp) = turned.lights.get_mut(index) {
-                    let world = DVec3::from(lamp.in_world(&self.camera).position);
+                    let world = DVec3::from(lamp.in_scene(&self.camera).position);
                     let turn = DQuat::from_rotation_z(std::f64::consts::TAU * share);
-                    lamp.set_world_position(turn * world, &self.camera);
+                    lamp.set_scene_position(turn * world, &self.camera);
                 }
             }
         }

@@ -66,7 +66,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         .lights
         .iter()
         .map(|light| {
-            let light = light.in_world(&settings.camera);
+            let light = light.in_scene(&settings.camera);
             let position = DVec3::from(light.position);
             let (towards, distance) = match light.kind {
                 LightKind::Parallel => (light.direction(), f64::INFINITY),

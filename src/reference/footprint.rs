@@ -208,8 +208,8 @@ pub(super) fn splat(
 mod tests {
     use super::*;
     use crate::math::SceneSpace;
-    use crate::model::{Camera, Kernel, Light, Projection, Shadows};
-    use crate::plan::geometry::eye_frame;
+    use crate::model::{Camera, Kernel, Projection, SceneLight, Shadows};
+    use crate::plan::eye_frame;
     use crate::plan::light_views;
     use glam::DAffine3;
 
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn along_an_axis_the_slab_integral_has_a_closed_form() {
         let scene = SceneSpace::new([9; 3], DAffine3::IDENTITY);
-        let light = Light { position: [0.0, 0.0, 1.0], ..Light::default() };
+        let light = SceneLight { position: [0.0, 0.0, 1.0], ..SceneLight::default() };
         let views = light_views(&light, &Shadows::default(), &scene);
         let frame = &views[0].frame;
         let k = frame.slab_count / 2;

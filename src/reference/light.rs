@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::sheet::{Cutting, Stack};
 use super::{Fault, Reference};
-use crate::model::{Deposit, Light};
+use crate::model::{Deposit, SceneLight};
 use crate::plan::{LightView, light_views};
 
 /// What the sheets of one view of a light hold.
@@ -34,7 +34,7 @@ impl Reference<'_> {
         light_views(&light, shadows, &self.scene).into_iter().map(|view| self.march(&light, view)).collect()
     }
 
-    fn march(&self, light: &Light, view: LightView) -> ViewSheets {
+    fn march(&self, light: &SceneLight, view: LightView) -> ViewSheets {
         let shadows = &self.settings.shadows;
         let table = self.settings.baked_lighting(self.range, &self.scene);
         let stack = Stack::new(

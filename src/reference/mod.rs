@@ -14,16 +14,16 @@
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
-//! | the floor | `ground` | [`Reference::ground`] |
+//! | the floor | `floor` | [`Reference::floor`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
 mod cut;
 mod eye;
 mod field;
+mod floor;
 mod footprint;
 mod gather;
-mod ground;
 mod kernel;
 mod light;
 mod pyramid;
@@ -43,7 +43,7 @@ use glam::DVec3;
 
 use crate::data::Volume;
 use crate::math::SceneSpace;
-use crate::model::{Kernel, Light, Settings};
+use crate::model::{Kernel, SceneLight, Settings};
 use kernel::Profile;
 
 /// Whose weights the sums are taken with.
@@ -121,8 +121,8 @@ impl<'a> Reference<'a> {
     }
 
     /// Light `index`, its position in the scene.
-    fn light(&self, index: usize) -> Light {
-        self.settings.lights[index].in_world(&self.settings.camera)
+    fn light(&self, index: usize) -> SceneLight {
+        self.settings.lights[index].in_scene(&self.settings.camera)
     }
 
     /// Whether light `index` has an attenuation volume.

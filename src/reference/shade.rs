@@ -6,7 +6,7 @@ use super::back_project::Attenuation;
 use super::pyramid::MAX_LEVEL;
 use super::shadow_ray::ShadowRays;
 use super::{Fault, Reference};
-use crate::model::{Light, LightKind, Projection, ShadowAlgorithm};
+use crate::model::{Light, LightKind, Projection, SceneLight, ShadowAlgorithm};
 
 /// The lights and the eye of one picture.
 pub(super) struct Shader<'r> {
@@ -19,7 +19,7 @@ pub(super) struct Shader<'r> {
 /// A light that is on.
 struct Lamp<'r> {
     /// Its position in the scene.
-    light: Light,
+    light: SceneLight,
     /// Linear colour times intensity and balance: `C_L` of P eq. 5.
     rgb: [f64; 3],
     attenuated: Attenuated<'r>,

@@ -8,12 +8,12 @@ use super::back_project::Attenuation;
 use super::cut::Remaining;
 use super::kernel::Profile;
 use super::{Reference, gather};
-use crate::model::{BakedTransfer, Deposit, Kernel, Light, LightKind, Quadrature};
+use crate::model::{BakedTransfer, Deposit, Kernel, LightKind, Quadrature, SceneLight};
 
 /// What rays to one light are sampled with.
 pub(super) struct ShadowRays<'r> {
     reference: &'r Reference<'r>,
-    light: Light,
+    light: SceneLight,
     profile: Profile,
     quadrature: Quadrature,
     table: BakedTransfer,

@@ -48,9 +48,9 @@ fn fine_pictures_come_from_the_window() {
         click(&mut harness, "Export");
         wait_until(&mut harness, "never exported", |app| !app.is_exporting());
         let app = harness.state();
-        let (volume, bricks, mut renderer) = beside();
+        let (dataset, mut renderer) = beside();
         let shot = Shot { samples: 2, depth, ..Shot::new([60, 45]) };
-        let expected = renderer.bands(&volume, &bricks, app.settings(), &shot).all().unwrap();
+        let expected = renderer.bands(&dataset, app.settings(), &shot).all().unwrap();
         let found = read_picture(&path.with_extension(ending)).unwrap();
         assert!(found == ([60, 45], expected.as_written(&shot)), "{label}");
     }

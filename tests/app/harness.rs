@@ -1,12 +1,11 @@
 //! A window without a display: ways to make it, to wait for it, to press and drag in it, and to see its picture.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, Options, wgpu_setup};
+use chiaroscuro::data::Dataset;
 use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
-use chiaroscuro::data::{Bricks, Volume};
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
@@ -127,17 +126,16 @@ pub(crate) fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> Picture {
 }
 
 pub(crate) fn render_with(harness: &Harness<'_, App>, size: [u32; 2], options: &RenderOptions) -> Picture {
-    let (volume, bricks, mut renderer) = beside();
+    let (dataset, mut renderer) = beside();
     let settings = harness.state().settings();
-    renderer.render(&volume, &bricks, settings, size, options).expect("a picture")
+    renderer.render(&dataset, settings, size, options).expect("a picture")
 }
 
 /// The window's volume, and a renderer on a device of its own.
-pub(crate) fn beside() -> (Arc<Volume>, Arc<Bricks>, Renderer) {
+pub(crate) fn beside() -> (Dataset, Renderer) {
     let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
-    let bricks = Arc::new(Bricks::of(&volume));
     let context = Context::headless().expect("an adapter");
-    (Arc::new(volume), bricks, Renderer::new(&context).expect("a renderer"))
+    (Dataset::new(volume), Renderer::new(&context).expect("a renderer"))
 }
 
 pub(crate) fn click(harness: &mut Harness<'_, App>, label: &str) {

@@ -126,12 +126,12 @@ fn the_next_file_can_have_the_look_of_this_one() {
     harness.key_press(egui::Key::CloseBracket);
     harness.run_steps(2);
     let lights = harness.state().settings().lights.clone();
-    let height = harness.state().settings().ground.height;
+    let height = harness.state().settings().floor.height;
     let ctx = harness.ctx.clone();
     harness.state_mut().open("builtin:box:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box") && app.is_idle());
     assert_eq!(harness.state().settings().lights, lights);
-    assert_ne!(harness.state().settings().ground.height, height, "the floor lies under the other object");
+    assert_ne!(harness.state().settings().floor.height, height, "the floor lies under the other object");
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn a_floor_takes_shadows() {
     harness.run_steps(2);
     wait_until_idle(&mut harness);
     harness.run_steps(20);
-    assert!(harness.state().settings().ground.on);
+    assert!(harness.state().settings().floor.on);
     let (floor, size) = picture(&mut harness);
     assert!(floor != bare);
     assert!(floor == render(&harness, size).shown);

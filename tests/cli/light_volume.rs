@@ -15,7 +15,7 @@ fn an_attenuation_volume_can_be_loaded_back() {
     assert_eq!(facts["type"], "float32");
     assert_eq!(facts["dims"], source["dims"]);
     assert_eq!(facts["spacing_mm"], source["spacing_mm"]);
-    assert_eq!(facts["odd_voxels"], 0);
+    assert_eq!(facts["non_finite_voxels"], 0);
     let (low, high) = (facts["range"][0].as_f64(), facts["range"][1].as_f64());
     let (low, high) = (low.expect("a number"), high.expect("a number"));
     assert!(0.0 <= low && high <= 1.0, "light is never more than all of it: {low} … {high}");

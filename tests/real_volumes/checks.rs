@@ -47,15 +47,15 @@ fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
     if low >= high {
         found.push(format!("values from {low} to {high}"));
     }
-    if volume.odd_voxels() > 0 {
-        found.push(format!("{} voxels are not finite", volume.odd_voxels()));
+    if volume.non_finite_voxels() > 0 {
+        found.push(format!("{} voxels are not finite", volume.non_finite_voxels()));
     }
     found
 }
 
 /// All that is wrong with the first look at a volume.
 fn first_look_flaws(volume: &Volume) -> Vec<String> {
-    let settings = auto::first_settings(volume, &Histogram::of(volume, auto::BINS));
+    let settings = auto::first_settings(volume, &Histogram::of(volume));
     let mut found = Vec::new();
     let values: Vec<f64> = settings.transfer.points.iter().map(|point| point.value).collect();
     if !values.windows(2).all(|pair| pair[0] < pair[1]) {

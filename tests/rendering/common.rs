@@ -1,8 +1,6 @@
 //! What the rendering tests share: a device and ways to render.
 
-use std::sync::Arc;
-
-use chiaroscuro::data::{Bricks, Volume};
+pub(crate) use chiaroscuro::data::Dataset;
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
 use chiaroscuro::model::Settings;
 
@@ -11,44 +9,27 @@ pub(crate) fn context() -> Context {
     Context::headless().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
 }
 
-/// A volume as the renderer wants it.
-pub(crate) struct Loaded {
-    pub(crate) volume: Arc<Volume>,
-    pub(crate) bricks: Arc<Bricks>,
-}
-
-impl Loaded {
-    pub(crate) fn new(volume: Volume) -> Self {
-        let bricks = Arc::new(Bricks::of(&volume));
-        Self { volume: Arc::new(volume), bricks }
-    }
-}
-
 /// A picture with everything as the settings say.
 pub(crate) fn render(
     renderer: &mut Renderer,
-    loaded: &Loaded,
+    loaded: &Dataset,
     settings: &Settings,
     size: [u32; 2],
 ) -> Picture {
-    renderer
-        .render(&loaded.volume, &loaded.bricks, settings, size, &RenderOptions::default())
-        .expect("the picture is rendered")
+    renderer.render(loaded, settings, size, &RenderOptions::default()).expect("the picture is rendered")
 }
 
 /// A light's attenuation volume, filled everywhere.
 pub(crate) fn attenuation(
     renderer: &mut Renderer,
-    loaded: &Loaded,
+    loaded: &Dataset,
     settings: &Settings,
     light: usize,
 ) -> Vec<f32> {
     let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
-    renderer
-        .draw(&loaded.volume, &loaded.bricks, settings, [8, 8], &options)
-        .expect("the light volume is filled");
+    renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
     let request = chiaroscuro::plan::Request {
-        volume: loaded.volume.content_id(),
+        volume: loaded.volume().content_id(),
         settings: settings.clone(),
         size: [8, 8],
         coarse: None,

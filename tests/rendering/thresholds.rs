@@ -97,9 +97,9 @@ pub(crate) const ORDER_OPACITY: f64 = 4e-3;
 /// step's, and the floats' own half step.
 pub(crate) const BYTES: Limit = Limit { max: 0.55 / 255.0 + 5e-4, rmse: 0.32 / 255.0 };
 
-/// Collapsed lights against the sum of all, evenly lit: 16-bit colours, and cures for darkness that are
+/// Combined lights against the sum of all, evenly lit: 16-bit colours, and cures for darkness that are
 /// applied before the look-up instead of behind it (the cut at full light is no straight line).
-pub(crate) const COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };
+pub(crate) const COMBINED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };
 
 /// Mean luminance of previews, exposed as at the beginning of a drag, against whole pictures: above
 /// that a swap is seen.
@@ -109,8 +109,8 @@ pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.03;
 /// single footprints are cut by whole voxels, of which faces of 32 voxels' edge have 3 % to either side.
 pub(crate) const CUT_ORDERS: f64 = 0.03;
 
-/// Collapsed light at cut faces: it is stored once per voxel, and normals turn within one there.
-pub(crate) const CUT_COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 255.0 };
+/// Combined light at cut faces: it is stored once per voxel, and normals turn within one there.
+pub(crate) const CUT_COMBINED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 255.0 };
 
 /// Light on the floor, absolute: a 16-bit float near 1, and the error of the midpoint rule along a ray.
 pub(crate) const FLOOR_SHADOW: f64 = 2e-3;
@@ -146,8 +146,8 @@ pub(crate) const BALANCED: f64 = 0.02;
 /// light.
 pub(crate) const CUT_LIGHT: f64 = 0.01;
 
-/// Collapsed lights with normals, RMSE: that of the light is interpolated, too, which must be seen and be small.
-pub(crate) const COLLAPSED_NORMALS: f64 = 0.02;
+/// Combined lights with normals, RMSE: that of the light is interpolated, too, which must be seen and be small.
+pub(crate) const COMBINED_NORMALS: f64 = 0.02;
 
 /// Share of the floor's pixels that may differ between algorithms: those that the volume nearly covers are not drawn.
 pub(crate) const FLOOR_EDGE: f64 = 0.01;

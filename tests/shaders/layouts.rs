@@ -170,7 +170,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 gradient_slabs,
                 runs,
                 pad1,
-                collapsed_lookup,
+                combined_lookup,
                 pad2,
                 seen,
                 shading_cut,
@@ -208,10 +208,10 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         ("scatter/footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
-        ("light/combine.wgsl", layout!(Collapse { dims, bricks, voxel_step, pad0, pad1, pad2 })),
+        ("light/combine.wgsl", layout!(Combine { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         (
             "eye/floor.wgsl",
-            layout!(Ground {
+            layout!(Floor {
                 frame,
                 space,
                 shading,

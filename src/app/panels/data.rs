@@ -34,8 +34,8 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     if volume.file_dims != volume.dims {
         rows.insert(3, (text::data::AVERAGED, text::data::dimensions(volume.file_dims)));
     }
-    if volume.odd_voxels > 0 {
-        rows.push((text::data::NOT_FINITE, text::data::not_finite(volume.odd_voxels)));
+    if volume.non_finite_voxels > 0 {
+        rows.push((text::data::NOT_FINITE, text::data::not_finite(volume.non_finite_voxels)));
     }
     for (name, fact) in rows {
         row(ui, Named { name, tip: "" }, |ui| ui.add(egui::Label::new(fact).truncate()));

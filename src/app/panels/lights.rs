@@ -15,7 +15,7 @@ const KINDS: [(LightKind, Named); 2] =
     [(LightKind::Parallel, text::lights::PARALLEL), (LightKind::Perspective, text::lights::PERSPECTIVE)];
 
 const LOCKS: [(LightLock, Named); 2] =
-    [(LightLock::World, text::lights::WITH_VOLUME), (LightLock::Camera, text::lights::WITH_CAMERA)];
+    [(LightLock::Scene, text::lights::WITH_VOLUME), (LightLock::Camera, text::lights::WITH_CAMERA)];
 
 /// The list of lights; the selected one is open.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {

@@ -5,7 +5,7 @@ mod compare;
 pub(super) mod controls;
 mod cuts;
 mod data;
-mod ground;
+mod floor;
 mod lights;
 mod sampling;
 mod shading;
@@ -50,7 +50,7 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
         controls::section(ui, text::sections::SHADOWS, true, |ui| shadows::show(ui, panels));
         controls::section(ui, text::sections::SHADING, false, |ui| shading::show(ui, panels));
         controls::section(ui, text::sections::CUTS, false, |ui| cuts::show(ui, panels));
-        controls::section(ui, text::sections::FLOOR, false, |ui| ground::show(ui, panels));
+        controls::section(ui, text::sections::FLOOR, false, |ui| floor::show(ui, panels));
         controls::section(ui, text::sections::CAMERA, false, |ui| camera::show(ui, panels));
         controls::section(ui, text::sections::COMPARE, false, |ui| {
             compare::show(ui, panels.compare, panels.settings, panels.commands);

@@ -32,7 +32,7 @@ const PRECISIONS: [(Precision, Named); 2] =
 const STORAGES: [(LightStorage, Named); 3] = [
     (LightStorage::Auto, text::shadows::AUTO),
     (LightStorage::PerLight, text::shadows::PER_LIGHT),
-    (LightStorage::Collapsed, text::shadows::COLLAPSED),
+    (LightStorage::Combined, text::shadows::COMBINED),
 ];
 
 const DEPOSITS: [(Deposit, Named); 2] =
@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         opacity(ui, panels);
         choice(ui, text::shadows::RESOLUTION, &mut panels.settings.shadows.resolution, &RESOLUTIONS);
         advanced(ui, "advanced shadows", |ui| {
-            let collapses = panels.settings.collapses_lights();
+            let combines = panels.settings.combines_lights();
             let shadows = &mut panels.settings.shadows;
             switch(ui, text::shadows::FIRST_TOUCH, &mut shadows.first_touch);
             let default_slab = panels.defaults.shadows.slab;
@@ -61,7 +61,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             );
             choice(ui, text::shadows::PRECISION, &mut shadows.precision, &PRECISIONS);
             choice(ui, text::shadows::STORAGE, &mut shadows.storage, &STORAGES);
-            ui.weak(text::shadows::light_volumes(panels.facts.light_mebibytes, collapses));
+            ui.weak(text::shadows::light_volumes(panels.facts.light_mebibytes, combines));
             choice(ui, text::shadows::DEPOSIT, &mut shadows.deposit, &DEPOSITS);
         });
     });

@@ -99,7 +99,7 @@ pub(crate) enum Command {
     /// The plane across the line of sight, through what the eye turns about.
     FacePlane,
     /// Show the floor under the volume, or not.
-    ToggleGround,
+    ToggleFloor,
     /// Measure the brightness and set the balance.
     Balance,
     /// Show or hide the side panel.
@@ -162,7 +162,7 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 39] = [
     plain(Key::X, Command::TogglePlane),
     plain(Key::K, Command::ToggleCrop),
     plain(Key::I, Command::ToggleProbe),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleGround),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleFloor),
     plain(Key::G, Command::ToggleMarks),
     plain(Key::H, Command::ToggleHandles),
     plain(Key::C, Command::ToggleCompare),
@@ -200,7 +200,7 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::ToggleCrop,
         Command::TogglePlane,
         Command::FacePlane,
-        Command::ToggleGround,
+        Command::ToggleFloor,
         Command::AddLight,
         Command::TryLights,
         Command::TryPresets,
@@ -262,7 +262,7 @@ impl Command {
             Self::ToggleCrop => text::commands::TOGGLE_CROP,
             Self::TogglePlane => text::commands::TOGGLE_PLANE,
             Self::FacePlane => text::commands::FACE_PLANE,
-            Self::ToggleGround => text::commands::TOGGLE_GROUND,
+            Self::ToggleFloor => text::commands::TOGGLE_GROUND,
             Self::ShowPalette => text::commands::SHOW_PALETTE,
             Self::UseLights(_) => text::commands::USE_LIGHTS,
             Self::TryLights => text::commands::TRY_LIGHTS,

@@ -1,6 +1,7 @@
 //! Carries out commands and takes in what threads have finished.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use eframe::egui;
 
@@ -48,8 +49,8 @@ impl App {
                 }
             }
             Command::AutomaticTransfer => {
-                if let (Some((volume, _)), Some(facts)) = (self.viewport.volume(), &self.volume) {
-                    self.settings.transfer = auto::transfer(&volume, &facts.histogram);
+                if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) {
+                    self.settings.transfer = auto::transfer(dataset.volume(), &facts.histogram);
                 }
             }
             Command::UsePreset(preset) => {
@@ -74,7 +75,7 @@ impl App {
                 let Camera { target, .. } = self.settings.camera;
                 self.settings.cuts.plane.face(self.settings.camera.scene_from_view().z_axis, target.into());
             }
-            Command::ToggleGround => self.settings.ground.on ^= true,
+            Command::ToggleFloor => self.settings.floor.on ^= true,
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => self.settings.camera.frame_as(&self.defaults.camera),
             Command::LookFrom(view) => self.settings.camera.look_from(view),
@@ -196,11 +197,11 @@ impl App {
         if let Some((purpose, path)) = self.files.ui(ctx) {
             self.chosen(purpose, &path, ctx);
         }
-        let volume = self.viewport.volume().map(|(volume, _)| volume);
+        let volume = self.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
         self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), &self.settings.transfer);
         let scene = light_slice::Scene {
             settings: &self.settings,
-            volume: self.viewport.volume(),
+            dataset: self.viewport.dataset(),
             context: self.viewport.context(),
             at_rest: self.is_idle(),
         };
@@ -227,8 +228,8 @@ impl App {
             Purpose::ExportPicture => self.export.set_path(path),
             Purpose::SaveSettings => self.save_settings(path),
             Purpose::ExportLight => {
-                let Some((volume, _)) = self.viewport.volume() else { return };
-                match self.light_slice.export(path, &volume) {
+                let Some(dataset) = self.viewport.dataset() else { return };
+                match self.light_slice.export(path, dataset.volume()) {
                     Ok(()) => self.messages.note(text::messages::exported(path)),
                     Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
                 }
@@ -255,13 +256,13 @@ impl App {
     }
 
     fn start_balance(&mut self, ctx: &egui::Context) {
-        let Some((volume, bricks)) = self.viewport.volume().filter(|_| self.balance.is_none()) else {
+        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
             return;
         };
         let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
         let task = move || {
             let mut renderer = Renderer::new(&context.sibling()?)?;
-            crate::gpu::balance(&mut renderer, &volume, &bricks, &settings)
+            crate::gpu::balance(&mut renderer, &dataset, &settings)
         };
         match Work::start("balance", ctx, task) {
             Ok(work) => self.balance = Some(work),
@@ -271,14 +272,13 @@ impl App {
 
     /// What is to be exported; a message if there is nothing.
     fn subject(&mut self) -> Option<export::Subject> {
-        let Some((volume, bricks)) = self.viewport.volume() else {
+        let Some(dataset) = self.viewport.dataset() else {
             self.messages.note(text::messages::NO_PICTURE);
             return None;
         };
         Some(export::Subject {
             context: self.viewport.context().clone(),
-            volume,
-            bricks,
+            dataset,
             settings: self.settings.clone(),
             source: self.volume.as_ref().map_or_else(String::new, |volume| volume.source.clone()),
             selected_light: self.selected_light,

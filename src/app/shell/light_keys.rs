@@ -40,8 +40,8 @@ pub(crate) fn turn(light: &mut Light, camera: &Camera, right_deg: f64, up_deg: f
     let view = camera.scene_from_view();
     let turn = DQuat::from_axis_angle(view.y_axis, right_deg.to_radians())
         * DQuat::from_axis_angle(view.x_axis, -up_deg.to_radians());
-    let world = DVec3::from(light.in_world(camera).position);
-    light.set_world_position(turn * world, camera);
+    let world = DVec3::from(light.in_scene(camera).position);
+    light.set_scene_position(turn * world, camera);
 }
 
 /// Only this light shines; if it is so already, all do.

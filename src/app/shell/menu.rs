@@ -148,7 +148,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let switches = [
         (Command::ToggleCrop, cuts.crop.on),
         (Command::TogglePlane, cuts.plane.on),
-        (Command::ToggleGround, menu.settings.ground.on),
+        (Command::ToggleFloor, menu.settings.floor.on),
         (Command::ToggleSide, menu.shown.side),
         (Command::ToggleHandles, menu.shown.handles),
         (Command::ToggleMarks, menu.shown.marks),

@@ -1,6 +1,7 @@
 //! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use eframe::egui;
 
@@ -148,8 +149,8 @@ impl App {
 
     /// The open volume, for records.
     pub(crate) fn volume_record(&self) -> Option<(&str, u64)> {
-        let (volume, _) = self.viewport.volume()?;
-        Some((&self.volume.as_ref()?.source, volume.content_id()))
+        let dataset = self.viewport.dataset()?;
+        Some((&self.volume.as_ref()?.source, dataset.volume().content_id()))
     }
 
     pub(crate) fn save_settings(&mut self, path: &Path) {
@@ -170,7 +171,8 @@ impl App {
 
     /// A volume is ready: it replaces the one before.
     pub(crate) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
-        let Opened { source, reading, volume, too_many, bricks, histogram, renderer, settings } = opened;
+        let Opened { source, reading, dataset, too_many, renderer, settings } = opened;
+        let volume = Arc::clone(dataset.volume());
         self.messages.clear();
         if let Some(before) = too_many {
             self.messages.note(text::opening::averaged(before, volume.dims()));
@@ -179,7 +181,7 @@ impl App {
         if self.keeps_look && self.volume.is_some() {
             // As it was, but for where the object is: that is another one.
             let mut kept = Settings { camera: settings.camera.clone(), ..std::mem::take(&mut self.settings) };
-            kept.ground.height = settings.ground.height;
+            kept.floor.height = settings.floor.height;
             self.settings = kept;
         } else {
             self.settings = settings;
@@ -205,8 +207,8 @@ impl App {
             self.settings = adjust(std::mem::take(&mut self.settings));
             self.settings.sanitise();
         }
-        self.volume = Some(VolumeFacts::of((source, reading), &volume, histogram));
-        self.viewport.set_scene(renderer, volume, bricks);
+        self.volume = Some(VolumeFacts::of(source, reading, &dataset));
+        self.viewport.set_scene(renderer, dataset);
         self.history = History::default();
         self.selected_light = 0;
         let title = text::opening::title(self.volume_name().unwrap_or_default());

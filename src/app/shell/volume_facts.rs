@@ -1,7 +1,9 @@
 //! What the panels and the transfer function editor know of the open volume.
 
+use std::sync::Arc;
+
 use crate::app::worker::loader::Reading;
-use crate::data::{Histogram, Volume, VoxelType};
+use crate::data::{Dataset, Histogram, VoxelType};
 use crate::math::SceneSpace;
 
 /// Facts about a volume; all of them fixed.
@@ -26,7 +28,7 @@ pub(crate) struct VolumeFacts {
     /// How many different values there can be, for integers.
     pub levels: Option<usize>,
     /// Voxels that are not finite.
-    pub odd_voxels: usize,
+    pub non_finite_voxels: usize,
     /// Bytes of the voxels.
     pub bytes: u64,
     /// How the grid lies in scene space.
@@ -34,12 +36,13 @@ pub(crate) struct VolumeFacts {
     /// Whether +x, +y and +z are a body's right, front and head.
     pub is_anatomical: bool,
     /// How often each value occurs.
-    pub histogram: Histogram,
+    pub histogram: Arc<Histogram>,
 }
 
 impl VolumeFacts {
     /// Collects them.
-    pub(crate) fn of((source, reading): (String, Reading), volume: &Volume, histogram: Histogram) -> Self {
+    pub(crate) fn of(source: String, reading: Reading, dataset: &Dataset) -> Self {
+        let volume = dataset.volume();
         let voxel_type = volume.samples().voxel_type();
         let (low, high) = volume.value_range();
         let whole = !matches!(voxel_type, VoxelType::F32 | VoxelType::F64);
@@ -53,11 +56,11 @@ impl VolumeFacts {
             spacing_mm: volume.spacing_mm().into(),
             range: volume.value_range(),
             levels: whole.then_some((high - low) as usize + 1),
-            odd_voxels: volume.odd_voxels(),
+            non_finite_voxels: volume.non_finite_voxels(),
             bytes: (volume.voxel_count() * voxel_type.bytes()) as u64,
             scene: volume.scene(),
             is_anatomical: volume.is_anatomical(),
-            histogram,
+            histogram: Arc::clone(dataset.histogram()),
         }
     }
 }

@@ -200,7 +200,7 @@ mod tests {
         use crate::data::{Samples, Volume};
         let values = Samples::U8((0..=199).chain(0..=55).collect());
         let volume = Volume::with_spacing("ramp", [16, 4, 4], glam::DVec3::ONE, values).unwrap();
-        let histogram = Histogram::of(&volume, 1024);
+        let histogram = Histogram::of(&volume);
         let per_value = bars(&histogram, Some(200), 900.0);
         assert_eq!(per_value.len(), 200);
         assert!(per_value.iter().enumerate().all(|(value, &count)| count == if value <= 55 { 2 } else { 1 }));

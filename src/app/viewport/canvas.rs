@@ -7,8 +7,8 @@ use super::cut_handles::CutHandles;
 use super::hints::Hints;
 use super::light_handles::LightHandles;
 use super::light_probe::LightProbe;
-use super::overlay::Marks;
-use super::view_projection::Sight;
+use super::overlay::Overlay;
+use super::view_projection::ViewProjection;
 use super::{Facts, Viewport};
 use super::{light_chips, light_probe, orbit};
 use crate::app::shell::commands::Command;
@@ -61,7 +61,7 @@ pub(crate) struct Stage<'a> {
     /// Two looks in one picture.
     pub compare: &'a mut Compare,
     /// Chips of the lights, box, scale bar and cube.
-    pub marks: Marks,
+    pub marks: Overlay,
     /// What is under the pointer.
     pub probe: &'a mut LightProbe,
     /// Cuts through the data, and their cursor.
@@ -106,27 +106,27 @@ pub(crate) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
         settings,
         *selected_light,
         !(handles.takes_wheel || cut_handles.takes_wheel),
-        viewport.volume().map(|(volume, _)| volume.value_range()),
+        viewport.dataset().map(|dataset| dataset.volume().value_range()),
     );
     if response.double_clicked()
-        && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())
-        && let Some(found) = light_probe::seen_at(&volume, settings, canvas.rect, at)
+        && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
+        && let Some(found) = light_probe::seen_at(dataset.volume(), settings, canvas.rect, at)
     {
         settings.camera.turn_about(found.point);
     }
     if slices.open
         && response.clicked()
-        && let (Some(at), Some((volume, _))) = (response.interact_pointer_pos(), viewport.volume())
-        && let Some(found) = light_probe::seen_at(&volume, settings, canvas.rect, at)
+        && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
+        && let Some(found) = light_probe::seen_at(dataset.volume(), settings, canvas.rect, at)
     {
-        slices.point_at(found.index, volume.dims());
+        slices.point_at(found.index, dataset.volume().dims());
     }
     // Painted first, filled in when the lights have been moved: no frame of delay.
     let places = [(); 2].map(|()| ui.painter().add(Shape::Noop));
     let moving =
         ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
     marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
-    let sight = Sight { camera: settings.camera.clone(), picture: canvas.rect };
+    let sight = ViewProjection { camera: settings.camera.clone(), picture: canvas.rect };
     slices.mark(&ui.painter_at(canvas.rect), &sight, &scene);
     cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
@@ -136,9 +136,9 @@ pub(crate) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     if marks.on {
         light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
     }
-    if let Some((volume, _)) = viewport.volume().filter(|_| probe.on) {
+    if let Some(dataset) = viewport.dataset().filter(|_| probe.on) {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
-        probe.show(ui, canvas.rect, settings, &volume, pointer);
+        probe.show(ui, canvas.rect, settings, dataset.volume(), pointer);
     }
     settings.sanitise();
     let result = if canvas.size.contains(&0) {

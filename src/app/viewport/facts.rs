@@ -56,7 +56,7 @@ impl Viewport {
     /// Figures about the renderer.
     pub(in crate::app) fn facts(&self, looks: &(Settings, Option<Settings>)) -> Facts {
         let info = &self.context.info;
-        let figures = self.painter.figures();
+        let figures = self.thread.figures();
         Facts {
             adapter: info.name.clone(),
             driver: format!("{:?} · {} {}", info.backend, info.driver, info.driver_info).trim().to_owned(),
@@ -76,13 +76,13 @@ impl Viewport {
 
     /// How often light volumes were filled.
     pub(in crate::app) fn light_rebuilds(&self) -> u64 {
-        self.painter.figures().light_rebuilds
+        self.thread.figures().light_rebuilds
     }
 
     fn doing(&self, looks: &(Settings, Option<Settings>), refining: Option<(Stage, f32)>) -> Doing {
         if self.lost {
             Doing::Lost
-        } else if self.volume.is_none() {
+        } else if self.dataset.is_none() {
             Doing::Nothing
         } else if self.is_idle(looks) {
             Doing::FullQuality

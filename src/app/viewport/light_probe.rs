@@ -114,7 +114,7 @@ fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Pro
     let camera = &settings.camera;
     let Some(from) = place(camera, picture, found.point) else { return };
     for (light, arrival) in settings.lights.iter().zip(&found.lights).filter(|(light, _)| light.on) {
-        let world = light.in_world(camera);
+        let world = light.in_scene(camera);
         let to = match light.kind {
             LightKind::Parallel => found.point + world.direction() * 2.0,
             LightKind::Perspective => DVec3::from(world.position),

@@ -17,18 +17,17 @@ pub(super) mod overlay;
 pub(super) mod paint_callback;
 pub(super) mod view_projection;
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
 pub(super) use self::facts::{Doing, Facts};
-use super::worker::quality::Look;
-use super::worker::render_thread::{Frame, Painter};
-use super::worker::request::{Scene, Wanted};
+use super::worker::quality::QualityLevel;
+use super::worker::render_thread::{Frame, RenderThread};
+use super::worker::request::{FrameRequest, Scene};
 pub(super) use super::worker::response::Response;
 use super::worker::response::Waiting;
-use crate::data::{Bricks, Volume};
+use crate::data::Dataset;
 pub(super) use crate::gpu::LightFigures;
 use crate::gpu::{Context, Distance, GpuError, Renderer, WindowPainter, WindowPicture};
 use crate::model::Settings;
@@ -64,7 +63,7 @@ pub(super) struct Other {
     pub distance: Distance,
 }
 
-/// The picture on screen, and the way to the painter.
+/// The picture on screen, and the way to the thread that renders it.
 #[derive(Debug)]
 pub(super) struct Viewport {
     /// What a frame may take while something moves, in milliseconds; `None` for what suits the adapter.
@@ -72,14 +71,14 @@ pub(super) struct Viewport {
     context: Context,
     /// Draws pictures into the window.
     window: WindowPainter,
-    painter: Painter,
-    /// What the painter was last told.
-    wanted: Option<Wanted>,
-    waiting: Waiting<Wanted>,
+    thread: RenderThread,
+    /// What the render thread was last told.
+    wanted: Option<FrameRequest>,
+    waiting: Waiting<FrameRequest>,
     /// The last picture that was waited for was not there in time.
     waited_in_vain: bool,
     generation: u64,
-    volume: Option<(Arc<Volume>, Arc<Bricks>)>,
+    dataset: Option<Dataset>,
     /// The picture, or of a comparison left, right and their difference.
     placed: [Option<WindowPicture>; 3],
     /// The preview that fades into the picture at full quality, and since when (egui's seconds).
@@ -87,9 +86,9 @@ pub(super) struct Viewport {
     now_s: f64,
     /// How far the two are apart.
     differs: Option<Distance>,
-    shown: Option<(Wanted, Look)>,
-    /// What could not be rendered; the painter does not try it again.
-    failed: Option<Wanted>,
+    shown: Option<(FrameRequest, QualityLevel)>,
+    /// What could not be rendered; the render thread does not try it again.
+    failed: Option<FrameRequest>,
     lost: bool,
 }
 
@@ -97,17 +96,17 @@ impl Viewport {
     /// An empty viewport; pictures will be rendered with `context`, which is not the window's own, and drawn with
     /// `window`, which is.
     pub(super) fn new(context: Context, window: WindowPainter, ctx: &egui::Context) -> std::io::Result<Self> {
-        let painter = Painter::start(context.clone(), ctx.clone())?;
+        let thread = RenderThread::start(context.clone(), ctx.clone())?;
         Ok(Self {
             frame_ms: None,
             context,
             window,
-            painter,
+            thread,
             wanted: None,
             waiting: Waiting::default(),
             waited_in_vain: false,
             generation: 0,
-            volume: None,
+            dataset: None,
             placed: [None, None, None],
             fading: None,
             now_s: 0.0,
@@ -119,10 +118,10 @@ impl Viewport {
     }
 
     /// Shows another volume from now on; its picture replaces the old one when it is complete.
-    pub(super) fn set_scene(&mut self, renderer: Renderer, volume: Arc<Volume>, bricks: Arc<Bricks>) {
+    pub(super) fn set_scene(&mut self, renderer: Renderer, dataset: Dataset) {
         self.generation += 1;
-        self.volume = Some((Arc::clone(&volume), Arc::clone(&bricks)));
-        self.painter.set_scene(Scene { renderer, volume, bricks });
+        self.dataset = Some(dataset.clone());
+        self.thread.set_scene(Scene { renderer, dataset });
         (self.wanted, self.shown, self.failed, self.waited_in_vain) = (None, None, None, false);
         self.waiting.clear();
     }
@@ -133,8 +132,8 @@ impl Viewport {
     }
 
     /// The volume, for workers with a renderer of their own.
-    pub(super) fn volume(&self) -> Option<(Arc<Volume>, Arc<Bricks>)> {
-        self.volume.clone()
+    pub(super) fn dataset(&self) -> Option<Dataset> {
+        self.dataset.clone()
     }
 
     /// The picture to be drawn, or several.
@@ -162,41 +161,37 @@ impl Viewport {
         self.lost
     }
 
-    /// Whether the full-quality picture of exactly these settings is on screen, and that of those they
-    /// are compared with.
-    pub(super) fn is_idle(&self, (settings, other): &(Settings, Option<Settings>)) -> bool {
-        self.shown.as_ref().is_some_and(|(shown, look)| {
-            *look == Look::FULL
-                && self.fading.is_none()
-                && shown.settings == *settings
-                && shown.other == *other
-                && self.wanted.as_ref().is_some_and(|wanted| wanted == shown)
-        })
+    /// Whether the full-quality picture of these settings is on screen, and that of those they are compared with.
+    pub(super) fn is_idle(&self, looks: &(Settings, Option<Settings>)) -> bool {
+        let (Some(dataset), Some((shown, quality))) = (&self.dataset, &self.shown) else { return false };
+        let request = FrameRequest::new(self.generation, dataset, looks.clone(), shown.size);
+        *quality == QualityLevel::FULL
+            && self.fading.is_none()
+            && *shown == request
+            && self.wanted.as_ref().is_some_and(|wanted| wanted == shown)
     }
 
-    /// Tells the painter what is wanted and takes what it has finished. To be called once per frame
+    /// Tells the render thread what is wanted and takes what it has finished. To be called once per frame
     /// before the picture is drawn. While something moves it waits a little for a preview: one that
     /// is quick enough is seen in the frame of the movement itself.
     pub(super) fn advance(
         &mut self,
-        (settings, other): (Settings, Option<Settings>),
+        looks: (Settings, Option<Settings>),
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<(), GpuError> {
-        if self.lost || self.volume.is_none() {
-            return Ok(());
-        }
+        let Some(dataset) = self.dataset.as_ref().filter(|_| !self.lost) else { return Ok(()) };
+        let wanted = FrameRequest::new(self.generation, dataset, looks, size);
         self.now_s = ctx.input(|input| input.time);
         self.fading = self.fading.take().filter(|(_, since_s)| self.now_s - since_s < FADE_S);
         if self.fading.is_some() {
             ctx.request_repaint();
         }
-        self.painter.set_frame_ms(self.frame_ms);
-        let wanted = Wanted { generation: self.generation, settings, other, size };
+        self.thread.set_frame_ms(self.frame_ms);
         let mut patience = Duration::ZERO;
         if self.wanted.as_ref() != Some(&wanted) {
             patience = if self.context.is_software() { SOFTWARE_PATIENCE } else { PATIENCE };
-            self.painter.set_wanted(wanted.clone());
+            self.thread.set_wanted(wanted.clone());
             if self.wanted.is_some() {
                 self.waiting.ask(wanted.clone(), Instant::now());
             }
@@ -204,7 +199,7 @@ impl Viewport {
         }
         // What was too late for the last frame has been waited for long enough: it comes before what is newer.
         let newest = (!self.waited_in_vain).then_some(&wanted);
-        let frame = self.painter.take_frame(newest, patience);
+        let frame = self.thread.take_frame(newest, patience);
         if patience > Duration::ZERO {
             let is_late = |frame: &Frame| newest.is_some_and(|newest| frame.wanted != *newest);
             self.waited_in_vain = frame.as_ref().is_none_or(is_late);
@@ -212,7 +207,7 @@ impl Viewport {
         if let Some(frame) = frame.filter(|frame| frame.wanted.generation == self.generation) {
             self.show(frame, ctx);
         }
-        if let Some(err) = self.painter.take_error() {
+        if let Some(err) = self.thread.take_error() {
             self.lost = matches!(err, GpuError::Lost(_));
             self.failed.clone_from(&self.wanted);
             return Err(err);
@@ -222,11 +217,12 @@ impl Viewport {
 
     /// Puts a finished picture on screen.
     fn show(&mut self, frame: Frame, ctx: &egui::Context) {
-        let Frame { wanted, look, image, other } = frame;
+        let Frame { wanted, quality, image, other } = frame;
         // Pixel for pixel where there are enough of them.
         let exact = image.size == wanted.size.map(|n| n as usize);
         // A preview of the same fades away; anything else is replaced at once.
-        let is_same = self.shown.as_ref().is_some_and(|(shown, before)| *shown == wanted && *before != look);
+        let is_same =
+            self.shown.as_ref().is_some_and(|(shown, before)| *shown == wanted && *before != quality);
         self.fading =
             self.placed[0].take_if(|_| is_same && other.is_none()).map(|picture| (picture, self.now_s));
         if self.fading.is_some() {
@@ -242,7 +238,7 @@ impl Viewport {
             None => self.differs = None,
         }
         self.waiting.answer(&wanted, Instant::now());
-        self.shown = Some((wanted, look));
+        self.shown = Some((wanted, quality));
     }
 
     fn place(&mut self, at: usize, image: &ColorImage, is_exact: bool) {

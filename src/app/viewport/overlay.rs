@@ -1,4 +1,4 @@
-//! Marks over the picture: the volume's box, a scale bar, and a cube that says from where one looks. They are
+//! Overlay over the picture: the volume's box, a scale bar, and a cube that says from where one looks. They are
 //! painted by the window and are therefore never in an export.
 
 use eframe::egui::{
@@ -7,7 +7,7 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-use super::view_projection::Sight;
+use super::view_projection::ViewProjection;
 use crate::app::shell::theme;
 use crate::app::text;
 use crate::math::SceneSpace;
@@ -20,18 +20,18 @@ const LONGEST_BAR: f64 = 0.25;
 
 /// Which marks are shown.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Marks {
+pub(crate) struct Overlay {
     /// Any of them.
     pub on: bool,
 }
 
-impl Default for Marks {
+impl Default for Overlay {
     fn default() -> Self {
         Self { on: true }
     }
 }
 
-impl Marks {
+impl Overlay {
     /// Paints them. The side of the cube that was clicked, if one was.
     pub(crate) fn show(
         self,
@@ -54,7 +54,7 @@ impl Marks {
             return;
         }
         let painter = ui.painter_at(picture);
-        let sight = Sight { camera: camera.clone(), picture };
+        let sight = ViewProjection { camera: camera.clone(), picture };
         let dims = DVec3::from(scene.dims.map(|n| n as f64));
         let corner = |at: usize| {
             let side = |axis: usize| if at >> axis & 1 == 0 { -0.5 } else { dims[axis] - 0.5 };

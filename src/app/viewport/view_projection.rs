@@ -7,14 +7,14 @@ use crate::model::Camera;
 
 /// The camera over the picture's rectangle, in points.
 #[derive(Debug, Clone)]
-pub(crate) struct Sight {
+pub(crate) struct ViewProjection {
     /// Where the eye is.
     pub camera: Camera,
     /// In points.
     pub picture: Rect,
 }
 
-impl Sight {
+impl ViewProjection {
     fn size(&self) -> (f64, f64) {
         (f64::from(self.picture.width()), f64::from(self.picture.height()).max(1.0))
     }
@@ -55,7 +55,7 @@ mod tests {
     fn lines_are_followed_under_the_pointer() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
             let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(640.0, 480.0));
-            let sight = Sight { camera: Camera { projection, ..Camera::default() }, picture };
+            let sight = ViewProjection { camera: Camera { projection, ..Camera::default() }, picture };
             let (from, along) = (DVec3::new(0.2, -0.3, 0.1), DVec3::new(0.0, 0.4, 0.5));
             for share in [-0.7, 0.0, 1.2] {
                 let at = sight.point(from + along * share).unwrap();

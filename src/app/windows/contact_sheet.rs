@@ -60,7 +60,7 @@ impl Sheet {
     fn candidates(self, subject: &Subject) -> Vec<Candidate> {
         match self {
             Self::Lights => with_lights(&subject.settings, subject.selected_light),
-            Self::Presets => with_presets(&subject.settings, subject.volume.value_range()),
+            Self::Presets => with_presets(&subject.settings, subject.dataset.volume().value_range()),
         }
     }
 }
@@ -116,7 +116,7 @@ fn lights_to_try(settings: &Settings, selected: usize) -> Vec<(String, Vec<Light
         all.extend(HOURS.map(|hour| {
             let mut lights = settings.lights.clone();
             let world = at_hour(light, &settings.camera, hour);
-            lights[selected].set_world_position(world, &settings.camera);
+            lights[selected].set_scene_position(world, &settings.camera);
             (text::contact_sheet::at_hour(&light.name, hour), lights)
         }));
     }

@@ -7,7 +7,7 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
 use crate::app::text;
 use crate::app::worker::task::Work;
-use crate::data::{Bricks, Volume};
+use crate::data::{Dataset, Volume};
 use crate::export::write_atomically;
 use crate::gpu::{Attenuation, Context, GpuError, RenderOptions, Renderer, export_slice, light_volume_nrrd};
 use crate::math::false_color;
@@ -49,7 +49,7 @@ pub(crate) struct Scene<'a> {
     /// The look.
     pub settings: &'a Settings,
     /// The open volume.
-    pub volume: Option<(Arc<Volume>, Arc<Bricks>)>,
+    pub dataset: Option<Dataset>,
     /// A device beside which the worker may open its own.
     pub context: &'a Context,
     /// Nothing moves: a light volume that is filled now will be wanted.
@@ -132,14 +132,14 @@ impl LightSlice {
                 Err(panic) => return Err(panic),
             }
         }
-        let Some((volume, bricks)) = &scene.volume else { return Ok(()) };
+        let Some(dataset) = &scene.dataset else { return Ok(()) };
         let is_there =
             |index: usize| scene.settings.lights.get(index).is_some_and(crate::model::Light::needs_volume);
         if !is_there(self.light) {
             self.light = (0..scene.settings.lights.len()).find(|&index| is_there(index)).unwrap_or(0);
         }
         let mut request = Request {
-            volume: volume.content_id(),
+            volume: dataset.volume().content_id(),
             settings: scene.settings.clone(),
             size: [16, 16],
             coarse: None,
@@ -153,14 +153,14 @@ impl LightSlice {
             return Ok(());
         }
         self.failed = Some(key.clone());
-        let (context, volume, bricks) = (scene.context.clone(), Arc::clone(volume), Arc::clone(bricks));
+        let (context, dataset) = (scene.context.clone(), dataset.clone());
         let light = self.light;
         let task = move || {
             let mut renderer = Renderer::new(&context.sibling()?)?;
-            // Collapsed, it would be gone.
+            // Combined, it would be gone.
             request.settings.shadows.storage = LightStorage::PerLight;
             let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
-            renderer.draw(&volume, &bricks, &request.settings, request.size, &options)?;
+            renderer.draw(&dataset, &request.settings, request.size, &options)?;
             Ok(renderer.attenuation(&request, light)?.map(|attenuation| (key, attenuation)))
         };
         self.work = Some(Work::start("light-slice", ctx, task).map_err(|err| err.to_string())?);

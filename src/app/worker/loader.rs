@@ -9,14 +9,10 @@ use eframe::egui;
 
 use super::task::Work;
 use crate::app::text;
+use crate::data::Dataset;
 use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
-use crate::data::{Bricks, Histogram, Volume};
-use crate::gpu::first_look;
-use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, fitted};
+use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look, fitted};
 use crate::model::Settings;
-
-/// Bins of the histogram that the transfer function editor shows.
-const HISTOGRAM_BINS: usize = 1024;
 
 /// How a volume is read, where the user has said it.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,13 +31,9 @@ pub(crate) struct Opened {
     /// How it was read.
     pub reading: Reading,
     /// The voxels: with as few averaged as the adapter needs.
-    pub volume: Arc<Volume>,
+    pub dataset: Dataset,
     /// How many there were along x, y and z, if the adapter could not hold them.
     pub too_many: Option<[usize; 3]>,
-    /// Their bricks.
-    pub bricks: Arc<Bricks>,
-    /// Their histogram.
-    pub histogram: Histogram,
     /// A renderer that has the volume on the GPU.
     pub renderer: Renderer,
     /// A first look at it.
@@ -238,7 +230,7 @@ fn open(
     };
     let dims = volume.dims();
     let volume = match fitted(context, volume) {
-        Ok(volume) => Arc::new(volume),
+        Ok(volume) => volume,
         Err(err) => return not_shown(&err),
     };
     let too_many = (volume.dims() != dims).then_some(dims);
@@ -246,15 +238,14 @@ fn open(
         return Outcome::Cancelled;
     }
     phase.store(2, Ordering::Relaxed);
-    let bricks = Arc::new(Bricks::of(&volume));
-    let histogram = Histogram::of(&volume, HISTOGRAM_BINS);
+    let dataset = Dataset::new(volume);
     if control.is_cancelled() {
         return Outcome::Cancelled;
     }
     phase.store(3, Ordering::Relaxed);
     let look = Renderer::with_shaders(context, shaders).and_then(|mut renderer| {
         phase.store(4, Ordering::Relaxed);
-        let settings = first_look(&mut renderer, &volume, &bricks, &histogram)?;
+        let settings = first_look(&mut renderer, &dataset)?;
         Ok((renderer, settings))
     });
     if control.is_cancelled() {
@@ -262,7 +253,7 @@ fn open(
     }
     match look {
         Ok((renderer, settings)) => {
-            let opened = Opened { source, reading, volume, too_many, bricks, histogram, renderer, settings };
+            let opened = Opened { source, reading, dataset, too_many, renderer, settings };
             Outcome::Opened(Box::new(opened))
         }
         Err(err) => not_shown(&err),

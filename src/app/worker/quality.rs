@@ -14,14 +14,14 @@ const SOFTWARE_BUDGET_MS: f64 = 66.0;
 /// … where the window itself takes so much of each frame.
 const SOFTWARE_WINDOW_MS: f64 = 26.0;
 /// Bands into which a picture is cut on a software adapter, where one may take seconds: between
-/// them the painter looks whether something else is wanted.
+/// them the render thread looks whether something else is wanted.
 const SOFTWARE_BANDS: u32 = 16;
 /// Pixels of a band on a graphics card: far below what driver watchdogs allow.
 const BAND_PIXELS: u32 = 1 << 18;
 
 /// How a request is rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Look {
+pub(crate) struct QualityLevel {
     /// Window pixels per rendered pixel along an axis.
     pub scale: u32,
     /// For light volumes that are not there yet.
@@ -32,7 +32,7 @@ pub(crate) struct Look {
     pub quick_light: bool,
 }
 
-impl Look {
+impl QualityLevel {
     /// What exports show too.
     pub(crate) const FULL: Self = Self { scale: 1, coarse: None, quick_eye: false, quick_light: false };
 
@@ -95,7 +95,7 @@ impl Estimate {
 
 /// Learns what things cost here.
 #[derive(Debug, Clone)]
-pub(crate) struct Refine {
+pub(crate) struct QualityController {
     software: bool,
     /// Milliseconds per frame that the user asked for.
     frame_ms: Option<f64>,
@@ -120,7 +120,7 @@ fn scale_index(scale: u32) -> usize {
     scale.ilog2().min(2) as usize
 }
 
-impl Refine {
+impl QualityController {
     /// Cautious guesses for an adapter.
     pub(crate) fn new(software: bool) -> Self {
         let slow = if software { 20.0 } else { 1.0 };
@@ -148,21 +148,24 @@ impl Refine {
     }
 
     /// Pieces into which a chunk of the light pass is cut.
-    pub(crate) fn light_parts(&self, look: Look) -> u32 {
+    pub(crate) fn light_parts(&self, look: QualityLevel) -> u32 {
         // Half a chunk of a 256³ volume takes a software adapter some 20 ms.
-        if look == Look::FULL && self.software { 2 } else { 1 }
+        if look == QualityLevel::FULL && self.software { 2 } else { 1 }
     }
 
     /// Rows of a band of a picture of some size.
-    pub(crate) fn rows(&self, look: Look, [width, height]: [u32; 2]) -> u32 {
+    pub(crate) fn rows(&self, look: QualityLevel, [width, height]: [u32; 2]) -> u32 {
         // A preview is finished whatever happens.
-        let whole =
-            if self.software && look == Look::FULL { height.div_ceil(SOFTWARE_BANDS) } else { height };
+        let whole = if self.software && look == QualityLevel::FULL {
+            height.div_ceil(SOFTWARE_BANDS)
+        } else {
+            height
+        };
         whole.min(BAND_PIXELS / width.max(1)).max(1)
     }
 
     /// Learns what the eye pass of a whole picture took.
-    pub(crate) fn learn_picture(&mut self, look: Look, pixels: f64, ms: f64) {
+    pub(crate) fn learn_picture(&mut self, look: QualityLevel, pixels: f64, ms: f64) {
         let quick = usize::from(look.quick_eye);
         let warm = std::mem::replace(&mut self.warm[quick], true);
         if !(warm && ms.is_finite() && pixels > 0.0) {
@@ -181,7 +184,7 @@ impl Refine {
     }
 
     /// Learns what filling one light volume took in all.
-    pub(crate) fn learn_build(&mut self, look: Look, ms: f64) {
+    pub(crate) fn learn_build(&mut self, look: QualityLevel, ms: f64) {
         let quick = usize::from(look.quick_light);
         let at = resolution_index(look.coarse);
         self.light_build[at][quick].observe(ms.max(0.05));
@@ -194,7 +197,7 @@ impl Refine {
     }
 
     /// The look of a preview: the finest that keeps the frame budget.
-    pub(crate) fn preview(&self, viewport: [u32; 2], missing: Missing) -> Look {
+    pub(crate) fn preview(&self, viewport: [u32; 2], missing: Missing) -> QualityLevel {
         let budget = self.budget_ms();
         let pixels = f64::from(viewport[0]) * f64::from(viewport[1]);
         let quick_light = self.software && missing.count > 0 && !missing.others;
@@ -213,7 +216,7 @@ impl Refine {
         }
         let exact_ms = self.eye_pixel[0][0].ms * pixels;
         if coarse.is_none() && exact_ms + light_ms <= budget {
-            return Look::FULL;
+            return QualityLevel::FULL;
         }
         let quick_eye = self.software;
         let eye = &self.eye_pixel[usize::from(quick_eye)];
@@ -223,7 +226,12 @@ impl Refine {
         // A light volume of the full resolution may have been forgotten: then rather a coarse one.
         let fallback = if self.software { Resolution::Quarter } else { Resolution::Half };
         let quick_light = quick_light && coarse.is_some();
-        Look { scale, coarse: coarse.or((missing.count == 0).then_some(fallback)), quick_eye, quick_light }
+        QualityLevel {
+            scale,
+            coarse: coarse.or((missing.count == 0).then_some(fallback)),
+            quick_eye,
+            quick_light,
+        }
     }
 }
 
@@ -231,9 +239,9 @@ impl Refine {
 mod tests {
     use super::*;
 
-    fn measured(software: bool, eye_ms_per_megapixel: f64, full_build_ms: f64) -> Refine {
-        let mut refine = Refine::new(software);
-        for look in [Look::FULL, Look { quick_eye: true, ..Look::FULL }] {
+    fn measured(software: bool, eye_ms_per_megapixel: f64, full_build_ms: f64) -> QualityController {
+        let mut refine = QualityController::new(software);
+        for look in [QualityLevel::FULL, QualityLevel { quick_eye: true, ..QualityLevel::FULL }] {
             let factor = if look.quick_eye { 0.3 } else { 1.0 };
             for _ in 0..8 {
                 refine.learn_picture(look, 1e6, eye_ms_per_megapixel * factor);
@@ -242,8 +250,11 @@ mod tests {
         for (coarse, share) in
             [(None, 1.0), (Some(Resolution::Half), 0.15), (Some(Resolution::Quarter), 0.03)]
         {
-            refine.learn_build(Look { coarse, ..Look::FULL }, full_build_ms * share);
-            refine.learn_build(Look { coarse, quick_light: true, ..Look::FULL }, full_build_ms * share * 0.4);
+            refine.learn_build(QualityLevel { coarse, ..QualityLevel::FULL }, full_build_ms * share);
+            refine.learn_build(
+                QualityLevel { coarse, quick_light: true, ..QualityLevel::FULL },
+                full_build_ms * share * 0.4,
+            );
         }
         refine
     }
@@ -253,7 +264,7 @@ mod tests {
     #[test]
     fn a_fast_card_previews_at_full_quality() {
         let refine = measured(false, 2.0, 5.0);
-        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL);
+        assert_eq!(refine.preview([1000, 1000], ONE), QualityLevel::FULL);
     }
 
     #[test]
@@ -291,28 +302,28 @@ mod tests {
 
     #[test]
     fn estimates_follow_what_is_measured() {
-        let mut refine = Refine::new(false);
+        let mut refine = QualityController::new(false);
         for _ in 0..20 {
-            refine.learn_picture(Look::FULL, 1e6, 200.0);
-            refine.learn_build(Look::FULL, 500.0);
+            refine.learn_picture(QualityLevel::FULL, 1e6, 200.0);
+            refine.learn_build(QualityLevel::FULL, 500.0);
         }
         let slow = refine.preview([1000, 1000], ONE);
         assert!(slow.scale > 1 && slow.coarse.is_some(), "{slow:?}");
         for _ in 0..20 {
-            refine.learn_picture(Look::FULL, 1e6, 2.0);
-            refine.learn_build(Look::FULL, 1.0);
+            refine.learn_picture(QualityLevel::FULL, 1e6, 2.0);
+            refine.learn_build(QualityLevel::FULL, 1.0);
         }
-        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL);
-        refine.learn_picture(Look::FULL, 1e6, f64::INFINITY);
-        assert_eq!(refine.preview([1000, 1000], ONE), Look::FULL, "a lost device teaches nothing");
+        assert_eq!(refine.preview([1000, 1000], ONE), QualityLevel::FULL);
+        refine.learn_picture(QualityLevel::FULL, 1e6, f64::INFINITY);
+        assert_eq!(refine.preview([1000, 1000], ONE), QualityLevel::FULL, "a lost device teaches nothing");
     }
 
     #[test]
     fn bands_cover_pictures_and_respect_watchdogs() {
         for software in [false, true] {
-            let refine = Refine::new(software);
+            let refine = QualityController::new(software);
             for size in [[1, 1], [800, 600], [7680, 4320], [32768, 10]] {
-                let rows = refine.rows(Look::FULL, size);
+                let rows = refine.rows(QualityLevel::FULL, size);
                 assert!(rows >= 1 && (rows == 1 || rows * size[0] <= BAND_PIXELS), "{size:?}: {rows}");
             }
         }

@@ -1,4 +1,4 @@
-//! The window's end of the thread that renders its pictures: a desk on which orders and finished
+//! The window's end of the thread that renders its pictures: a mailbox in which orders and finished
 //! pictures are left.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,16 +9,16 @@ use std::time::Duration;
 use eframe::egui::{self, ColorImage};
 
 use super::difference::Difference;
-use super::quality::Look;
-use super::render_worker::Easel;
-use super::request::{Scene, Wanted};
+use super::quality::QualityLevel;
+use super::render_worker::RenderWorker;
+use super::request::{FrameRequest, Scene};
 use super::task::panic_message;
 use crate::gpu::{Context, GpuError, LightFigures, Stage};
 
 /// A finished picture.
 pub(crate) struct Frame {
-    pub(crate) wanted: Wanted,
-    pub(crate) look: Look,
+    pub(crate) wanted: FrameRequest,
+    pub(crate) quality: QualityLevel,
     pub(crate) image: ColorImage,
     /// The picture that it is compared with, and what lies between them.
     pub(crate) other: Option<(ColorImage, Difference)>,
@@ -45,11 +45,11 @@ pub(crate) struct Figures {
     pub(crate) refining: Option<(Stage, f32)>,
 }
 
-/// What passes between the window and its painter.
+/// What passes between the window and its render thread.
 #[derive(Default)]
-pub(crate) struct Desk {
+pub(crate) struct Mailbox {
     pub(crate) scene: Option<Scene>,
-    pub(crate) wanted: Option<Wanted>,
+    pub(crate) wanted: Option<FrameRequest>,
     pub(crate) closed: bool,
     /// Milliseconds per frame while something moves, if the user asked for other than usual.
     pub(crate) frame_ms: Option<f64>,
@@ -58,36 +58,44 @@ pub(crate) struct Desk {
     pub(crate) figures: Figures,
 }
 
+impl Mailbox {
+    /// Whether the window has left something that the thread has not read.
+    pub(super) fn has_news(&self, is_frame_pending: bool) -> bool {
+        let is_taken = is_frame_pending && self.frame.is_none();
+        self.closed || self.scene.is_some() || self.wanted.is_some() || is_taken
+    }
+}
+
 #[derive(Default)]
 pub(crate) struct Shared {
-    desk: Mutex<Desk>,
-    /// The window has put something on the desk, or taken it away.
+    mailbox: Mutex<Mailbox>,
+    /// The window has put something into the mailbox, or taken it away.
     pub(crate) changed: Condvar,
-    /// The painter has.
+    /// The render thread has.
     pub(crate) finished: Condvar,
 }
 
 impl Shared {
-    pub(crate) fn desk(&self) -> MutexGuard<'_, Desk> {
-        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(crate) fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
+        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// The window's end of the thread, which ends with it.
-pub(crate) struct Painter {
+pub(crate) struct RenderThread {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl std::fmt::Debug for Painter {
+impl std::fmt::Debug for RenderThread {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Painter").finish_non_exhaustive()
+        f.debug_struct("RenderThread").finish_non_exhaustive()
     }
 }
 
-impl Drop for Painter {
+impl Drop for RenderThread {
     fn drop(&mut self) {
-        self.shared.desk().closed = true;
+        self.shared.mailbox().closed = true;
         self.shared.changed.notify_one();
         // A driver must not be unloaded while a thread is in it. Panics were caught.
         if let Some(thread) = self.thread.take() {
@@ -96,16 +104,16 @@ impl Drop for Painter {
     }
 }
 
-impl Painter {
+impl RenderThread {
     /// Starts the thread.
     pub(crate) fn start(context: Context, ctx: egui::Context) -> std::io::Result<Self> {
         let shared = Arc::<Shared>::default();
         let theirs = Arc::clone(&shared);
-        let thread = std::thread::Builder::new().name("painter".to_owned()).spawn(move || {
-            let mut easel = Easel::new(&context, ctx, theirs);
+        let thread = std::thread::Builder::new().name("renderer".to_owned()).spawn(move || {
+            let mut worker = RenderWorker::new(&context, ctx, theirs);
             // wgpu panics when a device is lost in the middle of a call.
-            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| easel.work())) {
-                easel.tell(GpuError::Lost(panic_message(&*panic)));
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| worker.work())) {
+                worker.tell(GpuError::Lost(panic_message(&*panic)));
             }
         })?;
         Ok(Self { shared, thread: Some(thread) })
@@ -113,32 +121,33 @@ impl Painter {
 
     /// Renders this from now on.
     pub(crate) fn set_scene(&self, scene: Scene) {
-        let mut desk = self.shared.desk();
-        (desk.scene, desk.wanted, desk.frame) = (Some(scene), None, None);
+        let mut mailbox = self.shared.mailbox();
+        (mailbox.scene, mailbox.wanted, mailbox.frame) = (Some(scene), None, None);
         self.shared.changed.notify_one();
     }
 
     /// Renders this way from now on.
-    pub(crate) fn set_wanted(&self, wanted: Wanted) {
-        self.shared.desk().wanted = Some(wanted);
+    pub(crate) fn set_wanted(&self, wanted: FrameRequest) {
+        self.shared.mailbox().wanted = Some(wanted);
         self.shared.changed.notify_one();
     }
 
     /// What previews may take from now on.
     pub(crate) fn set_frame_ms(&self, frame_ms: Option<f64>) {
-        self.shared.desk().frame_ms = frame_ms;
+        self.shared.mailbox().frame_ms = frame_ms;
     }
 
     /// The latest finished picture, once; waits at most so long for one, or for that of what is wanted.
-    pub(crate) fn take_frame(&self, wanted: Option<&Wanted>, patience: Duration) -> Option<Frame> {
+    pub(crate) fn take_frame(&self, wanted: Option<&FrameRequest>, patience: Duration) -> Option<Frame> {
         let is_it = |frame: &Frame| wanted.is_none_or(|wanted| frame.wanted == *wanted);
-        let is_due = |desk: &mut Desk| desk.error.is_none() && !desk.frame.as_ref().is_some_and(is_it);
-        let (mut desk, _) = self
+        let is_due =
+            |mailbox: &mut Mailbox| mailbox.error.is_none() && !mailbox.frame.as_ref().is_some_and(is_it);
+        let (mut mailbox, _) = self
             .shared
             .finished
-            .wait_timeout_while(self.shared.desk(), patience, is_due)
+            .wait_timeout_while(self.shared.mailbox(), patience, is_due)
             .unwrap_or_else(PoisonError::into_inner);
-        let frame = desk.frame.take();
+        let frame = mailbox.frame.take();
         if frame.is_some() {
             self.shared.changed.notify_one();
         }
@@ -147,11 +156,11 @@ impl Painter {
 
     /// What went wrong, once.
     pub(crate) fn take_error(&self) -> Option<GpuError> {
-        self.shared.desk().error.take()
+        self.shared.mailbox().error.take()
     }
 
     /// Figures about the work.
     pub(crate) fn figures(&self) -> Figures {
-        self.shared.desk().figures.clone()
+        self.shared.mailbox().figures.clone()
     }
 }

@@ -11,12 +11,12 @@ use eframe::egui::{self, ColorImage};
 
 use super::difference::Difference;
 use super::exposure::{Exposures, Kind};
-use super::quality::{Look, Missing, Refine};
+use super::quality::{Missing, QualityController, QualityLevel};
 use super::render_thread::{Figures, Frame, Shared};
-use super::request::{Scene, Wanted};
-use crate::gpu::{Context, GpuError, Job, RenderOptions, Renderer, Stage, dark_share, mean_luminance};
+use super::request::{FrameRequest, Scene};
+use crate::gpu::{Context, GpuError, RenderOptions, Renderer, Report, Stage, dark_share, mean_luminance};
 use crate::model::Settings;
-use crate::plan::{LightKey, Request, plan};
+use crate::plan::{FrameKeys, Request};
 
 /// A change this long ago is over: time to refine.
 const REST: Duration = Duration::from_millis(150);
@@ -32,24 +32,27 @@ const EXPOSED_PIXELS: u64 = 1 << 18;
 /// it reads back sixteen bytes per pixel.
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
 
-struct Running {
-    job: Job,
-    wanted: Wanted,
-    look: Look,
-    /// Started while the user moved something.
-    preview: bool,
-    /// Of a comparison: the left picture, when this is the job for the right one.
-    left: Option<ColorImage>,
-    total_ms: f64,
-    light_ms: f64,
-    rebuilds_before: u64,
+/// A picture to be made now.
+#[derive(Debug, Clone)]
+struct Task {
+    wanted: FrameRequest,
+    quality: QualityLevel,
+    /// Begun while the user moves something: it is finished whatever happens.
+    is_preview: bool,
 }
 
-impl Running {
+impl Task {
     /// Whether it is a preview whose brightness is compensated: not of two looks, whose difference counts.
     fn is_exposed(&self) -> bool {
-        self.look != Look::FULL && self.wanted.other.is_none()
+        self.quality != QualityLevel::FULL && self.wanted.other.is_none()
     }
+}
+
+/// A finished picture of one look.
+struct Made {
+    image: ColorImage,
+    request: Request,
+    total_ms: f64,
 }
 
 /// Whether only the camera and the places of lights differ.
@@ -62,65 +65,68 @@ fn is_movement(from: &Settings, to: &Settings) -> bool {
     moved == *to
 }
 
-/// What decides how far the brightness of a preview is off that was just drawn.
-fn kind_of(look: Look, renderer: &Renderer) -> Kind {
-    Kind { scale: look.scale, quick_eye: look.quick_eye, light_divisor: renderer.report().light_divisor }
+/// What decides how far the brightness of a preview is off.
+fn kind_of(quality: QualityLevel, report: &Report) -> Kind {
+    Kind { scale: quality.scale, quick_eye: quality.quick_eye, light_divisor: report.light_divisor }
 }
 
 /// The thread's own side.
-pub(crate) struct Easel {
+pub(super) struct RenderWorker {
     ctx: egui::Context,
     shared: Arc<Shared>,
     software: bool,
-    refine: Refine,
+    controller: QualityController,
     scene: Option<Scene>,
-    wanted: Option<Wanted>,
+    /// A scene has come that replaces the one that is worked on.
+    next_scene: Option<Scene>,
+    wanted: Option<FrameRequest>,
     changed: Instant,
-    /// A picture was left on the desk, and the window had not taken it when the desk was looked at last.
-    handed: bool,
-    running: Option<Running>,
+    /// A picture was handed over, and the window had not taken it when the mailbox was looked at last.
+    is_frame_pending: bool,
+    is_closed: bool,
     /// What is on screen, or on its way there.
-    shown: Option<(Wanted, Look)>,
+    shown: Option<(FrameRequest, QualityLevel)>,
     /// The last request that was rendered at full quality: its light volumes are likely there.
-    settled: Option<Request>,
-    failed: Option<Wanted>,
-    told: Instant,
+    last_full: Option<(Request, FrameKeys)>,
+    failed: Option<FrameRequest>,
+    last_progress: Instant,
     /// When darkness was measured.
     measured: Instant,
     exposures: Exposures,
-    /// What the last preview was of.
-    previewed: Option<Wanted>,
+    last_preview: Option<FrameRequest>,
 }
 
-impl Easel {
-    pub(crate) fn new(context: &Context, ctx: egui::Context, shared: Arc<Shared>) -> Self {
+impl RenderWorker {
+    pub(super) fn new(context: &Context, ctx: egui::Context, shared: Arc<Shared>) -> Self {
         let software = context.is_software();
         let now = Instant::now();
         Self {
             ctx,
             shared,
             software,
-            refine: Refine::new(software),
+            controller: QualityController::new(software),
             scene: None,
+            next_scene: None,
             wanted: None,
             changed: now,
-            handed: false,
-            running: None,
+            is_frame_pending: false,
+            is_closed: false,
             shown: None,
-            settled: None,
+            last_full: None,
             failed: None,
-            told: now,
+            last_progress: now,
             measured: now,
             exposures: Exposures::default(),
-            previewed: None,
+            last_preview: None,
         }
     }
 
     /// Renders what is wanted until the window closes.
-    pub(crate) fn work(&mut self) {
-        while self.take_orders() {
-            if let Err(err) = self.start_if_due().and_then(|()| self.step()) {
-                self.running = None;
+    pub(super) fn work(&mut self) {
+        while let Some((mut scene, is_preview)) = self.wait_for_work() {
+            let result = self.make(&mut scene, is_preview);
+            self.scene = Some(scene);
+            if let Err(err) = result {
                 self.failed.clone_from(&self.wanted);
                 let lost = matches!(err, GpuError::Lost(_));
                 self.tell(err);
@@ -131,52 +137,78 @@ impl Easel {
         }
     }
 
-    /// Looks at the desk; waits there while nothing is to be done. `false` when the window closed.
-    fn take_orders(&mut self) -> bool {
+    /// Waits until something is to be drawn: a preview (`true`), or full quality. `None` when the window closed.
+    fn wait_for_work(&mut self) -> Option<(Scene, bool)> {
         let shared = Arc::clone(&self.shared);
-        let mut desk = shared.desk();
         loop {
-            if desk.closed {
-                return false;
+            self.read_mailbox();
+            if self.is_closed {
+                return None;
             }
-            if let Some(scene) = desk.scene.take() {
-                let figures = Figures { gpu_bytes: scene.renderer.gpu_bytes(), ..Figures::default() };
-                desk.figures = figures;
-                self.refine = Refine::new(self.software);
+            if let Some(scene) = self.next_scene.take() {
+                self.controller = QualityController::new(self.software);
                 self.scene = Some(scene);
-                (self.wanted, self.running, self.shown, self.settled, self.failed) = Default::default();
-                (self.exposures, self.previewed) = (Exposures::default(), None);
+                (self.shown, self.last_full, self.failed) = Default::default();
+                (self.exposures, self.last_preview) = (Exposures::default(), None);
             }
-            self.refine.set_frame_ms(desk.frame_ms);
-            if let Some(wanted) = desk.wanted.take() {
-                self.changed = Instant::now();
-                self.wanted = Some(wanted);
+            if let Some(is_preview) = self.due()
+                && let Some(scene) = self.scene.take()
+            {
+                return Some((scene, is_preview));
             }
-            // Until the window takes a picture nobody knows what it wants next: refining might only delay it.
-            if self.handed {
-                self.changed = Instant::now();
-                self.handed = desk.frame.is_some();
+            let rest = (self.is_unfinished() && !self.is_frame_pending)
+                .then(|| REST.saturating_sub(self.changed.elapsed()).max(Duration::from_millis(1)));
+            let mailbox = shared.mailbox();
+            // Something may have come since it was read.
+            if mailbox.has_news(self.is_frame_pending) {
+                continue;
             }
-            if self.running.is_some() || self.due().is_some() {
-                return true;
-            }
-            let rest =
-                (self.is_unfinished() && !self.handed).then(|| REST.saturating_sub(self.changed.elapsed()));
-            desk = match rest {
-                None => shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner),
+            match rest {
+                None => drop(shared.changed.wait(mailbox).unwrap_or_else(PoisonError::into_inner)),
                 Some(rest) => {
-                    let rest = rest.max(Duration::from_millis(1));
-                    shared.changed.wait_timeout(desk, rest).unwrap_or_else(PoisonError::into_inner).0
+                    drop(shared.changed.wait_timeout(mailbox, rest).unwrap_or_else(PoisonError::into_inner));
                 }
-            };
+            }
         }
+    }
+
+    /// Takes note of what the window wants now.
+    fn read_mailbox(&mut self) {
+        let shared = Arc::clone(&self.shared);
+        let mut mailbox = shared.mailbox();
+        self.is_closed = mailbox.closed;
+        if let Some(scene) = mailbox.scene.take() {
+            mailbox.figures = Figures { gpu_bytes: scene.renderer.gpu_bytes(), ..Figures::default() };
+            self.next_scene = Some(scene);
+            self.wanted = None;
+        }
+        self.controller.set_frame_ms(mailbox.frame_ms);
+        if let Some(wanted) = mailbox.wanted.take() {
+            self.changed = Instant::now();
+            self.wanted = Some(wanted);
+        }
+        // Until the window takes a picture nobody knows what it wants next: refining might only delay it.
+        if self.is_frame_pending {
+            self.changed = Instant::now();
+            self.is_frame_pending = mailbox.frame.is_some();
+        }
+    }
+
+    /// Whether a task must be dropped: the window closed or shows something else, or a refinement is of something
+    /// that is no longer wanted.
+    fn is_obsolete(&mut self, task: &Task) -> bool {
+        self.read_mailbox();
+        let is_other = !task.is_preview && Some(&task.wanted) != self.wanted.as_ref();
+        self.is_closed || self.next_scene.is_some() || is_other
     }
 
     /// Whether something is wanted that is not on screen at full quality.
     fn is_unfinished(&self) -> bool {
         let Some(wanted) = &self.wanted else { return false };
-        let is_shown =
-            self.shown.as_ref().is_some_and(|(shown, look)| shown == wanted && *look == Look::FULL);
+        let is_shown = self
+            .shown
+            .as_ref()
+            .is_some_and(|(shown, quality)| shown == wanted && *quality == QualityLevel::FULL);
         self.scene.is_some() && !is_shown && self.failed.as_ref() != Some(wanted)
     }
 
@@ -186,197 +218,223 @@ impl Easel {
             return None;
         }
         // Something to look at comes first.
-        let preview = self.shown.as_ref().map(|(shown, _)| shown) != self.wanted.as_ref();
-        (preview || self.changed.elapsed() >= REST).then_some(preview)
+        let is_preview = self.shown.as_ref().map(|(shown, _)| shown) != self.wanted.as_ref();
+        (is_preview || self.changed.elapsed() >= REST).then_some(is_preview)
     }
 
-    /// Begins the next job, unless one must be finished first.
-    fn start_if_due(&mut self) -> Result<(), GpuError> {
-        if let Some(running) = &self.running {
-            if running.preview || Some(&running.wanted) == self.wanted.as_ref() {
-                return Ok(());
-            }
-            // A refinement of something that is no longer wanted.
-            self.running = None;
+    /// Makes the picture that is wanted, or both of two that are compared, and hands it over.
+    fn make(&mut self, scene: &mut Scene, is_preview: bool) -> Result<(), GpuError> {
+        let Some(wanted) = self.wanted.clone() else { return Ok(()) };
+        let quality = if is_preview { self.preview_quality(scene, &wanted) } else { QualityLevel::FULL };
+        let task = Task { wanted, quality, is_preview };
+        let Some(left) = self.render(scene, &task, &task.wanted.settings, true)? else { return Ok(()) };
+        let mut other = None;
+        if let Some(settings) = &task.wanted.other {
+            let Some(right) = self.render(scene, &task, settings, false)? else { return Ok(()) };
+            other = Some((right.image, right.total_ms));
         }
-        let (Some(preview), Some(wanted)) = (self.due(), self.wanted.clone()) else { return Ok(()) };
-        let Some(scene) = &mut self.scene else { return Ok(()) };
-        let full = request_of(scene, &wanted.settings, &wanted, Look::FULL);
-        let missing = missing(self.settled.as_ref(), &full);
+        self.hand_over(scene, task, left, other);
+        Ok(())
+    }
+
+    /// How a preview is rendered: in full where that takes no more than a display pass.
+    fn preview_quality(&self, scene: &Scene, wanted: &FrameRequest) -> QualityLevel {
+        let options = self.options(QualityLevel::FULL);
+        let is_drawn = |settings: &Settings| {
+            let request = request_of(scene, settings, wanted.size, QualityLevel::FULL);
+            scene.renderer.is_drawn(&request, &options)
+        };
+        if is_drawn(&wanted.settings) && wanted.other.as_ref().is_none_or(is_drawn) {
+            return QualityLevel::FULL;
+        }
         // Two pictures have twice the pixels.
         let [width, height] = wanted.size;
         let pixels = if wanted.other.is_some() { [2 * width, height] } else { wanted.size };
-        let look = if preview { self.refine.preview(pixels, missing) } else { Look::FULL };
-        self.begin(wanted, look, preview, None)
+        let settled = self.last_full.as_ref().map(|(_, keys)| keys);
+        self.controller.preview(pixels, missing(settled, wanted.keys()))
     }
 
-    /// Begins a picture; of a comparison the right one when the left one is there.
-    fn begin(
-        &mut self,
-        wanted: Wanted,
-        look: Look,
-        preview: bool,
-        left: Option<ColorImage>,
-    ) -> Result<(), GpuError> {
-        let Some(scene) = &mut self.scene else { return Ok(()) };
-        let settings = wanted.other.as_ref().filter(|_| left.is_some()).unwrap_or(&wanted.settings);
-        let request = request_of(scene, settings, &wanted, look);
-        let options = RenderOptions {
-            light_parts: self.refine.light_parts(look),
-            preview: look != Look::FULL,
+    /// How the renderer is to go about a quality.
+    fn options(&self, quality: QualityLevel) -> RenderOptions {
+        RenderOptions {
+            light_parts: self.controller.light_parts(quality),
+            preview: quality != QualityLevel::FULL,
             ..RenderOptions::default()
-        };
-        let rebuilds_before = scene.renderer.light_rebuilds().iter().sum();
-        let mut job = scene.renderer.begin(&scene.volume, &scene.bricks, request, &options)?;
-        job.set_band(self.refine.rows(look, job.request().size));
-        let (total_ms, light_ms) = (0.0, 0.0);
-        self.running =
-            Some(Running { job, wanted, look, preview, left, total_ms, light_ms, rebuilds_before });
-        Ok(())
+        }
     }
 
-    /// Does the next piece of the job and waits for it.
-    fn step(&mut self) -> Result<(), GpuError> {
-        let (Some(scene), Some(running)) = (&mut self.scene, &mut self.running) else { return Ok(()) };
-        let stage = running.job.stage();
-        if stage == Some(Stage::Display) && running.is_exposed() {
-            let kind = kind_of(running.look, &scene.renderer);
-            running.job.set_exposure(self.exposures.of(kind).unwrap_or(1.0) as f32);
+    /// Renders one look of a task; `None` if the task was dropped meanwhile.
+    fn render(
+        &mut self,
+        scene: &mut Scene,
+        task: &Task,
+        settings: &Settings,
+        is_left: bool,
+    ) -> Result<Option<Made>, GpuError> {
+        let Task { wanted, quality, is_preview } = task;
+        let request = request_of(scene, settings, wanted.size, *quality);
+        let mut options = self.options(*quality);
+        let fills_before: u64 = scene.renderer.light_rebuilds().iter().sum();
+        let context = scene.renderer.context().clone();
+        let (mut total_ms, mut light_ms) = (0.0, 0.0);
+        let mut job = scene.renderer.begin(&scene.dataset, request.clone(), &options)?;
+        job.set_band(self.controller.rows(*quality, request.size));
+        if task.is_exposed() {
+            let kind = kind_of(*quality, job.report());
+            options.exposure = self.exposures.of(kind).unwrap_or(1.0) as f32;
+            job.set_exposure(options.exposure);
+        }
+        loop {
+            let stage = job.stage();
+            let start = Instant::now();
+            let more = job.step()?;
+            context.wait()?;
+            let took_ms = start.elapsed().as_secs_f64() * 1000.0;
+            total_ms += took_ms;
+            if matches!(stage, Some(Stage::LightMarch | Stage::LightBackproject)) {
+                light_ms += took_ms;
+            }
+            if !more {
+                break;
+            }
+            if self.last_progress.elapsed() >= TELL_EVERY {
+                self.last_progress = Instant::now();
+                let refining = job.stage().filter(|_| !is_preview);
+                let progress = job.progress().clamp(0.0, 1.0);
+                self.shared.mailbox().figures.refining = refining.map(|stage| (stage, progress));
+                self.ctx.request_repaint();
+            }
+            if self.is_obsolete(task) {
+                return Ok(None);
+            }
         }
         let start = Instant::now();
-        let more = scene.renderer.step(&mut running.job)?;
-        scene.renderer.context().wait()?;
-        let took_ms = start.elapsed().as_secs_f64() * 1000.0;
-        running.total_ms += took_ms;
-        if matches!(stage, Some(Stage::LightMarch | Stage::LightBackproject)) {
-            running.light_ms += took_ms;
+        let dark_share = self.measure(scene, task, &request, &options, is_left)?;
+        let bytes = scene.renderer.read_shown()?;
+        let image = ColorImage::from_rgba_premultiplied(request.size.map(|n| n as usize), &bytes);
+        let is_settled = is_left && *quality == QualityLevel::FULL;
+        let splats = if is_settled { Some(scene.renderer.splats()?) } else { None };
+        total_ms += start.elapsed().as_secs_f64() * 1000.0;
+        log::debug!("{quality:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
+        let fills: u64 = scene.renderer.light_rebuilds().iter().sum();
+        if scene.renderer.report().runs.eye > 0 {
+            let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
+            self.controller.learn_picture(*quality, pixels, total_ms - light_ms);
         }
-        if !more {
-            return self.finish();
+        if fills > fills_before {
+            self.controller.learn_build(*quality, light_ms / (fills - fills_before) as f64);
         }
-        if self.told.elapsed() >= TELL_EVERY {
-            self.told = Instant::now();
-            let refining = running.job.stage().filter(|_| !running.preview);
-            let progress = running.job.progress().clamp(0.0, 1.0);
-            self.shared.desk().figures.refining = refining.map(|stage| (stage, progress));
-            self.ctx.request_repaint();
+        if is_settled {
+            self.last_full = Some((request.clone(), FrameKeys::of(&request, &options)));
         }
-        Ok(())
+        let mut mailbox = self.shared.mailbox();
+        mailbox.figures.dark_share = dark_share.or(mailbox.figures.dark_share);
+        mailbox.figures.splats = splats.unwrap_or(mailbox.figures.splats);
+        Ok(Some(Made { image, request, total_ms }))
     }
 
     /// Learns from the light of a complete picture, and keeps a preview as bright as those at full quality.
     /// Returns the share of a picture at full quality that is nearly black.
-    fn measure(&mut self) -> Result<Option<f64>, GpuError> {
-        let (Some(scene), Some(running)) = (&mut self.scene, &self.running) else { return Ok(None) };
-        if running.look == Look::FULL {
-            let is_due = !running.preview || self.measured.elapsed() >= MEASURE_EVERY;
-            if running.left.is_some() || !is_due {
+    fn measure(
+        &mut self,
+        scene: &mut Scene,
+        task: &Task,
+        request: &Request,
+        options: &RenderOptions,
+        is_left: bool,
+    ) -> Result<Option<f64>, GpuError> {
+        let Task { wanted, quality, is_preview } = task;
+        if *quality == QualityLevel::FULL {
+            let is_due = !is_preview || self.measured.elapsed() >= MEASURE_EVERY;
+            if !is_left || !is_due {
                 return Ok(None);
             }
             self.measured = Instant::now();
             let light = scene.renderer.read_light()?;
-            if running.wanted.other.is_none() {
-                let is_of_last_preview = self.previewed.as_ref() == Some(&running.wanted);
+            if wanted.other.is_none() {
+                let is_of_last_preview = self.last_preview.as_ref() == Some(wanted);
                 self.exposures.settle(mean_luminance(&light), is_of_last_preview);
             }
             return Ok(Some(dark_share(&light)));
         }
-        let [width, height] = running.job.request().size;
+        let [width, height] = request.size;
         // What changes more than a movement may change the brightness, and should be seen to.
-        let settled = self.settled.as_ref().map(|settled| &settled.settings);
-        let moves = settled.is_some_and(|settled| is_movement(settled, &running.wanted.settings));
-        if !(running.is_exposed() && moves && u64::from(width) * u64::from(height) <= EXPOSED_PIXELS) {
+        let settled = self.last_full.as_ref().map(|(request, _)| &request.settings);
+        let moves = settled.is_some_and(|settled| is_movement(settled, &wanted.settings));
+        if !(task.is_exposed() && moves && u64::from(width) * u64::from(height) <= EXPOSED_PIXELS) {
             return Ok(None);
         }
         let mean = mean_luminance(&scene.renderer.read_light()?);
-        self.previewed = Some(running.wanted.clone());
-        if let Some(exposure) = self.exposures.preview(kind_of(running.look, &scene.renderer), mean) {
-            scene.renderer.expose(&running.job, exposure as f32)?;
+        self.last_preview = Some(wanted.clone());
+        let kind = kind_of(*quality, scene.renderer.report());
+        if let Some(exposure) = self.exposures.preview(kind, mean) {
+            expose(scene, request, RenderOptions { exposure: exposure as f32, ..options.clone() })?;
         }
         Ok(None)
     }
 
-    /// Hands over the complete picture and learns from what it took.
-    fn finish(&mut self) -> Result<(), GpuError> {
-        let start = Instant::now();
-        let dark_share = self.measure()?;
-        let (Some(scene), Some(running)) = (&self.scene, self.running.take()) else { return Ok(()) };
-        let Running { job, wanted, look, preview, left, total_ms, light_ms, rebuilds_before } = running;
-        let size = job.request().size;
-        let bytes = scene.renderer.read_shown()?;
-        let image = ColorImage::from_rgba_premultiplied(size.map(|n| n as usize), &bytes);
-        let is_settled = left.is_none() && look == Look::FULL;
-        let splats = if is_settled { Some(scene.renderer.splats()?) } else { None };
-        let total_ms = total_ms + start.elapsed().as_secs_f64() * 1000.0;
-        log::debug!("{look:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
-        let light_volumes = scene.renderer.light_figures(&job);
-        let light_rebuilds: u64 = scene.renderer.light_rebuilds().iter().sum();
-        let pixels = f64::from(size[0]) * f64::from(size[1]);
-        self.refine.learn_picture(look, pixels, total_ms - light_ms);
-        if light_rebuilds > rebuilds_before {
-            self.refine.learn_build(look, light_ms / (light_rebuilds - rebuilds_before) as f64);
-        }
-        if is_settled {
-            self.settled = Some(job.request().clone());
-        }
-        if let Some(dark_share) = dark_share {
-            self.shared.desk().figures.dark_share = Some(dark_share);
-        }
-        if left.is_none() && wanted.other.is_some() {
-            return self.begin(wanted, look, preview, Some(image));
-        }
-        let (image, other) = match left {
-            None => (image, None),
-            Some(left) => {
-                let difference = Difference::of(&left, &image);
-                (left, Some((image, difference)))
+    /// Hands over what is complete.
+    fn hand_over(&mut self, scene: &Scene, task: Task, left: Made, right: Option<(ColorImage, f64)>) {
+        let Task { wanted, quality, .. } = task;
+        let Made { image, request, total_ms } = left;
+        let (total_ms, other) = match right {
+            None => (total_ms, None),
+            Some((right, right_ms)) => {
+                let difference = Difference::of(&image, &right);
+                (right_ms, Some((right, difference)))
             }
         };
-        self.shown = Some((wanted.clone(), look));
-        let mut desk = self.shared.desk();
-        let kind = if look == Look::FULL { &mut desk.figures.full_ms } else { &mut desk.figures.preview_ms };
-        *kind = Some(total_ms);
-        desk.figures.light_rebuilds = light_rebuilds;
-        desk.figures.cached_light_volumes = scene.renderer.cached_light_volumes();
-        if let Some(splats) = splats {
-            desk.figures.splats = splats;
-        }
-        desk.figures.light_bytes = scene.renderer.light_bytes();
-        desk.figures.light_volumes = light_volumes;
-        desk.figures.gpu_bytes = scene.renderer.gpu_bytes();
-        desk.figures.refining = None;
-        desk.frame = Some(Frame { wanted, look, image, other });
-        drop(desk);
-        self.handed = true;
+        self.shown = Some((wanted.clone(), quality));
+        let renderer = &scene.renderer;
+        let mut mailbox = self.shared.mailbox();
+        let figures = &mut mailbox.figures;
+        let time = if quality == QualityLevel::FULL { &mut figures.full_ms } else { &mut figures.preview_ms };
+        *time = Some(total_ms);
+        figures.light_rebuilds = renderer.light_rebuilds().iter().sum();
+        figures.cached_light_volumes = renderer.cached_light_volumes();
+        figures.light_bytes = renderer.light_bytes();
+        figures.light_volumes = renderer.light_figures(&request);
+        figures.gpu_bytes = renderer.gpu_bytes();
+        figures.refining = None;
+        mailbox.frame = Some(Frame { wanted, quality, image, other });
+        drop(mailbox);
+        self.is_frame_pending = true;
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
-        Ok(())
     }
 
-    pub(crate) fn tell(&self, err: GpuError) {
-        self.shared.desk().error = Some(err);
+    pub(super) fn tell(&self, err: GpuError) {
+        self.shared.mailbox().error = Some(err);
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
     }
 }
 
-/// What to ask of the renderer for one of the wanted looks.
-fn request_of(scene: &Scene, settings: &Settings, wanted: &Wanted, look: Look) -> Request {
+/// Shows a picture again with another exposure: a display pass.
+fn expose(scene: &mut Scene, request: &Request, options: RenderOptions) -> Result<(), GpuError> {
+    let renderer: &mut Renderer = &mut scene.renderer;
+    let mut job = renderer.begin(&scene.dataset, request.clone(), &options)?;
+    while job.step()? {}
+    renderer.context().wait()
+}
+
+/// What to ask of the renderer for a look.
+fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: QualityLevel) -> Request {
+    let volume = scene.dataset.volume();
     Request {
-        volume: scene.volume.content_id(),
-        settings: look.settings(settings, &scene.volume.scene(), wanted.size),
-        size: look.size(wanted.size),
-        coarse: look.coarse,
+        volume: volume.content_id(),
+        settings: quality.settings(settings, &volume.scene(), size),
+        size: quality.size(size),
+        coarse: quality.coarse,
     }
 }
 
-/// Light volumes of full quality that a request would have to fill.
-fn missing(settled: Option<&Request>, full: &Request) -> Missing {
-    let needed = (0..full.settings.lights.len()).filter(|&light| LightKey::of(full, light).is_some()).count();
+/// Light volumes of full quality that a picture would have to fill.
+fn missing(settled: Option<&FrameKeys>, full: &FrameKeys) -> Missing {
     // The first look has filled them all.
     let Some(settled) = settled else { return Missing::default() };
-    let count = plan(Some(settled), full).lights.iter().filter(|&&rebuild| rebuild).count();
-    Missing { count, others: needed > count }
+    let count = full.lights_missing_in(settled);
+    Missing { count, others: full.lights.iter().flatten().count() > count }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::report::{Samples, round};
 use super::{Bench, WARM_UP, describe};
 use crate::cli::CliError;
-use crate::cli::scene::Loaded;
+use crate::data::Dataset;
 use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary};
 
 /// Share of the value range by which an edit moves all control points: enough for other cells to be seen.
@@ -15,7 +15,7 @@ impl Bench<'_> {
     /// All control points move a little, to and fro: tables, visible cells, light and picture are made anew.
     pub(super) fn transfer_edit(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let mut samples = Samples::default();
-        let (low, high) = self.loaded.volume.value_range();
+        let (low, high) = self.loaded.volume().value_range();
         let before: u64 = self.renderer.light_rebuilds().iter().sum();
         for frame in 0..WARM_UP + usize::from(self.args.frames) {
             let mut settings = self.settings.clone();
@@ -46,9 +46,9 @@ impl Bench<'_> {
         for frame in 0..=usize::from(self.args.frames).min(3) {
             let settings = &self.settings;
             let load = || {
-                let loaded: Loaded = self.args.look.load(name, context)?;
+                let loaded: Dataset = self.args.look.load(name, context)?;
                 let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
-                renderer.draw(&loaded.volume, &loaded.bricks, settings, self.args.size, &options)?;
+                renderer.draw(&loaded, settings, self.args.size, &options)?;
                 let report = renderer.report().clone();
                 Ok::<_, CliError>((report, renderer.gpu_bytes(), renderer.light_bytes()))
             };
@@ -61,10 +61,10 @@ impl Bench<'_> {
                 Ok::<_, CliError>(report)
             })?;
             if frame == 0 && wants("memory") {
-                let voxels = self.loaded.volume.voxel_count() as f64;
+                let voxels = self.loaded.volume().voxel_count() as f64;
                 let per_voxel = |bytes: u64| round(bytes as f64 / voxels);
                 let (all, light, peak) = bytes;
-                let volume = &self.loaded.volume;
+                let volume = &self.loaded.volume();
                 cases.push(json!({
                     "name": "memory",
                     "volume": volume.name(),

@@ -5,8 +5,7 @@ use serde_json::{Value, json};
 
 use super::report::{Samples, round};
 use crate::cli::CliError;
-use crate::cli::scene::Loaded;
-use crate::data::synthetic;
+use crate::data::{Dataset, synthetic};
 use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary};
 use crate::model::{ShadowAlgorithm, auto};
 
@@ -40,7 +39,7 @@ pub(super) fn run(
     let shaders = ShaderLibrary::new(context);
     let mut builds: [Vec<f64>; WAYS.len()] = Default::default();
     for n in SIZES {
-        let loaded = Loaded::new(synthetic::builtin("cloud", Some(n))?);
+        let loaded = Dataset::new(synthetic::builtin("cloud", Some(n))?);
         for ((algorithm, savings), builds) in WAYS.into_iter().zip(&mut builds) {
             if algorithm == ShadowAlgorithm::Raycast && n > LARGEST_FOR_RAYS {
                 continue;
@@ -50,8 +49,8 @@ pub(super) fn run(
             builds.push(samples.light_build());
             let mut case = json!({
                 "name": format!("growth-{}", label(algorithm, savings)),
-                "volume": loaded.volume.name(),
-                "dims": loaded.volume.dims(),
+                "volume": loaded.volume().name(),
+                "dims": loaded.volume().dims(),
                 "light_volume_ms": round(samples.light_build()),
             });
             if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
@@ -93,19 +92,24 @@ fn label(algorithm: ShadowAlgorithm, savings: Savings) -> String {
 /// Fills the light volume of a cloud's first look again and again; the light turns for each.
 fn light_builds(
     mut renderer: Renderer,
-    loaded: &Loaded,
+    loaded: &Dataset,
     algorithm: ShadowAlgorithm,
     savings: Savings,
     frames: usize,
     compiles: bool,
 ) -> Result<Samples, CliError> {
-    let mut settings = auto::first_settings(&loaded.volume, &loaded.histogram);
+    let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
     settings.shadows.algorithm = algorithm;
     // The picture does not matter here, but it is what asks for light.
     let size = [64; 2];
     let mut options = RenderOptions { timed: true, ..RenderOptions::default() };
     if savings == Savings::None {
-        options = RenderOptions { leaping: false, fill_everything: true, dark: 0.0, ..options };
+        options = RenderOptions {
+            empty_space_skipping: false,
+            fill_everything: true,
+            min_transmittance: 0.0,
+            ..options
+        };
     }
     let warm_up = usize::from(compiles);
     let mut samples = Samples::default();
@@ -116,7 +120,7 @@ fn light_builds(
             light.position = (turn * glam::DVec3::from(light.position)).into();
         }
         let mut draw = || {
-            renderer.draw(&loaded.volume, &loaded.bricks, &settings, size, &options)?;
+            renderer.draw(&loaded, &settings, size, &options)?;
             Ok::<_, CliError>(renderer.report().clone())
         };
         if frame < warm_up {

@@ -17,8 +17,9 @@ mod report;
 
 use report::{Samples, round};
 
-use super::scene::{Loaded, LookArgs, parse_size};
+use super::scene::{LookArgs, parse_size};
 use super::{CliError, print_line};
+use crate::data::Dataset;
 use crate::gpu::{Context, RenderOptions, Renderer};
 use crate::model::{Kernel, Resolution, Settings, ShadowAlgorithm};
 
@@ -38,8 +39,13 @@ pub(super) struct BenchArgs {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Volume: a file, or builtin:NAME[:N]; can be given several times
-    #[arg(long = "volume", value_name = "FILE", default_value = "builtin:chair:128")]
+    // Not a doc comment, here and at other volumes: rustdoc takes [:N] for a link.
+    #[arg(
+        long = "volume",
+        value_name = "FILE",
+        default_value = "builtin:chair:128",
+        help = "Volume: a file, or builtin:NAME[:N]; can be given several times"
+    )]
     volumes: Vec<String>,
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
@@ -93,7 +99,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
             bench.paper(&mut cases, &mut found)?;
         }
         let several = args.volumes.len() > 1;
-        let name = |ratio| if several { format!("{}: {ratio}", loaded.volume.name()) } else { ratio };
+        let name = |ratio| if several { format!("{}: {ratio}", loaded.volume().name()) } else { ratio };
         ratios.extend(found.into_iter().map(|(ratio, value)| (name(ratio), value)));
     }
     if wants("growth") {
@@ -127,7 +133,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
 
 struct Bench<'a> {
     args: &'a BenchArgs,
-    loaded: &'a Loaded,
+    loaded: &'a Dataset,
     renderer: Renderer,
     settings: Settings,
 }
@@ -138,7 +144,7 @@ impl Bench<'_> {
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
         let size = self.args.size;
         let mut draw = || {
-            self.renderer.draw(&self.loaded.volume, &self.loaded.bricks, settings, size, &options)?;
+            self.renderer.draw(self.loaded, settings, size, &options)?;
             Ok::<_, CliError>(self.renderer.report().clone())
         };
         match samples {
@@ -201,7 +207,7 @@ impl Bench<'_> {
 
 fn describe(
     name: &str,
-    loaded: &Loaded,
+    loaded: &Dataset,
     size: [u32; 2],
     settings: &Settings,
     samples: &Samples,
@@ -209,8 +215,8 @@ fn describe(
 ) -> Value {
     let mut case = json!({
         "name": name,
-        "volume": loaded.volume.name(),
-        "dims": loaded.volume.dims(),
+        "volume": loaded.volume().name(),
+        "dims": loaded.volume().dims(),
         "size": size,
         "light_rebuilds": rebuilds,
         "rendered": {
@@ -219,11 +225,11 @@ fn describe(
             "light_kernel": settings.shadows.kernel,
             "light_slab": settings.shadows.slab,
             "light_resolution": settings.shadows.resolution,
-            "file_dims": loaded.volume.file_dims(),
+            "file_dims": loaded.volume().file_dims(),
         },
         "full_quality": is_full_quality(settings)
             && samples.were_whole(size)
-            && loaded.volume.dims() == loaded.volume.file_dims(),
+            && loaded.volume().dims() == loaded.volume().file_dims(),
     });
     if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
         case.extend(timings);

@@ -18,8 +18,9 @@ const F_M: f64 = 6.0;
 pub(super) fn voxels(grid: Grid, attempt: Attempt<'_>, control: &LoadControl) -> Result<Vec<f32>, LoadError> {
     let centres: Vec<f64> = (0..grid.n).map(|i| grid.centre(i)).collect();
     // The ripple depends on x and y only: one plane of it serves all slices.
+    let radius = |x: f64, y: f64| (x * x + y * y).sqrt();
     let ripples: Vec<f64> =
-        centres.iter().flat_map(|&y| centres.iter().map(move |&x| ripple(x.hypot(y)))).collect();
+        centres.iter().flat_map(|&y| centres.iter().map(move |&x| ripple(radius(x, y)))).collect();
     grid.fill(attempt, control, |z, slice| {
         for (voxel, ripple) in slice.iter_mut().zip(&ripples) {
             *voxel = density(centres[z], *ripple) as f32;

@@ -33,6 +33,9 @@ pub enum GpuError {
         /// What the user can do.
         help: &'static str,
     },
+    /// Something was read back that was never drawn.
+    #[error("there is no {0} to read back: it was never drawn")]
+    NothingDrawn(&'static str),
     /// A bug of ours or of the driver.
     #[error("the graphics driver refused: {0}")]
     Refused(String),

@@ -1,68 +1,68 @@
-//! The floor pass: the light on the ground under the volume.
+//! The floor pass: the light on the floor under the volume.
 
 use super::gather::{EyePass, pack_light};
 use crate::gpu::light::raycast as light_raycast;
+use crate::gpu::output::target::Target;
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
 use crate::gpu::volume::{Gpu, Levels, entry};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
-use crate::model::{Ground, Light, MAX_LIGHTS, Settings, linear_from_srgb};
-use crate::plan::ray_reach;
+use crate::model::{Floor, MAX_LIGHTS, Settings, linear_from_srgb};
+use crate::plan::{LitLights, ray_reach};
 
 /// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
 /// from the eye.
 pub(crate) const COST: u32 = 2;
 
+/// What the floor pass works with besides the volume.
+#[derive(Clone, Copy)]
+pub(crate) struct FloorInputs<'a> {
+    pub tables: &'a Tables,
+    pub eye: &'a EyePass,
+    pub lit: &'a LitLights,
+    pub settings: &'a Settings,
+    pub options: &'a RenderOptions,
+}
+
 /// Draws some rows of the floor, where the picture of the volume does not cover it.
 pub(crate) fn draw(
     gpu: Gpu<'_>,
-    tables: &Tables,
-    (eye, settings): (&EyePass, &Settings),
-    options: &RenderOptions,
-    (picture, floor): (&wgpu::TextureView, &wgpu::TextureView),
+    FloorInputs { tables, eye, lit, settings, options }: FloorInputs<'_>,
+    target: &Target,
     rows: std::ops::Range<u32>,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, .. } = gpu;
     let frame = eye.frame();
-    let attenuates = settings.shadows.algorithm.is_on();
-    let mut lights: Vec<Light> = settings
-        .lights
-        .iter()
-        .filter(|light| light.on)
-        .map(|light| light.in_world(&settings.camera))
-        .collect();
-    lights.truncate(MAX_LIGHTS);
-    lights.sort_by_key(|light| !(attenuates && light.needs_volume()));
-    let shadowed = lights.iter().filter(|light| attenuates && light.needs_volume()).count();
-    let pipeline = shaders.pipeline("eye/floor.wgsl", &constants(settings, (lights.len(), shadowed)))?;
+    let count = (lit.all().len(), lit.shadowed().len());
+    let pipeline = shaders.pipeline("eye/floor.wgsl", &constants(settings, count))?;
     let tiles = pass::tiles([frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
-    let uniform = uniforms::Ground {
+    let uniform = uniforms::Floor {
         first_row: rows.start,
         end_row: rows.end,
         runs,
-        ..uniform(eye, &volume.scene, settings, &lights)
+        ..uniform(eye, &volume.scene, settings, lit)
     };
-    let uniform = gpu.uniform("Ground::uniform", uniform);
+    let uniform = gpu.uniform("Floor::uniform", uniform);
     let own = gpu.bind(
-        "Ground::bind_group",
+        "Floor::bind_group",
         &pipeline,
         0,
         &[
             entry(0, uniform.as_entire_binding()),
             entry(1, tables.lighting.buffer.as_entire_binding()),
             view_entry(2, &tables.light_distances),
-            view_entry(3, picture),
-            view_entry(4, floor),
+            view_entry(3, &target.light.value.plane.view),
+            view_entry(4, &target.floor.value.view),
         ],
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
-    let dilation = if options.leaping { seen } else { EVERYWHERE };
+    let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
-    pass::dispatch(encoder, "Ground::pass", &pipeline, &[&own, &of_volume], tiles);
+    pass::dispatch(encoder, "Floor::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
 }
 
@@ -75,17 +75,17 @@ pub(crate) fn constants(settings: &Settings, (lights, shadowed): (usize, usize))
 }
 
 /// What the shader knows of the eye, the floor and the lights; no rows yet.
-fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lights: &[Light]) -> uniforms::Ground {
+fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLights) -> uniforms::Floor {
     let uniforms::Eye { frame, shading, space, shading_cut, .. } = eye.uniform();
-    let Ground { on: _, height, radius, color, opacity, shadow_only } = settings.ground;
+    let Floor { on: _, height, radius, color, opacity, shadow_only } = settings.floor;
     // z of a scene point is this row of the map from index space.
     let [a, b, c, offset] = space.scene_from_index_z;
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
     let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
-    for (slot, light) in packed.iter_mut().zip(lights) {
-        *slot = pack_light(light, None, scene, settings);
+    for (slot, light) in packed.iter_mut().zip(lit.all()) {
+        *slot = pack_light(&light.light, None, scene, settings);
     }
-    uniforms::Ground {
+    uniforms::Floor {
         frame,
         space,
         shading,
@@ -94,7 +94,7 @@ fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lights: &[Lig
         color: color.map(|c| linear_from_srgb(f64::from(c)) as f32),
         opacity: opacity as f32,
         radius: radius as f32,
-        fade: (radius * (1.0 - Ground::WHOLE)) as f32,
+        fade: (radius * (1.0 - Floor::WHOLE)) as f32,
         light_share: (1.0 / balance.max(1e-9)) as f32,
         shadow_only: f32::from(u8::from(shadow_only)),
         first_row: 0,

@@ -1,6 +1,6 @@
 //! The eye pass: from density and attenuation to linear light.
 
-use crate::gpu::light::combine::CollapsedLight;
+use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::{LightVolume, light_bind_group};
 use crate::gpu::resources::kernel::{
     classification_constant, cut_constant, kernel_constants, quadrature_constant,
@@ -13,11 +13,19 @@ use crate::gpu::volume::{Gpu, Levels, entry};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{
-    Deposit, Gradients, Light, LightKind, MAX_LIGHTS, Projection, Sampling, Settings, ShadowAlgorithm,
+    Deposit, Gradients, LightKind, MAX_LIGHTS, Projection, Sampling, SceneLight, Settings, ShadowAlgorithm,
     Shadows,
 };
 use crate::plan::eye_frame;
-use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach};
+use crate::plan::{LitLight, PixelWindow, SheetFrame, ray_reach, sample_reach};
+
+/// A light, and the volume that says how much of it is left.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LightInput<'a> {
+    pub lit: &'a LitLight,
+    /// `None` where nothing attenuates it, or rays say how much.
+    pub volume: Option<&'a LightVolume>,
+}
 
 /// Everything that the eye pass of one picture needs besides the volume.
 #[derive(Debug)]
@@ -34,40 +42,27 @@ pub(crate) struct EyePass {
 }
 
 impl EyePass {
-    /// Sets up the pass. `lights` gives, for each light of the settings, its attenuation volume, unless
-    /// they are collapsed.
+    /// Sets up the pass under some lights, shadowed ones first; those that are combined are not among them.
     pub(crate) fn new(
         scene: &SceneSpace,
         settings: &Settings,
         window: PixelWindow,
-        lights: &[Option<&LightVolume>],
-        collapsed: Option<&CollapsedLight>,
+        lights: &[LightInput<'_>],
+        combined: Option<&CombinedLight>,
         options: &RenderOptions,
     ) -> Self {
         let frame = eye_frame(&settings.camera, scene, window, settings.sampling.slab);
         let direct = settings.shadows.algorithm == ShadowAlgorithm::Direct;
-        let mut on: Vec<(Light, Option<&LightVolume>)> = settings
-            .lights
-            .iter()
-            .map(|light| light.in_world(&settings.camera))
-            .zip(lights.iter().copied().chain(std::iter::repeat(None)))
-            // The diffuse light of those that cast shadows is in one volume.
-            .filter(|(light, _)| light.on && !(collapsed.is_some() && light.needs_volume()))
-            .take(MAX_LIGHTS)
-            .collect();
-        let is_shadowed =
-            |light: &Light, volume: Option<&LightVolume>| volume.is_some() || direct && light.needs_volume();
-        on.sort_by_key(|(light, volume)| !is_shadowed(light, *volume));
-        let shadowed = on.iter().filter(|(light, volume)| is_shadowed(light, *volume)).count();
+        let shadowed = lights.iter().filter(|input| input.lit.is_shadowed()).count();
         let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
-        for (slot, (light, volume)) in packed.iter_mut().zip(&on) {
-            *slot = pack_light(light, *volume, scene, settings);
+        for (slot, input) in packed.iter_mut().zip(lights) {
+            *slot = pack_light(&input.lit.light, input.volume, scene, settings);
         }
         let stretch_level = frame.max_stretch_level();
         let mut constants =
-            constants(&settings.sampling, &settings.shadows, stretch_level > 0.0, (on.len(), shadowed));
-        if collapsed.is_some() {
-            constants.push(("COLLAPSED", 1.0));
+            constants(&settings.sampling, &settings.shadows, stretch_level > 0.0, (lights.len(), shadowed));
+        if combined.is_some() {
+            constants.push(("COMBINED", 1.0));
         }
         let (remains, shading_cut) = (settings.cuts.seen(), settings.cuts.shading());
         // Rays to lights are the eye pass's own.
@@ -84,13 +79,13 @@ impl EyePass {
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
             end_row: window.size[1],
-            dilation: if options.leaping { scatter_dilation(&frame) } else { EVERYWHERE },
-            dark: options.dark,
+            dilation: if options.empty_space_skipping { scatter_dilation(&frame) } else { EVERYWHERE },
+            dark: options.min_transmittance,
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
             runs: 1,
             pad1: 0,
-            collapsed_lookup: collapsed.map_or([0.0; 3], CollapsedLight::lookup),
+            combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
             pad2: 0.0,
             seen: uniforms::Cut::new(&remains.region(scene)),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
@@ -100,7 +95,7 @@ impl EyePass {
         if direct {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
-        let dilation = if options.leaping { i32::from(seen) } else { EVERYWHERE };
+        let dilation = if options.empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
         // Between levels of the pyramid differences and interpolation do not commute exactly.
         let takes_gradients = stretch_level <= 0.0 || options.preview;
         let levels = Levels::of(stretch_level > 0.0);
@@ -132,13 +127,13 @@ impl EyePass {
     pub(crate) fn scatter_constants(&self) -> Vec<(&'static str, f64)> {
         self.constants
             .iter()
-            .filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED" | "COLLAPSED" | "CUT"))
+            .filter(|(name, _)| matches!(*name, "LIGHTS" | "SHADOWED" | "COMBINED" | "CUT"))
             .copied()
             .collect()
     }
 
-    /// Draws some rows of the picture. `attenuation` holds the volumes of the shadowed lights, in
-    /// the order in which the settings list those lights.
+    /// Draws some rows of the picture. `attenuation` holds the volumes of its lights in their order, or the
+    /// combined one.
     pub(crate) fn draw(
         &self,
         gpu: Gpu<'_>,
@@ -168,7 +163,7 @@ impl EyePass {
                 view_entry(3, picture),
                 entry(4, tables.lighting.buffer.as_entire_binding()),
                 view_entry(5, &tables.light_distances),
-                view_entry(6, gradients.map_or(gpu.nothing, |views| self.levels.choose(views))),
+                view_entry(6, gradients.map_or(gpu.placeholder, |views| self.levels.choose(views))),
             ],
         );
         let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels);
@@ -205,9 +200,9 @@ pub(crate) fn gradient_constant(takes_gradients: bool) -> (&'static str, f64) {
     ("GRADIENT_TEXTURE", f64::from(u8::from(takes_gradients)))
 }
 
-/// A light whose position refers to the scene, for the shaders.
+/// A light for the shaders.
 pub(crate) fn pack_light(
-    light: &Light,
+    light: &SceneLight,
     volume: Option<&LightVolume>,
     scene: &SceneSpace,
     settings: &Settings,
@@ -257,6 +252,6 @@ pub(crate) fn pack_shading(
         gain: shadows.gain as f32,
         bias: (shadows.bias_voxels * scene.smallest_edge()) as f32,
         ray_step: shadows.ray_step(scene) as f32,
-        dark_depth: options.dark_depth(),
+        dark_depth: options.max_optical_depth(),
     }
 }

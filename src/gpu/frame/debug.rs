@@ -2,23 +2,32 @@
 
 use std::sync::Arc;
 
-use crate::data::{Bricks, Volume};
+use crate::data::Dataset;
 use crate::gpu::light::march::{Sheets, march};
-use crate::gpu::resources::pool::Recycled;
+use crate::gpu::light::volume::LightVolume;
+use crate::gpu::output::target::Target;
 use crate::gpu::resources::readback::{Attenuation, read_floats, read_texture};
+use crate::gpu::resources::tools::Tools;
 use crate::gpu::scatter::light::LightScatter;
+use crate::gpu::scatter::voxels::Scattering;
+use crate::gpu::volume::Gpu;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::Settings;
-use crate::plan::{FARTHEST, LightKey, ReadTiles, Request, light_views};
+use crate::plan::{FARTHEST, LightKey, MarchTiles, Request, light_views};
 
 impl Renderer {
+    /// What is shown now.
+    pub(super) fn shown(&self) -> Result<&Target, GpuError> {
+        let front = &self.targets.front;
+        if front.shown.is_complete() { Ok(front) } else { Err(GpuError::NothingDrawn("picture")) }
+    }
+
     /// Reads back what is shown now: sRGB bytes, RGBA, row by row from the top left.
     ///
     /// # Errors
     /// When there is no picture or the GPU cannot do it.
     pub fn read_shown(&self) -> Result<Vec<u8>, GpuError> {
-        let none = || GpuError::Refused("no picture was drawn".to_owned());
-        read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.shown)
+        read_texture(self.context(), &self.shown()?.shown.value.texture)
     }
 
     /// Reads back the light of what is shown now: linear, premultiplied RGBA before tone mapping, row by
@@ -27,8 +36,7 @@ impl Renderer {
     /// # Errors
     /// As [`Self::read_shown`].
     pub fn read_light(&self) -> Result<Vec<[f32; 4]>, GpuError> {
-        let none = || GpuError::Refused("no picture was drawn".to_owned());
-        let bytes = read_texture(&self.context, &self.front.as_ref().ok_or_else(none)?.picture)?;
+        let bytes = read_texture(self.context(), &self.shown()?.light.value.plane.texture)?;
         let float = |word: &[u8]| f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
         let texels = bytes.chunks_exact(16);
         Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect())
@@ -39,12 +47,21 @@ impl Renderer {
     /// # Errors
     /// As [`Self::read_shown`]; when there is no floor.
     pub fn read_floor(&self) -> Result<Vec<[f32; 4]>, GpuError> {
-        let none = || GpuError::Refused("no floor was drawn".to_owned());
-        let target = self.front.as_ref().filter(|target| target.shape.has_floor);
-        let bytes = read_texture(&self.context, &target.ok_or_else(none)?.floor)?;
+        let target = self.shown()?;
+        if !target.has_floor() {
+            return Err(GpuError::NothingDrawn("floor"));
+        }
+        let bytes = read_texture(self.context(), &target.floor.value.texture)?;
         let float = |word: &[u8]| half::f16::from_le_bytes([word[0], word[1]]).to_f32();
         let texels = bytes.chunks_exact(8);
         Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[2 * c..]))).collect())
+    }
+
+    /// The complete volume of a light, if it is kept.
+    fn light_volume(&self, request: &Request, light: usize) -> Option<&LightVolume> {
+        let key = LightKey::of(request, light)?;
+        let lights = &self.loaded.as_ref()?.value.lights;
+        lights.iter().find(|known| known.holds(&key)).map(|known| &known.value)
     }
 
     /// Reads back the attenuation volume that a light of the last picture used.
@@ -52,26 +69,20 @@ impl Renderer {
     /// # Errors
     /// When the GPU cannot do it. `None` when the light has no volume.
     pub fn attenuation(&self, request: &Request, light: usize) -> Result<Option<Attenuation>, GpuError> {
-        let Some(key) = LightKey::of(request, light) else { return Ok(None) };
-        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
-            return Ok(None);
-        };
-        let values = read_floats(&self.context, &found.texture)?;
+        let Some(found) = self.light_volume(request, light) else { return Ok(None) };
+        let values = read_floats(self.context(), &found.texture)?;
         Ok(Some(Attenuation { dims: found.dims, divisor: found.divisor, values }))
     }
 
     /// Overwrites a light's attenuation volume, which must be complete. Tests use it to see whether
     /// a change refills it.
     #[doc(hidden)]
-    pub fn corrupt_attenuation(&self, request: &Request, light: usize) -> bool {
-        let Some(key) = LightKey::of(request, light) else { return false };
-        let Some(found) = self.lights.iter().find(|light| light.complete && light.key == key) else {
-            return false;
-        };
+    pub fn corrupt_attenuation(&mut self, request: &Request, light: usize) -> bool {
+        let Some(found) = self.light_volume(request, light) else { return false };
         let texel = found.texture.format().block_copy_size(None).unwrap_or(2);
         let [nx, ny, _] = found.dims.map(|n| n as u32);
         let zeros = vec![0u8; (found.bytes()) as usize];
-        self.context.queue.write_texture(
+        self.context().queue.write_texture(
             found.texture.as_image_copy(),
             &zeros,
             wgpu::TexelCopyBufferLayout {
@@ -81,6 +92,7 @@ impl Renderer {
             },
             found.texture.size(),
         );
+        self.targets.forget();
         true
     }
 
@@ -92,45 +104,42 @@ impl Renderer {
     #[doc(hidden)]
     pub fn light_sheets(
         &mut self,
-        volume: &Arc<Volume>,
-        bricks: &Arc<Bricks>,
+        dataset: &Dataset,
         settings: &Settings,
         light: usize,
         view: usize,
     ) -> Result<Vec<f32>, GpuError> {
-        self.draw(volume, bricks, settings, [8, 8], &RenderOptions::default())?;
-        let (gpu, tables) = self.gpu()?;
-        let lamp = settings.lights[light].in_world(&settings.camera);
+        let size = [8, 8];
+        self.draw(dataset, settings, size, &RenderOptions::default())?;
+        let request =
+            Request { volume: dataset.volume().content_id(), settings: settings.clone(), size, coarse: None };
+        let none = || GpuError::NothingDrawn("light volume");
+        let target = self.light_volume(&request, light).ok_or_else(none)?;
+        let loaded = &self.loaded.as_ref().ok_or_else(none)?.value;
+        let (gpu, tables) = (Gpu::new(&self.tools, &loaded.volume), &loaded.tables.value);
+        let lamp = settings.lights[light].in_scene(&settings.camera);
         let geometry = &light_views(&lamp, &settings.shadows, &gpu.volume.scene)[view];
         let count = geometry.frame.slab_count;
-        let sheets = Sheets::new(&self.context, &Recycled::default(), geometry, count, i32::from(FARTHEST))?;
+        // Tools of its own: its sheets are not left to later pictures.
+        let tools = Tools::new(self.context(), self.tools.shaders.clone())?;
+        let sheets = Sheets::new(&tools, geometry, count, i32::from(FARTHEST))?;
         let mut encoder =
-            self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            self.context().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let lamp = (&lamp, settings);
-        if settings.scatters() {
-            let (voxels, counter) = self.scattering()?;
-            let target = self.lights.first().ok_or_else(|| GpuError::Refused("no light".to_owned()))?;
+        if let Some(voxels) = loaded.voxels.as_ref().filter(|_| settings.scatters()) {
+            let scattering = Scattering::new(self.context(), Arc::clone(voxels));
             let of_light = (settings, target);
             let options = RenderOptions::default();
-            let scatter = LightScatter::new(gpu, voxels, tables, geometry, of_light, None, &options)?;
-            scatter.march(
-                gpu,
-                voxels,
-                counter,
-                &tables.lighting.buffer,
-                lamp,
-                geometry,
-                &sheets,
-                0..count,
-                &mut encoder,
-            )?;
+            let scatter = LightScatter::new(gpu, &scattering, tables, geometry, of_light, None, &options)?;
+            let table = &tables.lighting.buffer;
+            scatter.march(gpu, &scattering, table, lamp, geometry, &sheets, 0..count, &mut encoder)?;
         } else {
-            let tiles = ReadTiles::all(geometry, sheets.chunk);
-            march(gpu, tables, lamp, geometry, &sheets, ((0, count), tiles.of_chunk(0)), &mut encoder)?;
+            let tiles = MarchTiles::all(geometry, sheets.chunk);
+            march(gpu, tables, lamp, geometry, &sheets, 0..count, tiles.of_chunk(0), &mut encoder)?;
         }
-        self.context.queue.submit([encoder.finish()]);
+        self.context().queue.submit([encoder.finish()]);
         // Four slabs to a texel, and room beside the sheets.
-        let texels = read_floats(&self.context, &sheets.ring)?;
+        let texels = read_floats(self.context(), &sheets.ring)?;
         let (columns, rows) = (sheets.ring.width() as usize, sheets.ring.height() as usize);
         let [width, height] = geometry.frame.size.map(|n| n as usize);
         let texels = texels.as_slice();

@@ -2,303 +2,317 @@
 
 use std::ops::Range;
 
-use super::job::{Job, LightStep, Stage, Step};
-use crate::gpu::eye::floor as ground;
-use crate::gpu::eye::gather::EyePass;
+use super::job::Job;
+use super::light_build::{CurrentView, LightBuild};
+use super::plan::inputs;
+use super::step::{LightStep, Product, Step};
+use super::targets::shown_key;
+use crate::gpu::GpuError;
+use crate::gpu::eye::floor;
 use crate::gpu::light::backproject::{Schedule, backproject};
 use crate::gpu::light::march::{Sheets, march};
 use crate::gpu::light::raycast::raycast;
-use crate::gpu::light::volume::LightVolume;
 use crate::gpu::output::display::display;
 use crate::gpu::resources::listed_bricks::listed;
 use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::scatter::light::LightScatter;
-use crate::gpu::scatter::voxels::ScatterVoxels;
-use crate::gpu::volume::Gpu;
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
-use crate::gpu::volume::{gradients, prefilter};
-use crate::gpu::{GpuError, Renderer};
+use crate::gpu::volume::transfer_tables::EVERYWHERE;
+use crate::gpu::volume::{Gpu, gradients, prefilter};
 use crate::plan::reverse_reach;
 
-/// What went away between `begin` and `step`.
-fn out_of_date() -> GpuError {
-    GpuError::Refused("the job is out of date".to_owned())
-}
-
-impl Renderer {
+impl Job<'_> {
     /// Records one step.
-    pub(crate) fn encode(
-        &mut self,
-        job: &mut Job,
-        step: &Step,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
+    pub(super) fn encode(&mut self, step: &Step, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
+        let context = &self.tools.context;
+        let volume = &self.loaded.value.volume;
         match step {
             Step::Upload(slices) => {
-                self.volume.as_ref().ok_or_else(out_of_date)?.upload(&self.context, slices.clone());
+                self.report.runs.volume += 1;
+                volume.upload(context, slices.clone());
                 Ok(())
             }
             Step::Pyramid(level, bricks) => {
-                let volume = self.volume.as_ref().ok_or_else(out_of_date)?;
-                prefilter::fill(&self.context, &self.shaders, volume, *level, bricks, encoder)?;
-                self.uploaded = job.steps.front().is_none_or(|next| next.stage() != Stage::Pyramid);
-                Ok(())
+                self.report.runs.volume += 1;
+                prefilter::fill(context, &self.tools.shaders, volume, *level, bricks, encoder)
             }
             Step::Gradients(level, bricks) => {
-                let volume = self.volume.as_ref().ok_or_else(out_of_date)?;
-                gradients::fill(&self.context, &self.shaders, volume, *level, bricks, encoder)?;
-                self.uploaded = job.steps.front().is_none_or(|next| next.stage() != Stage::Pyramid);
-                Ok(())
+                self.report.runs.volume += 1;
+                gradients::fill(context, &self.tools.shaders, volume, *level, bricks, encoder)
             }
-            Step::March(light) => self.encode_march(job, light, encoder),
-            Step::Backproject(light) => self.encode_backproject(job, light, encoder),
-            Step::Raycast(build, bricks) => self.encode_raycast(job, *build, bricks, encoder),
-            Step::Collapse(bricks) => self.encode_collapse(job, bricks, encoder),
-            Step::Eye(_) | Step::ScatterEye(_) => self.encode_eye(job, step, encoder),
-            Step::Ground(rows) => {
-                let target = self.back.as_ref().ok_or_else(out_of_date)?;
-                let (gpu, tables) = self.gpu()?;
-                let eye = job.eye.as_ref().ok_or_else(out_of_date)?;
-                let of = (eye, &job.request.settings);
-                let views = (&target.picture_view, &target.floor_view);
-                ground::draw(gpu, tables, of, &self.options, views, rows.clone(), encoder)
+            Step::March(light) => self.encode_march(light, encoder),
+            Step::Backproject(light) => self.encode_backproject(light, encoder),
+            Step::Raycast(build, bricks) => self.encode_raycast(*build, bricks, encoder),
+            Step::Combine(bricks) => self.encode_combine(bricks, encoder),
+            Step::Eye(rows) => self.encode_eye(rows, encoder),
+            Step::ScatterEye(slabs) => self.encode_scatter_eye(slabs, encoder),
+            Step::Floor(rows) => {
+                self.report.runs.floor += 1;
+                let target = self.targets.get(self.role);
+                let gpu = Gpu::new(self.tools, volume);
+                let inputs = floor::FloorInputs {
+                    tables: &self.loaded.value.tables.value,
+                    eye: &self.eye,
+                    lit: &self.lit,
+                    settings: &self.request.settings,
+                    options: &self.options,
+                };
+                floor::draw(gpu, inputs, target, rows.clone(), encoder)
             }
             Step::Display => {
-                let target = self.back.as_ref().ok_or_else(out_of_date)?;
-                let output = &job.request.settings.output;
-                let how = (&self.options, job.transparent, job.exposure);
-                display((&self.context, &self.recycled), &self.shaders, output, how, target, encoder)
+                self.report.runs.display += 1;
+                let target = self.targets.get(self.role);
+                display(self.tools, &self.request.settings.output, &self.options, target, encoder)
             }
+            Step::Finish(_) => Ok(()),
         }
     }
 
-    /// What all passes over the volume work with.
-    pub(crate) fn gpu(&self) -> Result<(Gpu<'_>, &Tables), GpuError> {
-        let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else { return Err(out_of_date()) };
-        let gpu = Gpu {
-            context: &self.context,
-            shaders: &self.shaders,
-            volume,
-            nothing: &self.nothing,
-            recycled: &self.recycled,
-        };
-        Ok((gpu, tables))
+    /// Notes what is complete now.
+    pub(super) fn finish_products(&mut self) {
+        while let Some(Step::Finish(product)) = self.steps.front() {
+            let target = self.targets.get_mut(self.role);
+            match product {
+                Product::Volume => self.loaded.finish(),
+                Product::Light(build) => {
+                    let light = &mut self.loaded.value.lights[self.builds[*build].slot];
+                    light.value.finish();
+                    light.finish();
+                }
+                Product::CombinedLight => {
+                    if let Some(combined) = &mut self.loaded.value.combined {
+                        combined.finish();
+                    }
+                    let volumes: Vec<_> = self.builds_keys();
+                    self.loaded.value.forget_combined(&volumes);
+                    self.slots.clear();
+                    self.tools.pool.forget_groups();
+                }
+                Product::Picture => target.light.finish(),
+                Product::Floor => target.floor.finish(),
+                Product::Shown => {
+                    target.shown.restart(Some(shown_key(&self.keys)));
+                    target.shown.finish();
+                    self.targets.show(self.role);
+                }
+            }
+            self.steps.pop_front();
+        }
     }
 
-    /// What scattering passes work with besides.
-    pub(crate) fn scattering(&self) -> Result<(&ScatterVoxels, &wgpu::Buffer), GpuError> {
-        self.voxels.as_ref().zip(self.splats.as_ref()).ok_or_else(out_of_date)
+    /// Keys of the volumes of its lights.
+    fn builds_keys(&self) -> Vec<Option<crate::plan::LightKey>> {
+        let lights = &self.loaded.value.lights;
+        self.slots.iter().map(|slot| slot.map(|slot| lights[slot].key().clone())).collect()
+    }
+
+    /// The march through one view of a light, set up when its first step comes.
+    fn current_view<'b>(
+        &mut self,
+        build: &'b mut LightBuild,
+        view: usize,
+    ) -> Result<&'b mut CurrentView, GpuError> {
+        if let Some(current) = build.current.take() {
+            return Ok(build.current.insert(current));
+        }
+        let settings = &self.request.settings;
+        let geometry = &build.views[view];
+        let loaded = &self.loaded.value;
+        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
+        let light = &loaded.lights[build.slot].value;
+        let skips = self.options.empty_space_skipping;
+        let reach = if skips { i32::from(build.reach) } else { EVERYWHERE };
+        let mut sheets = Sheets::new(self.tools, geometry, build.chunks[view], reach)?;
+        sheets.min_transmittance = self.options.min_transmittance;
+        // A volume as pictures have it serves them, too.
+        sheets.preview = self.options.preview && build.is_coarse;
+        let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + sheets.bytes();
+        let scatter = match &self.scattering {
+            Some(scattering) if build.scatters => {
+                let read = build.read.as_ref().filter(|_| skips);
+                let of_light = (settings, light);
+                let fresh =
+                    LightScatter::new(gpu, scattering, tables, geometry, of_light, read, &self.options)?;
+                bytes += fresh.bytes();
+                Some(fresh)
+            }
+            _ => None,
+        };
+        let scene = &gpu.volume.scene;
+        // Scattered sheets are not marched in tiles.
+        let beyond = if build.scatters || sheets.reach == EVERYWHERE {
+            EVERYWHERE
+        } else {
+            i32::from(reverse_reach(&build.views, scene, light.divisor))
+        };
+        let schedule = Schedule::new(scene, geometry, light, sheets.chunk, beyond);
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
+        Ok(build.current.insert(CurrentView { sheets, schedule, scatter }))
+    }
+
+    /// Notes that the filling of a light volume begins.
+    fn begin_light(&mut self, build: &LightBuild) {
+        self.report.runs.light_volumes += 1;
+        self.fills[build.index] += 1;
+        self.loaded.value.lights[build.slot].value.begin();
     }
 
     fn encode_march(
         &mut self,
-        job: &mut Job,
-        LightStep { build, view, begin, part }: &LightStep,
+        LightStep { build: at, view, begin, part }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let settings = &job.request.settings;
-        let build = &mut job.builds[*build];
-        let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
-        let (gpu, tables) = self.gpu()?;
-        let mut peak = 0;
-        if *begin == 0 && part.0 == 0 {
-            let light = self.lights.iter().find(|light| light.key == build.key).ok_or_else(out_of_date)?;
-            if *view == 0 {
-                light.light_up(gpu, &build.around, encoder)?;
+        let mut builds = std::mem::take(&mut self.builds);
+        let result = self.march_view(&mut builds[*at], *view, *begin, *part, encoder);
+        self.builds = builds;
+        result
+    }
+
+    fn march_view(
+        &mut self,
+        build: &mut LightBuild,
+        view: usize,
+        begin: u32,
+        part: crate::gpu::resources::part::Part,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if view == 0 && begin == 0 && part.is_first() {
+            let loaded = &self.loaded.value;
+            let gpu = Gpu::new(self.tools, &loaded.volume);
+            loaded.lights[build.slot].value.clear_margin(gpu, &build.margin, encoder)?;
+            self.begin_light(build);
+        }
+        let chunk = build.chunks[view];
+        self.current_view(build, view)?;
+        let Some(CurrentView { sheets, schedule, scatter }) = &build.current else { return Ok(()) };
+        let geometry = &build.views[view];
+        let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
+        let loaded = &self.loaded.value;
+        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
+        let lamp = (&build.light, &self.request.settings);
+        match (scatter, &self.scattering) {
+            (Some(scatter), Some(scattering)) => {
+                let table = &tables.lighting.buffer;
+                scatter.march(gpu, scattering, table, lamp, geometry, sheets, slabs, encoder)
             }
-            let reach = if self.options.leaping { i32::from(build.reach) } else { EVERYWHERE };
-            let mut sheets = Sheets::new(&self.context, &self.recycled, geometry, chunk, reach)?;
-            sheets.dark = self.options.dark;
-            // A volume as pictures have it serves them, too.
-            sheets.preview = self.options.preview && light.key.resolution() != settings.shadows.resolution;
-            peak = self.gpu_bytes() + sheets.bytes();
-            if build.scatters {
-                let of_light = (settings, light);
-                let (voxels, _) = self.scattering()?;
-                let read = build.read.as_ref().filter(|_| self.options.leaping);
-                let scatter =
-                    LightScatter::new(gpu, voxels, tables, geometry, of_light, read, &self.options)?;
-                peak += scatter.bytes();
-                build.scatter = Some(scatter);
+            _ => {
+                let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, part);
+                march(gpu, tables, lamp, geometry, sheets, slabs, tiles, encoder)
             }
-            let scene = &gpu.volume.scene;
-            // Scattered sheets are not marched in tiles.
-            let beyond = match sheets.reach {
-                _ if build.scatters => EVERYWHERE,
-                EVERYWHERE => EVERYWHERE,
-                _ => i32::from(reverse_reach(&build.views, scene, light.divisor)),
-            };
-            let schedule = Schedule::new(scene, geometry, light, (sheets.chunk, beyond));
-            build.current = Some((sheets, schedule));
         }
-        let Some((sheets, schedule)) = &build.current else { return Ok(()) };
-        let slabs = *begin..(*begin + chunk).min(geometry.frame.slab_count);
-        let lamp = (&build.lamp, settings);
-        if let Some(scatter) = &build.scatter {
-            let (voxels, counter) = self.scattering()?;
-            scatter.march(
-                gpu,
-                voxels,
-                counter,
-                &tables.lighting.buffer,
-                lamp,
-                geometry,
-                sheets,
-                slabs,
-                encoder,
-            )?;
-        } else {
-            let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, *part);
-            march(gpu, tables, lamp, geometry, sheets, ((slabs.start, slabs.end), tiles), encoder)?;
-        }
-        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
-        if *begin == 0 && part.0 == 0 && *view == 0 {
-            self.rebuilds[build.light] += 1;
-            self.lights.iter_mut().filter(|light| light.key == build.key).for_each(LightVolume::begin);
-        }
-        Ok(())
     }
 
     fn encode_backproject(
         &mut self,
-        job: &mut Job,
-        LightStep { build, view, begin, part }: &LightStep,
+        LightStep { build: at, view, begin, part }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let shadows = &job.request.settings.shadows;
-        let build = &mut job.builds[*build];
-        let (geometry, chunk) = (&build.views[*view], build.chunks[*view]);
-        let at = self.lights.iter().position(|light| light.key == build.key).ok_or_else(out_of_date)?;
-        let light = &self.lights[at];
-        let Some(current) = &build.current else { return Ok(()) };
-        let slabs = *begin..(*begin + chunk).min(geometry.frame.slab_count);
-        let ends_view = slabs.end == geometry.frame.slab_count && part.0 + 1 == part.1;
-        let (gpu, _) = self.gpu()?;
-        match &build.scatter {
+        let shadows = &self.request.settings.shadows;
+        let build = &mut self.builds[*at];
+        let geometry = &build.views[*view];
+        let slabs = *begin..(*begin + build.chunks[*view]).min(geometry.frame.slab_count);
+        let ends_view = slabs.end == geometry.frame.slab_count && part.is_last();
+        let loaded = &self.loaded.value;
+        let gpu = Gpu::new(self.tools, &loaded.volume);
+        let light = &loaded.lights[build.slot].value;
+        let Some(CurrentView { sheets, schedule, scatter }) = &build.current else { return Ok(()) };
+        match scatter {
             // The first sheet that touches a voxel needs no sums.
             Some(scatter) if !shadows.first_touch => {
-                scatter.splat_back(gpu, &current.0, slabs, encoder)?;
+                scatter.splat_back(gpu, sheets, slabs, encoder)?;
                 if ends_view {
                     scatter.normalise(gpu, light, &build.bricks, encoder)?;
                 }
             }
-            _ => {
-                let slabs = ((slabs.start, slabs.end), *part);
-                backproject(gpu, shadows, geometry, current, light, slabs, encoder)?;
-            }
+            _ => backproject(gpu, shadows, geometry, (sheets, schedule), light, slabs, *part, encoder)?,
         }
-        if ends_view {
-            if let Some((sheets, _)) = build.current.take() {
-                self.recycled.leave_sheets(sheets);
-            }
-            build.scatter = None;
-        }
-        if ends_view && view + 1 == build.views.len() {
-            self.lights[at].finish();
+        if ends_view && let Some(current) = build.current.take() {
+            self.tools.pool.leave_sheets(current.sheets);
         }
         Ok(())
     }
 
     fn encode_raycast(
         &mut self,
-        job: &Job,
-        build: usize,
+        at: usize,
         bricks: &Range<usize>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let build = &job.builds[build];
-        let at = self.lights.iter().position(|light| light.key == build.key).ok_or_else(out_of_date)?;
-        let (gpu, tables) = self.gpu()?;
-        let list = &build.bricks[bricks.clone()];
-        let lamp = (&build.lamp, &job.request.settings);
+        let build = &self.builds[at];
+        let loaded = &self.loaded.value;
+        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
+        let target = &loaded.lights[build.slot].value;
         if bricks.start == 0 {
-            self.lights[at].light_up(gpu, &build.around, encoder)?;
+            target.clear_margin(gpu, &build.margin, encoder)?;
         }
-        raycast(gpu, tables, lamp, &self.options, &self.lights[at], list, encoder)?;
+        let lamp = (&build.light, &self.request.settings);
+        raycast(gpu, tables, lamp, &self.options, target, &build.bricks[bricks.clone()], encoder)?;
         if bricks.start == 0 {
-            self.rebuilds[build.light] += 1;
-            self.lights[at].begin();
-        }
-        if bricks.end == build.bricks.len() {
-            self.lights[at].finish();
+            let builds = std::mem::take(&mut self.builds);
+            self.begin_light(&builds[at]);
+            self.builds = builds;
         }
         Ok(())
     }
 
-    /// The volume of every light of a job.
-    fn light_volumes(&self, job: &Job) -> Vec<Option<&LightVolume>> {
-        let find =
-            |key: &Option<_>| key.as_ref().and_then(|key| self.lights.iter().find(|light| light.key == *key));
-        job.keys.iter().map(find).collect()
-    }
-
-    fn encode_collapse(
+    fn encode_combine(
         &mut self,
-        job: &Job,
         bricks: &Range<usize>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let found = self.light_volumes(job);
-        let attenuation: Vec<_> = found.iter().flatten().map(|light| &light.view).collect();
-        let (gpu, _) = self.gpu()?;
-        let target = self.collapsed.as_ref().ok_or_else(out_of_date)?;
-        let settings = &job.request.settings;
-        let window = self.options.window(&job.request);
-        let pass = EyePass::new(&gpu.volume.scene, settings, window, &found, None, &self.options);
-        let list: Vec<_> = target.filled.bricks().map(listed).collect();
-        target.fill(gpu, &pass, &attenuation, &list[bricks.clone()], encoder)?;
-        let is_last = bricks.end == list.len();
-        if is_last {
-            if let Some(collapsed) = &mut self.collapsed {
-                collapsed.complete = true;
-            }
-            self.forget_collapsed(&job.keys);
-        }
-        Ok(())
+        self.report.runs.combined_light += 1;
+        let loaded = &self.loaded.value;
+        let (Some(target), Some(pass)) = (&loaded.combined, &self.combine) else { return Ok(()) };
+        let lights = inputs(&self.lit, &self.slots, loaded);
+        let list: Vec<_> = target.value.filled.bricks().map(listed).collect();
+        let gpu = Gpu::new(self.tools, &loaded.volume);
+        target.value.fill(gpu, pass, &lights, &list[bricks.clone()], encoder)
     }
 
-    fn encode_eye(
+    /// Views of the light volumes that the picture looks up, in the order of its lights.
+    fn looked_up(&self) -> Vec<&wgpu::TextureView> {
+        let loaded = &self.loaded.value;
+        if self.keys.combined.is_some() {
+            return loaded.combined.iter().map(|combined| &combined.value.view).collect();
+        }
+        inputs(&self.lit, &self.slots, loaded)
+            .into_iter()
+            .filter_map(|input| input.volume)
+            .map(|volume| &volume.view)
+            .collect()
+    }
+
+    fn encode_eye(&mut self, rows: &Range<u32>, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
+        self.report.runs.eye += 1;
+        let loaded = &self.loaded.value;
+        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
+        let picture = &self.targets.get(self.role).light.value.plane.view;
+        self.eye.draw(gpu, tables, &self.looked_up(), picture, rows.clone(), encoder)
+    }
+
+    fn encode_scatter_eye(
         &mut self,
-        job: &mut Job,
-        step: &Step,
+        slabs: &Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let settings = &job.request.settings;
-        let collapsed = self.collapsed.as_ref().filter(|_| job.collapsed);
-        let found = if collapsed.is_some() { Vec::new() } else { self.light_volumes(job) };
-        let mut attenuation: Vec<_> = found.iter().flatten().map(|light| &light.view).collect();
-        attenuation.extend(collapsed.map(|light| &light.view));
-        let target = self.back.as_ref().ok_or_else(out_of_date)?;
-        let (gpu, tables) = self.gpu()?;
-        let window = self.options.window(&job.request);
-        let eye = job.eye.get_or_insert_with(|| {
-            EyePass::new(&gpu.volume.scene, settings, window, &found, collapsed, &self.options)
-        });
-        let slabs = eye.slab_count();
-        let size = window.size;
-        let divisor = found.iter().flatten().map(|light| light.divisor).max().unwrap_or(0);
-        let mut peak = 0;
-        match step {
-            Step::ScatterEye(range) => {
-                let (voxels, counter) = self.scattering()?;
-                if range.start == 0 {
-                    let fresh = EyeScatter::new(gpu, voxels, tables, eye.frame(), settings, &self.options)?;
-                    peak = self.gpu_bytes() + fresh.bytes();
-                    job.scatter = Some(fresh);
-                }
-                let scatter = job.scatter.as_ref().ok_or_else(out_of_date)?;
-                let picture = &target.picture_view;
-                let range = range.clone();
-                scatter.draw(gpu, voxels, counter, eye, tables, &attenuation, picture, range, encoder)?;
+        self.report.runs.eye += 1;
+        let Some(scattering) = &self.scattering else { return Ok(()) };
+        let loaded = &self.loaded.value;
+        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
+        let sheets = match self.eye_sheets.take() {
+            Some(sheets) => sheets,
+            None => {
+                let settings = &self.request.settings;
+                let fresh =
+                    EyeScatter::new(gpu, scattering, tables, self.eye.frame(), settings, &self.options)?;
+                let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + fresh.bytes();
+                self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
+                fresh
             }
-            Step::Eye(rows) => {
-                eye.draw(gpu, tables, &attenuation, &target.picture_view, rows.clone(), encoder)?;
-            }
-            _ => {}
-        }
-        self.report.slabs = slabs;
-        (self.report.size, self.report.light_divisor) = (size, divisor);
-        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(peak);
+        };
+        let picture = &self.targets.get(self.role).light.value.plane.view;
+        let attenuation = self.looked_up();
+        sheets.draw(gpu, scattering, &self.eye, tables, &attenuation, picture, slabs.clone(), encoder)?;
+        self.eye_sheets = Some(sheets);
         Ok(())
     }
 }

@@ -1,8 +1,6 @@
 //! What happens once when a volume is opened: automatic settings, and *Balance*.
 
-use std::sync::Arc;
-
-use crate::data::{Bricks, Histogram, Volume};
+use crate::data::Dataset;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::{Settings, ShadowAlgorithm, auto};
 
@@ -20,14 +18,9 @@ const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
 ///
 /// # Errors
 /// When the GPU cannot do it.
-pub fn first_look(
-    renderer: &mut Renderer,
-    volume: &Arc<Volume>,
-    bricks: &Arc<Bricks>,
-    histogram: &Histogram,
-) -> Result<Settings, GpuError> {
-    let mut settings = auto::first_settings(volume, histogram);
-    settings.shadows.balance = balance(renderer, volume, bricks, &settings)?;
+pub fn first_look(renderer: &mut Renderer, dataset: &Dataset) -> Result<Settings, GpuError> {
+    let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
+    settings.shadows.balance = balance(renderer, dataset, &settings)?;
     Ok(settings)
 }
 
@@ -39,12 +32,7 @@ pub fn first_look(
 ///
 /// # Errors
 /// When the GPU cannot do it.
-pub fn balance(
-    renderer: &mut Renderer,
-    volume: &Arc<Volume>,
-    bricks: &Arc<Bricks>,
-    settings: &Settings,
-) -> Result<f64, GpuError> {
+pub fn balance(renderer: &mut Renderer, dataset: &Dataset, settings: &Settings) -> Result<f64, GpuError> {
     let mut shadowed = settings.clone();
     shadowed.shadows.balance = 1.0;
     let mut unshadowed = shadowed.clone();
@@ -54,7 +42,7 @@ pub fn balance(
         light.intensity = 0.0;
     }
     let mut brightness = |settings: &Settings| -> Result<f64, GpuError> {
-        let picture = renderer.render(volume, bricks, settings, MEASURED_SIZE, &RenderOptions::default())?;
+        let picture = renderer.render(dataset, settings, MEASURED_SIZE, &RenderOptions::default())?;
         Ok(mean_luminance(&picture.light))
     };
     let with = brightness(&shadowed)?;

@@ -2,42 +2,53 @@
 
 use std::sync::Arc;
 
-use super::job::LightBuild;
-use crate::gpu::light::combine::{CollapsedKey, CollapsedLight};
+use super::light_build::LightBuild;
+use super::loaded::Loaded;
+use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::LightVolume;
+use crate::gpu::resources::cached::Cached;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{GpuVolume, brick_dims};
-use crate::gpu::{GpuError, RenderOptions, Renderer};
+use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::MAX_BIAS_VOXELS;
-use crate::plan::eye_frame;
 use crate::plan::{
-    CellSet, FARTHEST, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, lookup_reach, slab_reach,
-    stretch_reach,
+    CellSet, FARTHEST, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, eye_frame, lookup_reach,
+    slab_reach, stretch_reach,
 };
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
 /// undoing a drag finds them, and two looks that are compared do not push out each other's.
 const SPARE_LIGHT_VOLUMES: usize = 2;
 
-/// The light of a picture: where it is, and what must be done before.
-#[derive(Debug, Default)]
-pub(crate) struct PlacedLights {
-    /// Key of every light's volume; `None` for lights without.
-    pub keys: Vec<Option<LightKey>>,
-    /// Volumes to be filled.
-    pub builds: Vec<LightBuild>,
-    /// Whether the picture takes the light of all from one volume of colours.
-    pub collapsed: bool,
-    /// Bricks of that volume, if they must be filled first.
-    pub to_collapse: Option<usize>,
-}
-
 /// The reach of samples of previews, whose pixels may be as wide as kernels stretch.
 const WIDEST: f64 = MAX_STRETCH_LEVEL;
 
+/// The light of a picture: where it is, and what must be done before.
+#[derive(Debug, Default)]
+pub(super) struct PlacedLights {
+    /// Key of every light's volume; `None` for lights without.
+    pub keys: Vec<Option<LightKey>>,
+    /// Place of every light's volume among those that are kept.
+    pub slots: Vec<Option<usize>>,
+    /// Volumes to be filled.
+    pub builds: Vec<LightBuild>,
+    /// Bricks of the combined volume, if it must be filled first.
+    pub bricks_to_combine: Option<usize>,
+}
+
+/// What a picture is asked for, and of whom.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    pub context: &'a Context,
+    pub request: &'a Request,
+    pub options: &'a RenderOptions,
+    pub keys: &'a FrameKeys,
+    /// Counts pictures: volumes that were used last are kept longest.
+    pub now: u64,
+}
+
 /// How many cells from what the transfer functions show a picture looks up light: as far as its samples
-/// see, and a light bias further. The same for every direction to look from, so that orbiting refills
-/// nothing.
+/// see, and a light bias further. Every direction to look from has the same, so that orbiting refills nothing.
 fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let Request { settings, size, .. } = request;
     let size = size.map(|n| n * samples);
@@ -73,104 +84,115 @@ fn is_within(needed: &Arc<CellSet>, filled: &Arc<CellSet>) -> bool {
     Arc::ptr_eq(needed, filled) || needed.is_within(filled)
 }
 
-impl Renderer {
-    /// Finds or makes the light of a request: volumes for each light, or one for all.
-    pub(crate) fn place_all_light(&mut self, request: &Request) -> Result<PlacedLights, GpuError> {
-        self.collapsed = self.collapsed.take().filter(|collapsed| collapsed.complete);
-        // A preview moves one light: the volumes of the others serve it again and again.
-        if !request.settings.collapses_lights() || request.coarse.is_some() {
-            let (keys, builds) = self.place_lights(request)?;
-            return Ok(PlacedLights { keys, builds, ..PlacedLights::default() });
-        }
-        let Some(volume) = &self.volume else { return Err(GpuError::Refused("no volume".to_owned())) };
-        let all =
-            (0..request.settings.lights.len()).filter_map(|light| LightKey::of(request, light)).collect();
-        let key = CollapsedKey::new(all, &request.settings, &volume.scene, &self.options);
-        let Some(tables) = &self.tables else { return Err(GpuError::Refused("no volume".to_owned())) };
-        let reach = picture_reach(volume, request, self.options.samples);
-        let divisor = request.settings.shadows.resolution.divisor();
-        let (needed, _) = needed_cells(volume, tables, &self.options, divisor, reach);
-        let usable = |known: &CollapsedLight| known.key == key && is_within(&needed, &known.filled);
-        if self.collapsed.as_ref().is_some_and(usable) {
-            return Ok(PlacedLights { collapsed: true, ..PlacedLights::default() });
-        }
-        self.collapsed = None;
-        self.recycled.forget_groups();
-        let (keys, builds) = self.place_lights(request)?;
-        let first = keys.iter().flatten().next();
-        let like = self.lights.iter().find(|light| Some(&light.key) == first);
-        let like = like.ok_or_else(|| GpuError::Refused("no light casts shadows".to_owned()))?;
-        let to_collapse = Some(like.filled.bricks().count());
-        self.collapsed = Some(CollapsedLight::new(&self.context, key, like)?);
-        Ok(PlacedLights { keys, builds, collapsed: true, to_collapse })
+impl Loaded {
+    /// Volumes that a picture began and another one interrupted: their textures serve again.
+    pub(super) fn take_unfinished(&mut self) -> Vec<LightVolume> {
+        self.combined = self.combined.take().filter(Cached::is_complete);
+        self.lights.extract_if(.., |light| !light.is_complete()).map(|light| light.value).collect()
     }
 
-    /// Forgets the light volumes of a picture, which have been collapsed.
-    pub(crate) fn forget_collapsed(&mut self, keys: &[Option<LightKey>]) {
-        self.lights.retain(|light| !keys.iter().flatten().any(|key| *key == light.key));
-        self.recycled.forget_groups();
-    }
-
-    /// Finds or makes the light volumes of a request and forgets the oldest of the others.
-    fn place_lights(
+    /// Finds or makes the light of a picture: volumes for each light, or one for all. Volumes whose textures are
+    /// free are taken from `recyclable`, and left there.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(super) fn place_lights(
         &mut self,
-        request: &Request,
-    ) -> Result<(Vec<Option<LightKey>>, Vec<LightBuild>), GpuError> {
-        let (Some(volume), Some(tables)) = (&self.volume, &self.tables) else {
-            return Err(GpuError::Refused("no volume".to_owned()));
-        };
-        let count = request.settings.lights.len();
-        self.rebuilds.resize(self.rebuilds.len().max(count), 0);
-        let reach = picture_reach(volume, request, self.options.samples);
-        let wanted: Vec<_> = (0..count).map(|light| LightKey::of(request, light)).collect();
-        let shadowed = wanted.iter().flatten().count();
+        wanted: Wanted<'_>,
+        recyclable: &mut Vec<LightVolume>,
+    ) -> Result<PlacedLights, GpuError> {
+        let Some(combined_key) = &wanted.keys.combined else { return self.place_each(wanted, recyclable) };
+        let Wanted { context, request, options, .. } = wanted;
+        let reach = picture_reach(&self.volume, request, options.samples);
+        let divisor = request.settings.shadows.resolution.divisor();
+        let (needed, _) = needed_cells(&self.volume, &self.tables.value, options, divisor, reach);
+        let is_usable = self
+            .combined
+            .as_ref()
+            .is_some_and(|known| known.holds(combined_key) && is_within(&needed, &known.value.filled));
+        if is_usable {
+            return Ok(PlacedLights::default());
+        }
+        self.combined = None;
+        let mut placed = self.place_each(wanted, recyclable)?;
+        // Settings that combine lights have one that casts shadows.
+        if let Some(slot) = placed.slots.iter().flatten().next() {
+            let like = &self.lights[*slot].value;
+            placed.bricks_to_combine = Some(like.filled.bricks().count());
+            let fresh = CombinedLight::new(context, like)?;
+            self.combined = Some(Cached::unfilled(combined_key.clone(), fresh));
+        }
+        Ok(placed)
+    }
+
+    /// Forgets the light volumes of a picture, which have been combined.
+    pub(super) fn forget_combined(&mut self, keys: &[Option<LightKey>]) {
+        self.lights.retain(|light| !keys.iter().flatten().any(|key| key == light.key()));
+    }
+
+    /// Finds or makes the light volumes of a picture and forgets the oldest of the others.
+    fn place_each(
+        &mut self,
+        wanted: Wanted<'_>,
+        recyclable: &mut Vec<LightVolume>,
+    ) -> Result<PlacedLights, GpuError> {
+        let Wanted { context, request, options, keys: FrameKeys { lights: full_keys, .. }, now } = wanted;
+        let Self { volume, tables, lights, .. } = self;
+        let reach = picture_reach(volume, request, options.samples);
+        let shadowed = full_keys.iter().flatten().count();
         let most_kept = shadowed + SPARE_LIGHT_VOLUMES.max(shadowed);
         let at_coarse = |full: &LightKey| request.coarse.map(|resolution| full.at_resolution(resolution));
         let is_wanted = |key: &LightKey| {
-            wanted.iter().flatten().any(|full| full == key || at_coarse(full).as_ref() == Some(key))
+            full_keys.iter().flatten().any(|full| full == key || at_coarse(full).as_ref() == Some(key))
         };
-        let mut keys = vec![None; count];
+        let needed = |key: &LightKey, reach: u8| {
+            needed_cells(volume, &tables.value, options, key.resolution().divisor(), reach)
+        };
+        // A preview makes do with what a picture at full quality looks up; the margin lets all light pass.
+        let least = |key: &LightKey| needed(key, if request.coarse.is_some() { 0 } else { reach }).0;
+        let usable = |known: &Cached<LightKey, LightVolume>, key: &LightKey| {
+            known.key() == key && is_within(&least(key), &known.value.filled)
+        };
+        let mut keys = vec![None; full_keys.len()];
         let mut builds: Vec<LightBuild> = Vec::new();
-        for (light, (slot, full)) in keys.iter_mut().zip(&wanted).enumerate() {
+        for (index, (slot, full)) in keys.iter_mut().zip(full_keys).enumerate() {
             let Some(full) = full else { continue };
-            let options = &self.options;
-            let needed = |key: &LightKey, reach: u8| {
-                needed_cells(volume, tables, options, key.resolution().divisor(), reach)
-            };
-            // A preview makes do with what a picture at full quality looks up; around that light is full.
-            let least = |key: &LightKey| needed(key, if request.coarse.is_some() { 0 } else { reach }).0;
-            let usable = |known: &LightVolume, key: &LightKey| {
-                known.key == *key && is_within(&least(key), &known.filled)
-            };
             let coarse = at_coarse(full);
-            let found = [Some(full.clone()), coarse.clone()]
+            let found = [Some(full), coarse.as_ref()]
                 .into_iter()
                 .flatten()
-                .find(|key| self.lights.iter().any(|known| usable(known, key)));
+                .find(|key| lights.iter().any(|known| usable(known, key)))
+                .cloned();
             let key = found.clone().or(coarse).unwrap_or_else(|| full.clone());
             if found.is_none() {
-                self.unwanted.extend(self.lights.extract_if(.., |known| known.key == key));
+                recyclable
+                    .extend(lights.extract_if(.., |known| *known.key() == key).map(|light| light.value));
                 // One that would be forgotten afterwards.
-                if self.lights.len() >= most_kept {
-                    let free = (0..self.lights.len()).filter(|&at| !is_wanted(&self.lights[at].key));
-                    let oldest = free.min_by_key(|&at| self.lights[at].last_used);
-                    self.unwanted.extend(oldest.map(|at| self.lights.swap_remove(at)));
+                if lights.len() >= most_kept {
+                    let free = (0..lights.len()).filter(|&at| !is_wanted(lights[at].key()));
+                    let oldest = free.min_by_key(|&at| lights[at].value.last_used);
+                    recyclable.extend(oldest.map(|at| lights.swap_remove(at).value));
                 }
                 let filled = needed(&key, reach);
-                let around = needed(&key, reach.max(stretch_reach(WIDEST))).0.without(&filled.0);
-                let fresh =
-                    LightVolume::new(&self.context, volume, key.clone(), filled, around, &mut self.unwanted)?;
-                builds.push(LightBuild::new(volume, request, light, &fresh, self.options.chunk));
-                self.lights.push(fresh);
+                let margin = needed(&key, reach.max(stretch_reach(WIDEST))).0.without(&filled.0);
+                let fresh = LightVolume::new(context, volume, &key, filled, margin, recyclable)?;
+                builds.push(LightBuild::new(volume, request, index, &fresh, key.resolution(), options.chunk));
+                lights.push(Cached::unfilled(key.clone(), fresh));
             }
-            for known in self.lights.iter_mut().filter(|known| known.key == key) {
-                known.last_used = self.clock;
+            for known in lights.iter_mut().filter(|known| *known.key() == key) {
+                known.value.last_used = now;
             }
             *slot = Some(key);
         }
-        self.lights.sort_by_key(|light| std::cmp::Reverse(light.last_used));
-        let kept = self.lights.len().min(most_kept);
-        self.unwanted.extend(self.lights.drain(kept..));
-        Ok((keys, builds))
+        lights.sort_by_key(|light| std::cmp::Reverse(light.value.last_used));
+        let kept = lights.len().min(most_kept);
+        recyclable.extend(lights.drain(kept..).map(|light| light.value));
+        let slot_of =
+            |key: &Option<LightKey>| lights.iter().position(|light| Some(light.key()) == key.as_ref());
+        let slots: Vec<_> = keys.iter().map(slot_of).collect();
+        for build in &mut builds {
+            build.slot = slots[build.index].unwrap_or(0);
+        }
+        Ok(PlacedLights { keys, slots, builds, bricks_to_combine: None })
     }
 }

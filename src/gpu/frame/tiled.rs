@@ -1,9 +1,7 @@
 //! Pictures of any size: drawn in parts, handed over in bands of rows, so that neither the adapter's largest
 //! texture nor its memory limits them.
 
-use std::sync::Arc;
-
-use crate::data::{Bricks, Volume};
+use crate::data::{Dataset, Volume};
 use crate::export::Rows;
 use crate::gpu::resources::readback::{read_floats, read_texture};
 use crate::gpu::{GpuError, RenderOptions, Renderer};
@@ -19,8 +17,7 @@ const MOST_SAMPLES: u32 = 1 << 21;
 #[derive(Debug)]
 pub struct Bands<'a> {
     renderer: &'a mut Renderer,
-    volume: &'a Arc<Volume>,
-    bricks: &'a Arc<Bricks>,
+    dataset: &'a Dataset,
     settings: &'a Settings,
     shot: Shot,
     /// Pixels that are drawn around each part.
@@ -32,35 +29,28 @@ pub struct Bands<'a> {
 
 impl Renderer {
     /// Begins a picture of any size.
-    pub fn bands<'a>(
-        &'a mut self,
-        volume: &'a Arc<Volume>,
-        bricks: &'a Arc<Bricks>,
-        settings: &'a Settings,
-        shot: &Shot,
-    ) -> Bands<'a> {
-        let longest = self.context.device.limits().max_texture_dimension_2d;
-        self.bands_of(volume, bricks, settings, shot, (longest, MOST_SAMPLES))
+    pub fn bands<'a>(&'a mut self, dataset: &'a Dataset, settings: &'a Settings, shot: &Shot) -> Bands<'a> {
+        let longest = self.context().device.limits().max_texture_dimension_2d;
+        self.bands_of(dataset, settings, shot, (longest, MOST_SAMPLES))
     }
 
     /// The same in parts whose edges have no more than so many samples, and which have no more than so many.
     #[doc(hidden)]
     pub fn bands_of<'a>(
         &'a mut self,
-        volume: &'a Arc<Volume>,
-        bricks: &'a Arc<Bricks>,
+        dataset: &'a Dataset,
         settings: &'a Settings,
         shot: &Shot,
         (longest, most): (u32, u32),
     ) -> Bands<'a> {
         let samples = shot.samples.max(1);
-        let margin = margin(volume, settings, shot.size, samples);
+        let margin = margin(dataset.volume(), settings, shot.size, samples);
         let longest = (longest / samples).saturating_sub(2 * margin);
         let mut left: Vec<_> = PixelWindow::bands(shot.size, longest, most / (samples * samples)).collect();
         left.reverse();
         let total = left.len();
         let shot = Shot { samples, ..*shot };
-        Bands { renderer: self, volume, bricks, settings, shot, margin, left, total }
+        Bands { renderer: self, dataset, settings, shot, margin, left, total }
     }
 }
 
@@ -88,13 +78,12 @@ impl Bands<'_> {
         for part in parts {
             let drawn = part.widened(self.margin);
             let options = RenderOptions { part: Some(drawn), ..RenderOptions::of_shot(&self.shot) };
-            self.renderer.draw(self.volume, self.bricks, self.settings, self.shot.size, &options)?;
-            let front = self.renderer.front.as_ref();
-            let shown = &front.ok_or_else(|| GpuError::Refused("no picture was drawn".to_owned()))?.shown;
+            self.renderer.draw(self.dataset, self.settings, self.shot.size, &options)?;
+            let (context, shown) = (self.renderer.context(), &self.renderer.shown()?.shown.value.texture);
             if self.shot.depth == Depth::Eight {
-                lay(&mut bytes, &read_texture(&self.renderer.context, shown)?, width, (drawn, part));
+                lay(&mut bytes, &read_texture(context, shown)?, width, (drawn, part));
             } else {
-                lay(&mut floats, &read_floats(&self.renderer.context, shown)?, width, (drawn, part));
+                lay(&mut floats, &read_floats(context, shown)?, width, (drawn, part));
             }
         }
         Ok(Some(if self.shot.depth == Depth::Eight { Rows::Bytes(bytes) } else { Rows::Floats(floats) }))

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::gpu::eye::{floor as ground, gather as eye};
+use crate::gpu::eye::{floor, gather as eye};
 use crate::gpu::light::{backproject as light_backproject, march as light_march};
 use crate::gpu::resources::kernel::cut_constant;
 use crate::gpu::{GpuError, ShaderLibrary};
@@ -45,7 +45,7 @@ impl ShaderLibrary {
         for kernel in [Kernel::Prefiltered, Kernel::BSpline] {
             let shadows = Shadows { kernel, ..Shadows::default() };
             let settings = Settings { shadows, ..Settings::default() };
-            self.warm("eye/floor.wgsl", &ground::constants(&settings, FIRST_LIGHTS), stop)?;
+            self.warm("eye/floor.wgsl", &floor::constants(&settings, FIRST_LIGHTS), stop)?;
         }
         let plane = ClipPlane { on: true, ..ClipPlane::default() };
         self.warm_up_passes(&Cuts { plane, ..Cuts::default() }, stop)

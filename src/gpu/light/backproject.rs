@@ -1,5 +1,7 @@
 //! Reverse half of the light pass: splats the sheets back into the light volume.
 
+use std::ops::Range;
+
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::march::Sheets;
@@ -7,6 +9,7 @@ use super::volume::LightVolume;
 use crate::data::BRICK_EDGE;
 use crate::gpu::resources::kernel::{kernel_constants, quadrature_constant};
 use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::resources::part::Part;
 use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms::{self, rows};
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, view_entry};
@@ -14,7 +17,7 @@ use crate::gpu::volume::{Gpu, entry};
 use crate::gpu::{Context, GpuError};
 use crate::math::SceneSpace;
 use crate::model::{Quadrature, Shadows};
-use crate::plan::{LightView, ReadTiles};
+use crate::plan::{LightView, MarchTiles};
 
 /// What each chunk of slabs has to do.
 #[derive(Debug)]
@@ -22,7 +25,7 @@ pub(crate) struct Schedule {
     /// The bricks of a light volume, by the chunk that completes them.
     chunks: Vec<Vec<Listed>>,
     /// The tiles of the sheets that are marched.
-    tiles: ReadTiles,
+    tiles: MarchTiles,
 }
 
 impl Schedule {
@@ -34,7 +37,8 @@ impl Schedule {
         scene: &SceneSpace,
         view: &LightView,
         light: &LightVolume,
-        (chunk, reach): (u32, i32),
+        chunk: u32,
+        reach: i32,
     ) -> Self {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
@@ -45,23 +49,17 @@ impl Schedule {
             }
         }
         let tiles = if reach == EVERYWHERE {
-            ReadTiles::all(view, chunk)
+            MarchTiles::all(view, chunk)
         } else {
-            ReadTiles::behind(view, scene, chunk, read_boxes(light, reach))
+            MarchTiles::behind(view, scene, chunk, read_boxes(light, reach))
         };
         Self { chunks, tiles }
     }
 
-    /// The tiles that part `part.0` of `part.1` of a chunk marches.
-    pub(crate) fn tiles(&self, chunk: usize, part: (u32, u32)) -> &[u32] {
-        cut(self.tiles.of_chunk(chunk), part)
+    /// The tiles that a part of the march through a chunk takes.
+    pub(crate) fn tiles(&self, chunk: usize, part: Part) -> &[u32] {
+        part.take(self.tiles.of_chunk(chunk))
     }
-}
-
-/// Part `part.0` of `part.1` of a list.
-fn cut<T>(list: &[T], part: (u32, u32)) -> &[T] {
-    let end_of = |parts: u32| list.len() * parts as usize / part.1 as usize;
-    &list[end_of(part.0)..end_of(part.0 + 1)]
 }
 
 /// Where sheets are read for the bricks of a light volume: around each, in index space.
@@ -118,19 +116,20 @@ pub(crate) fn constants(context: &Context, shadows: &Shadows, wide: bool) -> [(&
     ]
 }
 
-/// Writes the voxels that the slabs `begin .. end` complete: those in part `part.0` of `part.1` of
-/// the bricks.
+/// Writes the voxels that some slabs complete: those in a part of the bricks.
+#[expect(clippy::too_many_arguments, reason = "each is another thing: who, what, how, where from, where to")]
 pub(crate) fn backproject(
     gpu: Gpu<'_>,
     shadows: &Shadows,
     view: &LightView,
-    (sheets, schedule): &(Sheets, Schedule),
+    (sheets, schedule): (&Sheets, &Schedule),
     light: &LightVolume,
-    (slabs, part): ((u32, u32), (u32, u32)),
+    slabs: Range<u32>,
+    part: Part,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, .. } = gpu;
-    let bricks = cut(&schedule.chunks[(slabs.0 / sheets.chunk) as usize], part);
+    let bricks = part.take(&schedule.chunks[(slabs.start / sheets.chunk) as usize]);
     if bricks.is_empty() {
         return Ok(());
     }
@@ -151,8 +150,8 @@ pub(crate) fn backproject(
         voxel_step: light.divisor as f32,
         dims: light.dims.map(|n| n as u32),
         cube_face: u32::from(view.cube_face),
-        begin: slabs.0,
-        end: slabs.1,
+        begin: slabs.start,
+        end: slabs.end,
         layers: sheets.layers,
         bricks: bricks.len() as u32,
         ring_scale: [sheets.ring.width(), sheets.ring.height()].map(|n| 1.0 / n as f32),

@@ -1,18 +1,20 @@
 //! Forward half of the light pass: fills sheets with the transmittance that they deposit.
 
+use std::ops::Range;
+
 use crate::gpu::context::shader::ring_format;
 use crate::gpu::resources::kernel::{
     classification_constant, cut_constant, kernel_constants, quadrature_constant,
 };
 use crate::gpu::resources::listed_bricks::single_workgroups;
 use crate::gpu::resources::pass;
-use crate::gpu::resources::pool::Recycled;
+use crate::gpu::resources::tools::Tools;
 use crate::gpu::resources::uniforms;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
 use crate::gpu::volume::{Gpu, Levels, entry};
-use crate::gpu::{Context, GpuError, RenderOptions};
+use crate::gpu::{GpuError, RenderOptions};
 use crate::math::Region;
-use crate::model::{Deposit, Light, Settings};
+use crate::model::{Deposit, SceneLight, Settings};
 use crate::plan::{LightView, sample_reach};
 
 /// Slabs that share a texel of the ring.
@@ -37,7 +39,7 @@ pub(crate) struct Sheets {
     /// Slabs marched at a time.
     pub chunk: u32,
     /// Light is followed until less than this is left.
-    pub dark: f32,
+    pub min_transmittance: f32,
     /// For a preview.
     pub preview: bool,
     /// Deposited transmittance, four sheets in a texel.
@@ -54,13 +56,8 @@ impl Sheets {
     /// before: one that was left behind, if it is large enough.
     ///
     /// Sheets are read up to `reach` cells from what either transfer function shows.
-    pub(crate) fn new(
-        context: &Context,
-        recycled: &Recycled,
-        view: &LightView,
-        chunk: u32,
-        reach: i32,
-    ) -> Result<Self, GpuError> {
+    pub(crate) fn new(tools: &Tools, view: &LightView, chunk: u32, reach: i32) -> Result<Self, GpuError> {
+        let Tools { context, pool, .. } = tools;
         let frame = &view.frame;
         // Radius 2 on both sides of a voxel, rounded outwards, and one for the quadrature points; the first
         // of them may be the last of its texel.
@@ -68,13 +65,13 @@ impl Sheets {
         let chunk = chunk.min(frame.slab_count).next_multiple_of(SLABS_PER_TEXEL).max(SLABS_PER_TEXEL);
         let layers = chunk / SLABS_PER_TEXEL + kept;
         let needed = [frame.size[0].next_multiple_of(ROOM), frame.size[1].next_multiple_of(ROOM), layers];
-        let dark = RenderOptions::default().dark;
-        let size = match recycled.take_sheets().map(|known| known.or_larger(needed)) {
-            Some(Ok(known)) => return Ok(Self { chunk, reach, dark, preview: false, ..known }),
+        let min_transmittance = RenderOptions::default().min_transmittance;
+        let size = match pool.take_sheets().map(|known| known.or_larger(needed)) {
+            Some(Ok(known)) => return Ok(Self { chunk, reach, min_transmittance, preview: false, ..known }),
             Some(Err(larger)) => larger,
             None => needed,
         };
-        recycled.made_sheets();
+        pool.made_sheets();
         let [width, height, layers] = size;
         let ring = context.texture(&wgpu::TextureDescriptor {
             label: Some("Sheets::ring"),
@@ -97,7 +94,7 @@ impl Sheets {
         Ok(Self {
             layers,
             chunk,
-            dark,
+            min_transmittance,
             preview: false,
             // An array even where it has one layer.
             ring_view: ring.create_view(&wgpu::TextureViewDescriptor {
@@ -167,39 +164,41 @@ pub(crate) fn constants(settings: &Settings, stretch: bool) -> [(&'static str, f
     ]
 }
 
-/// What the shaders know about the light, what attenuates it and the slabs `slabs.0 .. slabs.1` of a view.
+/// What the shaders know about the light, what attenuates it and some slabs of a view.
 pub(crate) fn march_uniform(
-    light: &Light,
+    light: &SceneLight,
     shading_cut: &Region,
     view: &LightView,
     sheets: &Sheets,
-    slabs: (u32, u32),
+    slabs: Range<u32>,
 ) -> uniforms::March {
     let cone = light.cone();
     uniforms::March {
         frame: uniforms::SheetFrame::new(&view.frame),
-        begin: slabs.0,
-        end: slabs.1,
+        begin: slabs.start,
+        end: slabs.end,
         layers: sheets.layers,
         tiles: 0,
         extinction_scale: light.density_scale as f32,
         hood_inner: cone.cos_inner as f32,
         hood_outer: cone.cos_outer as f32,
         hood_axis: (view.axes.transpose() * cone.axis).as_vec3().into(),
-        dark: sheets.dark,
+        dark: sheets.min_transmittance,
         reach: sheets.reach,
         shading_cut: uniforms::Cut::new(shading_cut),
     }
 }
 
-/// Marches the listed tiles through the slabs `begin .. end` of a view.
+/// Marches the listed tiles through some slabs of a view.
+#[expect(clippy::too_many_arguments, reason = "each is another thing: who, what, how, where from, where to")]
 pub(crate) fn march(
     gpu: Gpu<'_>,
     tables: &Tables,
-    (light, settings): (&Light, &Settings),
+    (light, settings): (&SceneLight, &Settings),
     view: &LightView,
     sheets: &Sheets,
-    (slabs, tiles): ((u32, u32), &[u32]),
+    slabs: Range<u32>,
+    tiles: &[u32],
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let Gpu { context, shaders, volume, .. } = gpu;
@@ -207,7 +206,7 @@ pub(crate) fn march(
         return Ok(());
     }
     // Slabs near a perspective light have narrower pixels than those behind.
-    let is_stretched = view.frame.max_stretch_level_of(slabs.0..slabs.1) > 0.0;
+    let is_stretched = view.frame.max_stretch_level_of(slabs.clone()) > 0.0;
     let pipeline = shaders.pipeline("light/march.wgsl", &constants(settings, is_stretched))?;
     let cut = settings.cuts.shading().region(&volume.scene);
     let count = tiles.len() as u32;
@@ -218,9 +217,9 @@ pub(crate) fn march(
         sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances).to_vec();
     entries.push(entry(5, list.as_entire_binding()));
     let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
-    let leaping = sheets.reach != EVERYWHERE;
+    let empty_space_skipping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
-    let dilation = if leaping { i32::from(seen) } else { EVERYWHERE };
+    let dilation = if empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::of(is_stretched));
     pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], single_workgroups(count));
     Ok(())

@@ -9,7 +9,7 @@ use crate::gpu::resources::uniforms;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables, view_entry};
 use crate::gpu::volume::{Gpu, Levels, entry};
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Deposit, Light, Settings};
+use crate::model::{Deposit, SceneLight, Settings};
 use crate::plan::ray_reach;
 
 /// Bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a
@@ -30,11 +30,11 @@ pub(crate) fn constants(settings: &Settings) -> [(&'static str, f64); 5] {
     ]
 }
 
-/// Fills the listed bricks of a light volume. The light's position refers to the scene.
+/// Fills the listed bricks of a light volume.
 pub(crate) fn raycast(
     gpu: Gpu<'_>,
     tables: &Tables,
-    (light, settings): (&Light, &Settings),
+    (light, settings): (&SceneLight, &Settings),
     options: &RenderOptions,
     target: &LightVolume,
     bricks: &[Listed],
@@ -53,7 +53,7 @@ pub(crate) fn raycast(
         bricks: bricks.len() as u32,
         voxel_step: target.divisor as f32,
         ray_step: settings.shadows.ray_step(&volume.scene) as f32,
-        dark: options.dark_depth(),
+        dark: options.max_optical_depth(),
         pad0: 0,
         shading_cut: uniforms::Cut::new(&settings.cuts.shading().region(&volume.scene)),
     };
@@ -72,7 +72,7 @@ pub(crate) fn raycast(
         ],
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
-    let dilation = if options.leaping { seen } else { EVERYWHERE };
+    let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
     pass::dispatch(
         encoder,

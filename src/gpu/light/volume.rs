@@ -1,4 +1,4 @@
-//! Attenuation volumes: one texture per light, cached by the key that says what it was made from.
+//! Attenuation volumes: one texture per light.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,11 +12,9 @@ use crate::gpu::{Context, GpuError};
 use crate::model::{MAX_LIGHTS, Precision};
 use crate::plan::{BrickSet, CellSet, LightKey, LightView, reverse_reach_voxels};
 
-/// One light's attenuation volume, complete or being filled.
+/// One light's attenuation volume.
 #[derive(Debug)]
 pub(crate) struct LightVolume {
-    /// What it is made from.
-    pub key: LightKey,
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
     /// Data voxels per light voxel along an axis.
@@ -29,15 +27,13 @@ pub(crate) struct LightVolume {
     pub filled: Arc<CellSet>,
     /// Data cells, beyond those that either transfer function shows, for whose lookups they suffice.
     pub reach: u8,
-    /// Cells around what is filled, which only previews look up: they are to be lit fully …
-    around: CellSet,
-    /// … and these are, by this volume or the one that had its texture before.
-    lit: Option<CellSet>,
-    /// Whether everything in `filled` is there.
-    pub complete: bool,
-    /// When the first of its steps was recorded …
+    /// Cells around what is filled, which only previews look up, and which no material darkens.
+    margin: CellSet,
+    /// Cells of the margin that are cleared, by this volume or the one that had its texture before.
+    cleared: Option<CellSet>,
+    /// When the first of its steps was recorded.
     started: Option<Instant>,
-    /// … and how long it took from there until the last was.
+    /// Milliseconds from the first of its steps to the last.
     pub fill_ms: Option<f64>,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
@@ -51,10 +47,10 @@ impl LightVolume {
     pub(crate) fn new(
         context: &Context,
         volume: &GpuVolume,
-        key: LightKey,
+        key: &LightKey,
         (filled, reach): (Arc<CellSet>, u8),
-        around: CellSet,
-        unwanted: &mut Vec<Self>,
+        margin: CellSet,
+        recyclable: &mut Vec<Self>,
     ) -> Result<Self, GpuError> {
         let divisor = key.resolution().divisor();
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
@@ -63,39 +59,39 @@ impl LightVolume {
             Precision::Byte if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
             Precision::Byte | Precision::Half => context.storage_format,
         };
-        let fresh = |texture, view, lit: Option<CellSet>| Self {
-            key,
+        let fresh = |texture, view, cleared: Option<CellSet>| Self {
             dims,
             divisor,
             texture,
             view,
-            around,
-            lit,
+            margin,
+            cleared,
             filled,
             reach,
-            complete: false,
             started: None,
             fill_ms: None,
             last_used: 0,
         };
         let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
-        if let Some(at) = unwanted.iter().position(fits) {
-            let Self { texture, view, lit, .. } = unwanted.swap_remove(at);
-            return Ok(fresh(texture, view, lit));
+        if let Some(at) = recyclable.iter().position(fits) {
+            let Self { texture, view, cleared, .. } = recyclable.swap_remove(at);
+            return Ok(fresh(texture, view, cleared));
         }
         let texture = attenuation_texture(context, dims, format)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(fresh(texture, view, None))
     }
 
-    /// What is still to be lit around it: nothing, while a light is dragged.
-    pub(crate) fn dark_around(&self) -> Vec<Listed> {
+    /// The part of the margin that is yet to be cleared: nothing, while a light is dragged.
+    pub(crate) fn uncleared_margin(&self) -> Vec<Listed> {
         let list = |cells: &CellSet| cells.bricks().map(listed_bricks::listed).collect();
-        self.lit.as_ref().map_or_else(|| list(&self.around), |lit| list(&self.around.without(lit)))
+        self.cleared
+            .as_ref()
+            .map_or_else(|| list(&self.margin), |cleared| list(&self.margin.without(cleared)))
     }
 
-    /// Lights the listed cells fully.
-    pub(crate) fn light_up(
+    /// Lets all light into the listed cells.
+    pub(crate) fn clear_margin(
         &self,
         gpu: Gpu<'_>,
         bricks: &[Listed],
@@ -108,14 +104,14 @@ impl LightVolume {
         let pipeline = shaders.pipeline_into("light/clear_margin.wgsl", &[], self.texture.format())?;
         let list = listed_bricks::upload(gpu, bricks);
         let own = gpu.bind(
-            "LightVolume::around",
+            "LightVolume::clear_margin",
             &pipeline,
             0,
             &[entry(0, listed_bricks::exactly(&list, bricks)), view_entry(1, &self.view)],
         );
         pass::dispatch(
             encoder,
-            "LightVolume::around",
+            "LightVolume::clear_margin",
             &pipeline,
             &[&own],
             listed_bricks::workgroups(bricks.len() as u32),
@@ -126,13 +122,11 @@ impl LightVolume {
     /// The first of its steps is recorded.
     pub(crate) fn begin(&mut self) {
         self.started.get_or_insert_with(Instant::now);
-
-        self.lit = Some(self.around.clone());
+        self.cleared = Some(self.margin.clone());
     }
 
-    /// Everything is there.
+    /// The last of its steps was recorded.
     pub(crate) fn finish(&mut self) {
-        self.complete = true;
         self.fill_ms = self.started.map(|started| started.elapsed().as_secs_f64() * 1000.0);
     }
 
@@ -169,7 +163,7 @@ pub(crate) fn light_bind_group(
     pipeline: &wgpu::ComputePipeline,
     attenuation: &[&wgpu::TextureView],
 ) -> wgpu::BindGroup {
-    let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.nothing);
+    let view = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
     let views: Vec<_> = (0..MAX_LIGHTS).map(|slot| view_entry(slot as u32, view(slot))).collect();
     gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
 }

@@ -1,8 +1,11 @@
 //! What every pass is made of: buffers and textures that are used again, lists, uniforms, dispatches.
 
+pub(super) mod cached;
 pub(super) mod kernel;
 pub(super) mod listed_bricks;
+pub(super) mod part;
 pub(super) mod pass;
 pub(super) mod pool;
 pub(super) mod readback;
+pub(super) mod tools;
 pub mod uniforms;

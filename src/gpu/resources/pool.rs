@@ -16,7 +16,7 @@ const SMALLEST_BUFFER: u64 = 256;
 
 /// Buffers, bind groups and sheets of one renderer.
 #[derive(Debug, Default)]
-pub(crate) struct Recycled(RefCell<Inner>);
+pub(crate) struct ResourcePool(RefCell<Inner>);
 
 #[derive(Debug, Default)]
 struct Inner {
@@ -64,7 +64,7 @@ impl Bound {
     }
 }
 
-impl Recycled {
+impl ResourcePool {
     /// Forgets all bind groups: they would keep alive what has been dropped.
     pub(crate) fn forget_groups(&self) {
         self.0.borrow_mut().groups.clear();

@@ -229,7 +229,7 @@ pub struct Raycast {
 /// `light/combine.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Collapse {
+pub struct Combine {
     pub dims: [u32; 3],
     pub bricks: u32,
     pub voxel_step: f32,
@@ -315,7 +315,7 @@ pub struct Eye {
     pub gradient_slabs: i32,
     pub runs: u32,
     pub pad1: i32,
-    pub collapsed_lookup: [f32; 3],
+    pub combined_lookup: [f32; 3],
     pub pad2: f32,
     pub seen: Cut,
     pub shading_cut: Cut,
@@ -325,7 +325,7 @@ pub struct Eye {
 /// `eye/floor.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Ground {
+pub struct Floor {
     pub frame: SheetFrame,
     pub space: Space,
     pub shading: Shading,

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::footprints::Footprints;
+use super::footprints::{Footprints, Inputs};
 use super::splat::{Scatterer, Splat, sums, widest_stretch};
-use super::voxels::ScatterVoxels;
+use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::eye::gather::EyePass;
 use crate::gpu::light::volume::light_bind_group;
@@ -38,7 +38,7 @@ impl EyeScatter {
     /// Prepares the sheets of a picture.
     pub(crate) fn new(
         gpu: Gpu<'_>,
-        voxels: &ScatterVoxels,
+        scattering: &Scattering,
         tables: &Tables,
         frame: &SheetFrame,
         settings: &Settings,
@@ -55,7 +55,7 @@ impl EyeScatter {
             Classification::Pre => Splat::Material,
         };
         let what = (what, &tables.eye);
-        let scatterer = Scatterer::new(gpu, voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
+        let scatterer = Scatterer::new(gpu, &scattering.voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
         let footprints =
             (order == SheetOrder::EveryFootprint).then(|| Footprints::new(gpu, &scatterer)).transpose()?;
         let occupied = &tables.eye.occupied;
@@ -83,8 +83,7 @@ impl EyeScatter {
     pub(crate) fn draw(
         &self,
         gpu: Gpu<'_>,
-        voxels: &ScatterVoxels,
-        counter: &wgpu::Buffer,
+        scattering: &Scattering,
         eye: &EyePass,
         tables: &Tables,
         attenuation: &[&wgpu::TextureView],
@@ -96,19 +95,17 @@ impl EyeScatter {
         let uniform = eye.uniform_buffer(context, self.ahead);
         let is_last = slabs.end == self.scatterer.sheet_count();
         if let Some(footprints) = &self.footprints {
-            let lit = (eye, attenuation);
-            let target = (&self.rays, &self.clamped);
+            let inputs = Inputs {
+                scattering,
+                eye,
+                eye_uniform: &uniform,
+                table: &tables.eye.buffer,
+                attenuation,
+                rays: &self.rays,
+                clamped: &self.clamped,
+            };
             for k in slabs {
-                footprints.draw(
-                    gpu,
-                    &self.scatterer,
-                    voxels,
-                    (counter, &uniform, &tables.eye.buffer),
-                    lit,
-                    target,
-                    k,
-                    encoder,
-                )?;
+                footprints.draw(gpu, &self.scatterer, inputs, k, encoder)?;
             }
             return if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) };
         }
@@ -132,11 +129,11 @@ impl EyeScatter {
             let from = if k == 0 { 0 } else { k + self.ahead };
             for splatted in from..=k + self.ahead {
                 if self.scatterer.is_filled(splatted) {
-                    self.scatterer.splat(gpu, voxels, counter, splatted, encoder)?;
+                    self.scatterer.splat(gpu, scattering, splatted, encoder)?;
                 }
             }
             // Nothing to composite, and nothing to make room for.
-            let touched = tables.eye.shows_nothing()
+            let touched = tables.eye.shows_empty_space()
                 || self.scatterer.is_filled(k)
                 || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
             if !touched {
@@ -204,7 +201,7 @@ impl EyeScatter {
 /// Bricks whose voxels can reach a sample that shows anything, or one between which and that sample a
 /// gradient is taken.
 pub(crate) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: &RenderOptions) -> BrickSet {
-    if !options.leaping {
+    if !options.empty_space_skipping {
         return BrickSet::full(occupied.dims);
     }
     let widest = widest_stretch(frame);

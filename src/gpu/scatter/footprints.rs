@@ -2,7 +2,7 @@
 //! touch a pixel.
 
 use super::splat::Scatterer;
-use super::voxels::ScatterVoxels;
+use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::GpuError;
 use crate::gpu::eye::gather::EyePass;
@@ -11,6 +11,22 @@ use crate::gpu::resources::pass;
 use crate::gpu::resources::uniforms;
 use crate::gpu::resources::uniforms::Phase;
 use crate::gpu::volume::{Gpu, entry};
+
+/// What a slice is composited from, and into.
+#[derive(Clone, Copy)]
+pub(crate) struct Inputs<'a> {
+    pub scattering: &'a Scattering,
+    pub eye: &'a EyePass,
+    /// What shaders know of the eye.
+    pub eye_uniform: &'a wgpu::Buffer,
+    /// The eye's transfer function.
+    pub table: &'a wgpu::Buffer,
+    /// Light volumes in the order of the lights.
+    pub attenuation: &'a [&'a wgpu::TextureView],
+    /// Colour and opacity so far.
+    pub rays: &'a wgpu::Buffer,
+    pub clamped: &'a wgpu::Sampler,
+}
 
 /// The turns of a slice.
 #[derive(Debug)]
@@ -57,15 +73,11 @@ impl Footprints {
     }
 
     /// Composites slice `k`.
-    #[expect(clippy::too_many_arguments, reason = "everything that a picture is made from")]
     pub(crate) fn draw(
         &self,
         gpu: Gpu<'_>,
         scatterer: &Scatterer,
-        voxels: &ScatterVoxels,
-        (counter, eye_uniform, table): (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer),
-        (eye, attenuation): (&EyePass, &[&wgpu::TextureView]),
-        (rays, clamped): (&wgpu::Buffer, &wgpu::Sampler),
+        Inputs { scattering, eye, eye_uniform, table, attenuation, rays, clamped }: Inputs<'_>,
         k: u32,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
@@ -84,10 +96,10 @@ impl Footprints {
             &[
                 entry(0, eye_uniform.as_entire_binding()),
                 entry(1, table.as_entire_binding()),
-                entry(3, voxels.first_words.as_entire_binding()),
+                entry(3, scattering.voxels.first_words.as_entire_binding()),
                 entry(4, scatterer.bricks().as_entire_binding()),
-                entry(5, counter.as_entire_binding()),
-                entry(6, voxels.buffer.as_entire_binding()),
+                entry(5, scattering.counter.as_entire_binding()),
+                entry(6, scattering.voxels.buffer.as_entire_binding()),
             ],
         );
         let uniform: uniforms::Scatter = scatterer.uniform(k, 1.0);

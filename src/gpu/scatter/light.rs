@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::eye::{scatter_dilation, splatted_bricks};
 use super::splat::{Scatterer, Splat, sums};
-use super::voxels::ScatterVoxels;
+use super::voxels::Scattering;
 use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, constants as march_constants, march_uniform};
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::listed_bricks::{self, Listed};
@@ -13,7 +13,7 @@ use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::{Tables, upload_distances, view_entry};
 use crate::gpu::volume::{Gpu, entry};
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Classification, Light, Settings, SheetOrder};
+use crate::model::{Classification, SceneLight, Settings, SheetOrder};
 use crate::plan::{BrickSet, LightView};
 
 /// The sheets of one view of a light, and what was splatted back into the grid.
@@ -37,7 +37,7 @@ impl LightScatter {
     /// Prepares a view; only sheets in the bricks of `read` will be splatted back, or all.
     pub(crate) fn new(
         gpu: Gpu<'_>,
-        voxels: &ScatterVoxels,
+        scattering: &Scattering,
         tables: &Tables,
         view: &LightView,
         (settings, target): (&Settings, &LightVolume),
@@ -55,7 +55,11 @@ impl LightScatter {
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
         let dims = tables.lighting.occupied.dims;
         let unread = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);
-        let thin = if options.leaping { tables.lighting.occupied.distances() } else { vec![0; unread.len()] };
+        let thin = if options.empty_space_skipping {
+            tables.lighting.occupied.distances()
+        } else {
+            vec![0; unread.len()]
+        };
         let pairs: Vec<u8> = unread.into_iter().zip(thin).flat_map(|(r, g)| [r, g]).collect();
         Ok(Self {
             distances: upload_distances(
@@ -65,11 +69,12 @@ impl LightScatter {
                 &pairs,
                 wgpu::TextureFormat::Rg8Uint,
             )?,
-            scatterer: Scatterer::new(gpu, voxels, &view.frame, kernel, what, &seen, 1)?.towards_grid(
-                view.first_pixel.as_vec2().into(),
-                view.cube_face,
-                (target.dims, target.divisor),
-            ),
+            scatterer: Scatterer::new(gpu, &scattering.voxels, &view.frame, kernel, what, &seen, 1)?
+                .towards_grid(
+                    view.first_pixel.as_vec2().into(),
+                    view.cube_face,
+                    (target.dims, target.divisor),
+                ),
             light: sums(gpu.context, "LightScatter::light", nz, [nx, ny])?,
             weights: sums(gpu.context, "LightScatter::weights", nz, [nx, ny])?,
             dilation: scatter_dilation(&view.frame),
@@ -83,10 +88,9 @@ impl LightScatter {
     pub(crate) fn march(
         &self,
         gpu: Gpu<'_>,
-        voxels: &ScatterVoxels,
-        counter: &wgpu::Buffer,
+        scattering: &Scattering,
         table: &wgpu::Buffer,
-        (lamp, settings): (&Light, &Settings),
+        (lamp, settings): (&SceneLight, &Settings),
         view: &LightView,
         sheets: &Sheets,
         slabs: Range<u32>,
@@ -98,14 +102,14 @@ impl LightScatter {
         let constants = [cut, deposit, splat, ("DILATION", f64::from(self.dilation))];
         let pipeline = shaders.pipeline("scatter/light.wgsl", &constants)?;
         let cut = settings.cuts.shading().region(&gpu.volume.scene);
-        let uniform = march_uniform(lamp, &cut, view, sheets, (slabs.start, slabs.end));
+        let uniform = march_uniform(lamp, &cut, view, sheets, slabs.clone());
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
         let mut entries = sheets.march_entries(&uniform, table, &self.distances).to_vec();
         entries.push(entry(5, self.deposits.as_entire_binding()));
         let own = pass::bind(context, "LightScatter::march", &pipeline, 0, &entries);
         for k in slabs {
             if self.scatterer.is_filled(k) {
-                self.scatterer.splat(gpu, voxels, counter, k, encoder)?;
+                self.scatterer.splat(gpu, scattering, k, encoder)?;
             }
             let slab = self.scatterer.uniform_buffer(context, k, 1.0);
             let shared = pass::bind(

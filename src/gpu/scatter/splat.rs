@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::footprint_table::{RADIUS, footprint_table};
 use super::sheet_lists::{slab_lists, slice_lists};
-use super::voxels::ScatterVoxels;
+use super::voxels::{ScatterVoxels, Scattering};
 use crate::gpu::resources::kernel::{kernel_constants, quadrature_constant};
 use crate::gpu::resources::listed_bricks;
 use crate::gpu::resources::pass;
@@ -232,8 +232,7 @@ impl Scatterer {
     pub(crate) fn splat(
         &self,
         gpu: Gpu<'_>,
-        voxels: &ScatterVoxels,
-        counter: &wgpu::Buffer,
+        Scattering { voxels, counter }: &Scattering,
         k: u32,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {

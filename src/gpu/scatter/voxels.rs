@@ -1,5 +1,7 @@
 //! The voxels that scattering splats: a list, brick by brick, of everything that is not empty.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::data::{BRICK_EDGE, Volume};
@@ -21,6 +23,22 @@ pub(crate) struct ScatterVoxels {
     pub first_words: wgpu::Buffer,
     /// Whether empty bricks are listed, too.
     pub holds_all: bool,
+}
+
+/// What a picture scatters, and where it counts how often.
+#[derive(Debug)]
+pub(crate) struct Scattering {
+    pub voxels: Arc<ScatterVoxels>,
+    /// One word: footprints so far.
+    pub counter: wgpu::Buffer,
+}
+
+impl Scattering {
+    /// Scattering for one picture, whose footprints are counted from zero.
+    pub(crate) fn new(context: &Context, voxels: Arc<ScatterVoxels>) -> Self {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        Self { voxels, counter: context.buffer("Scattering::counter", &[0u32], usage) }
+    }
 }
 
 impl ScatterVoxels {

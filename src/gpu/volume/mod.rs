@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 use half::f16;
 
-use super::resources::pool::Recycled;
+use super::resources::pool::ResourcePool;
+use super::resources::tools::Tools;
 use super::resources::uniforms::Grid;
 use super::{Context, GpuError};
 use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
@@ -25,51 +26,59 @@ const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
 /// Upload block: small enough that one takes a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;
 
-/// What every pass works with.
+/// What every pass over a volume works with.
 #[derive(Clone, Copy)]
-pub(super) struct Gpu<'a> {
+pub(crate) struct Gpu<'a> {
     pub context: &'a Context,
     pub shaders: &'a super::ShaderLibrary,
     pub volume: &'a GpuVolume,
-    /// Bound where a light has no volume.
-    pub nothing: &'a wgpu::TextureView,
-    pub recycled: &'a Recycled,
+    /// Bound where a shader declares a light volume and a light has none.
+    pub placeholder: &'a wgpu::TextureView,
+    pub pool: &'a ResourcePool,
+}
+
+impl<'a> Gpu<'a> {
+    /// Tools together with a volume.
+    pub(crate) fn new(tools: &'a Tools, volume: &'a GpuVolume) -> Self {
+        let Tools { context, shaders, pool, placeholder } = tools;
+        Self { context, shaders, volume, placeholder, pool }
+    }
 }
 
 impl Gpu<'_> {
     /// A uniform for what is being recorded.
-    pub(super) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
-        self.recycled.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
+    pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
+        self.pool.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
     }
 
     /// A list for what is being recorded; the buffer may be longer.
-    pub(super) fn list<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
-        self.recycled.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
+    pub(crate) fn list<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
+        self.pool.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
     }
 
     /// The same in a buffer of so many bytes at least: lists of any length up to that use one.
-    pub(super) fn list_with_room<T: bytemuck::NoUninit>(
+    pub(crate) fn list_with_room<T: bytemuck::NoUninit>(
         &self,
         label: &'static str,
         values: &[T],
         room: u64,
     ) -> wgpu::Buffer {
-        self.recycled.buffer_with_room(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
+        self.pool.buffer_with_room(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
     }
 
     /// Binds resources to a group of a pipeline.
-    pub(super) fn bind(
+    pub(crate) fn bind(
         &self,
         label: &str,
         pipeline: &wgpu::ComputePipeline,
         group: u32,
         entries: &[wgpu::BindGroupEntry<'_>],
     ) -> wgpu::BindGroup {
-        self.recycled.bind(self.context, label, pipeline, group, entries)
+        self.pool.bind(self.context, label, pipeline, group, entries)
     }
 
     /// Bind group 1 of passes that look at the pyramid alone.
-    pub(super) fn bind_pyramid(&self, pipeline: &wgpu::ComputePipeline) -> wgpu::BindGroup {
+    pub(crate) fn bind_pyramid(&self, pipeline: &wgpu::ComputePipeline) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
         self.bind(
@@ -85,7 +94,7 @@ impl Gpu<'_> {
     }
 
     /// Bind group 1 of the passes that sample density.
-    pub(super) fn bind_volume(
+    pub(crate) fn bind_volume(
         &self,
         pipeline: &wgpu::ComputePipeline,
         dilation: i32,
@@ -110,7 +119,7 @@ impl Gpu<'_> {
 
 /// The levels of the pyramid that a pass may read.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Levels {
+pub(crate) enum Levels {
     /// No kernel is stretched.
     Finest,
     /// Kernels are stretched.
@@ -119,12 +128,12 @@ pub(super) enum Levels {
 
 impl Levels {
     /// What kernels need that are stretched or not.
-    pub(super) fn of(is_stretched: bool) -> Self {
+    pub(crate) fn of(is_stretched: bool) -> Self {
         if is_stretched { Self::All } else { Self::Finest }
     }
 
     /// The view that has these levels.
-    pub(super) fn choose(self, views: &LevelViews) -> &wgpu::TextureView {
+    pub(crate) fn choose(self, views: &LevelViews) -> &wgpu::TextureView {
         match self {
             Self::Finest => &views.finest,
             Self::All => &views.all,
@@ -135,7 +144,7 @@ impl Levels {
 /// A texture of the pyramid as a whole, and its finest level alone: a software driver works out the sizes of
 /// levels for each lane and fetch where there are several.
 #[derive(Debug)]
-pub(super) struct LevelViews {
+pub(crate) struct LevelViews {
     /// Every level.
     pub all: wgpu::TextureView,
     /// Level 0.
@@ -152,7 +161,7 @@ impl LevelViews {
 
 /// A volume's textures and bricks.
 #[derive(Debug)]
-pub(super) struct GpuVolume {
+pub(crate) struct GpuVolume {
     /// What is on the GPU; kept for re-upload and for the CPU side of the passes.
     pub volume: Arc<Volume>,
     /// Density ranges of 8³ bricks.
@@ -180,7 +189,7 @@ impl GpuVolume {
     ///
     /// # Errors
     /// When the adapter cannot hold them.
-    pub(super) fn new(
+    pub(crate) fn new(
         context: &Context,
         volume: &Arc<Volume>,
         bricks: &Arc<Bricks>,
@@ -222,13 +231,13 @@ impl GpuVolume {
     }
 
     /// How many slices one upload step takes.
-    pub(super) fn slices_per_step(&self) -> usize {
+    pub(crate) fn slices_per_step(&self) -> usize {
         let [nx, ny, _] = self.volume.dims();
         (UPLOAD_BYTES / (nx * ny * 2)).max(1)
     }
 
     /// Uploads some z-slices.
-    pub(super) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
+    pub(crate) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
         use rayon::prelude::*;
         let [nx, ny, _] = self.volume.dims();
         let encode =
@@ -260,12 +269,12 @@ impl GpuVolume {
     }
 
     /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.
-    pub(super) fn grid(&self, dilation: i32) -> Grid {
+    pub(crate) fn grid(&self, dilation: i32) -> Grid {
         Grid { dilation, ..self.grid }
     }
 
     /// Bytes of its textures.
-    pub(super) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let texels = |texture: &wgpu::Texture| {
             let size = texture.size();
             u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
@@ -280,7 +289,7 @@ impl GpuVolume {
 ///
 /// # Errors
 /// When the adapter cannot hold them.
-pub(super) fn textures(
+pub(crate) fn textures(
     context: &Context,
     volume: &Volume,
     dims: [usize; 3],
@@ -318,12 +327,12 @@ fn padded(dims: [usize; 3]) -> [usize; 3] {
 }
 
 /// One entry of a bind group.
-pub(super) fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
+pub(crate) fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry { binding, resource }
 }
 
 /// A 3D texture without mip levels.
-pub(super) fn texture_3d(
+pub(crate) fn texture_3d(
     label: &'static str,
     dims: [usize; 3],
     format: wgpu::TextureFormat,
@@ -346,7 +355,7 @@ pub(super) fn texture_3d(
 }
 
 /// Bricks along each axis of a grid.
-pub(super) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
+pub(crate) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| n.div_ceil(BRICK_EDGE))
 }
 

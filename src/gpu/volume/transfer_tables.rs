@@ -6,13 +6,13 @@ use std::sync::Arc;
 use super::{GpuVolume, brick_dims, entry};
 use crate::gpu::{Context, GpuError};
 use crate::model::{BakedTransfer, Settings};
-use crate::plan::{BrickSet, CellDistances, CellSet};
+use crate::plan::{BrickSet, CellDistances, CellSet, TablesKey};
 
 /// A baked transfer function: its table and where it shows anything.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Table {
     /// What it was baked to.
-    pub baked: BakedTransfer,
+    baked: Arc<BakedTransfer>,
     /// The table as a storage buffer.
     pub buffer: wgpu::Buffer,
     /// Bricks with any extinction.
@@ -32,8 +32,7 @@ impl Table {
     ) -> Self {
         let buffer = context.buffer("Table::entries", &baked.entries, wgpu::BufferUsages::STORAGE);
         if let Some(known) = known.into_iter().find(|known| baked.shows_like(&known.baked)) {
-            let (occupied, distances) = (Arc::clone(&known.occupied), Arc::clone(&known.distances));
-            return Self { baked, buffer, occupied, distances };
+            return Self { baked: Arc::new(baked), buffer, ..known.clone() };
         }
         let dims = volume.bricks.dims;
         let occupied = BrickSet::new(dims, volume.bricks.occupancy(baked.visibility()));
@@ -43,11 +42,11 @@ impl Table {
             occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
         };
         let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
-        Self { baked, buffer, occupied: Arc::new(occupied), distances }
+        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances }
     }
 
     /// Whether the lowest density has any extinction.
-    pub(crate) fn shows_nothing(&self) -> bool {
+    pub(crate) fn shows_empty_space(&self) -> bool {
         self.baked.entries[0][3] > 0.0
     }
 
@@ -68,10 +67,8 @@ pub(crate) struct Tables {
     pub eye_distances: wgpu::TextureView,
     /// Distances in cells: r to the nearest that either shows, g to the nearest that attenuates light.
     pub light_distances: wgpu::TextureView,
-    /// Whether the bounds of cells hold for all kernels in use.
-    bounded: bool,
     /// Distances to what either shows: an eye sample looks up its light not far from there.
-    lit: Arc<CellDistances>,
+    shown: Arc<CellDistances>,
     /// Cells of light volumes up to a distance from there, by that distance and the volumes' divisor.
     needed: RefCell<Vec<Needed>>,
 }
@@ -80,44 +77,54 @@ pub(crate) struct Tables {
 type Needed = ((u8, usize), Arc<CellSet>);
 
 impl Tables {
-    /// Bakes both and finds their cells.
-    pub(crate) fn new(context: &Context, volume: &GpuVolume, settings: &Settings) -> Result<Self, GpuError> {
-        Self::after(None, context, volume, settings)
-    }
-
-    /// The same, with what tables of other settings know already.
-    fn after(
-        previous: Option<&Self>,
+    /// Bakes what other tables of the volume, made from another key, do not hold already. Returns the tables and
+    /// how many of them were baked.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(
         context: &Context,
         volume: &GpuVolume,
         settings: &Settings,
-    ) -> Result<Self, GpuError> {
+        key: &TablesKey,
+        previous: Option<(&TablesKey, &Self)>,
+    ) -> Result<(Self, u32), GpuError> {
         let range = volume.volume.value_range();
-        let bounded = settings.cells_are_bounds();
-        let known = || {
-            let same = previous.filter(|previous| previous.bounded == bounded);
-            same.into_iter().flat_map(|previous| [&previous.eye, &previous.lighting])
+        let bounded = key.cells_are_bounds;
+        let previous = previous.filter(|(known, _)| known.cells_are_bounds == bounded);
+        let known = || previous.into_iter().flat_map(|(_, tables)| [&tables.eye, &tables.lighting]);
+        let mut baked = 0;
+        let eye = if let Some((_, tables)) = previous.filter(|(known, _)| known.eye == key.eye) {
+            tables.eye.clone()
+        } else {
+            baked += 1;
+            Table::new(context, volume, settings.baked_eye(range, &volume.scene), bounded, known())
         };
-        let eye = Table::new(context, volume, settings.baked_eye(range, &volume.scene), bounded, known());
-        let lighting = settings.baked_lighting(range, &volume.scene);
-        let lighting = Table::new(context, volume, lighting, bounded, known().chain([&eye]));
-        if let Some(previous) = previous {
+        let lighting = if let Some((_, tables)) = previous.filter(|(known, _)| known.lighting == key.lighting)
+        {
+            tables.lighting.clone()
+        } else {
+            baked += 1;
+            let lighting = settings.baked_lighting(range, &volume.scene);
+            Table::new(context, volume, lighting, bounded, known().chain([&eye]))
+        };
+        if let Some((_, tables)) = previous {
             let is_same = |a: &Table, b: &Table| Arc::ptr_eq(&a.distances, &b.distances);
-            if is_same(&eye, &previous.eye) && is_same(&lighting, &previous.lighting) {
+            if is_same(&eye, &tables.eye) && is_same(&lighting, &tables.lighting) {
                 let (eye_distances, light_distances) =
-                    (previous.eye_distances.clone(), previous.light_distances.clone());
-                let (lit, needed) = (Arc::clone(&previous.lit), previous.needed.clone());
-                return Ok(Self { eye, lighting, eye_distances, light_distances, bounded, lit, needed });
+                    (tables.eye_distances.clone(), tables.light_distances.clone());
+                let (shown, needed) = (Arc::clone(&tables.shown), tables.needed.clone());
+                return Ok((Self { eye, lighting, eye_distances, light_distances, shown, needed }, baked));
             }
         }
-        let lit = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
+        let shown = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
             Arc::clone(&eye.distances)
         } else {
             Arc::new(eye.distances.nearest(&lighting.distances))
         };
-        let dims = lit.dims;
+        let dims = shown.dims;
         let pairs: Vec<u8> =
-            lit.values.iter().zip(&lighting.distances.values).flat_map(|(r, g)| [*r, *g]).collect();
+            shown.values.iter().zip(&lighting.distances.values).flat_map(|(r, g)| [*r, *g]).collect();
         let eye_distances = upload_distances(
             context,
             "Tables::eye_distances",
@@ -133,7 +140,7 @@ impl Tables {
             wgpu::TextureFormat::Rg8Unorm,
         )?;
         let needed = RefCell::default();
-        Ok(Self { eye, lighting, eye_distances, light_distances, bounded, lit, needed })
+        Ok((Self { eye, lighting, eye_distances, light_distances, shown, needed }, baked))
     }
 
     /// The cells of a light volume, of `divisor` data voxels per voxel, that hold a cell at most `reach`
@@ -145,32 +152,14 @@ impl Tables {
             return Arc::clone(known);
         }
         let dims = brick_dims(volume.volume.dims().map(|n| n.div_ceil(divisor)));
-        let fresh = Arc::new(self.lit.within(reach, divisor, dims));
+        let fresh = Arc::new(self.shown.within(reach, divisor, dims));
         needed.push((key, Arc::clone(&fresh)));
         fresh
     }
 
     /// Whether either shows the lowest density, which is also that of what lies around the grid.
-    pub(crate) fn show_nothing(&self) -> bool {
-        self.eye.shows_nothing() || self.lighting.shows_nothing()
-    }
-
-    /// Brings the tables up to date with changed settings. Whether there was anything to do.
-    pub(crate) fn refresh(
-        &mut self,
-        context: &Context,
-        volume: &GpuVolume,
-        settings: &Settings,
-    ) -> Result<bool, GpuError> {
-        let range = volume.volume.value_range();
-        let eye = settings.baked_eye(range, &volume.scene);
-        let lighting = settings.baked_lighting(range, &volume.scene);
-        let bounded = settings.cells_are_bounds();
-        let is_stale = eye != self.eye.baked || lighting != self.lighting.baked || bounded != self.bounded;
-        if is_stale {
-            *self = Self::after(Some(self), context, volume, settings)?;
-        }
-        Ok(is_stale)
+    pub(crate) fn shows_empty_space(&self) -> bool {
+        self.eye.shows_empty_space() || self.lighting.shows_empty_space()
     }
 }
 

@@ -3,16 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 /// The floor is never further below or above the middle of the volume than this, in scene units.
-pub const MAX_GROUND_HEIGHT: f64 = 4.0;
+pub const MAX_FLOOR_HEIGHT: f64 = 4.0;
 
 /// The largest floor, in scene units: far beyond every picture's border.
-pub const MAX_GROUND_RADIUS: f64 = 100.0;
+pub const MAX_FLOOR_RADIUS: f64 = 100.0;
 
 /// A horizontal disc that takes the shadows of the volume. It is seen from above, behind the volume, and fades
 /// out towards its border.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Ground {
+pub struct Floor {
     /// Whether it is there.
     pub on: bool,
     /// Where it lies: z in scene space.
@@ -27,14 +27,14 @@ pub struct Ground {
     pub shadow_only: bool,
 }
 
-impl Default for Ground {
+impl Default for Floor {
     fn default() -> Self {
         // A mid grey is darker than what lies on it in light, and lighter than its shadows.
         Self { on: false, height: -1.0, radius: 4.0, color: [0.6; 3], opacity: 1.0, shadow_only: false }
     }
 }
 
-impl Ground {
+impl Floor {
     /// Share of the radius up to which it is whole.
     pub const WHOLE: f64 = 0.3;
 
@@ -52,8 +52,8 @@ mod tests {
 
     #[test]
     fn the_floor_fades_out() {
-        let ground = Ground { radius: 2.0, opacity: 0.8, ..Ground::default() };
-        assert_eq!([0.0, 0.6, 2.0, 9.0].map(|distance| ground.presence(distance)), [0.8, 0.8, 0.0, 0.0]);
-        assert!((ground.presence(1.3) - 0.4).abs() < 1e-12);
+        let floor = Floor { radius: 2.0, opacity: 0.8, ..Floor::default() };
+        assert_eq!([0.0, 0.6, 2.0, 9.0].map(|distance| floor.presence(distance)), [0.8, 0.8, 0.0, 0.0]);
+        assert!((floor.presence(1.3) - 0.4).abs() < 1e-12);
     }
 }

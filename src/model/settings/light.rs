@@ -23,7 +23,7 @@ pub enum LightKind {
 #[serde(rename_all = "snake_case")]
 pub enum LightLock {
     /// The scene: the light stays where it is when the camera turns.
-    World,
+    Scene,
     /// The camera's axes (right, up, back) around the origin: the light turns with it. At
     /// `[0, 0, z]` it is a headlight.
     Camera,
@@ -85,7 +85,7 @@ impl Default for Light {
             intensity: 1.0,
             on: true,
             casts_shadows: true,
-            lock: LightLock::World,
+            lock: LightLock::Scene,
             hood: Hood::default(),
             density_scale: 1.0,
         }
@@ -114,35 +114,77 @@ impl Cone {
     }
 }
 
+/// A light as every pass sees it: resolved into scene space, whatever it is locked to, and without a name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneLight {
+    /// How its light travels.
+    pub kind: LightKind,
+    /// In scene space: where a perspective light is, and a point in the direction of a parallel one.
+    pub position: [f64; 3],
+    /// sRGB, 0 … 1.
+    pub color: [f32; 3],
+    /// Multiplies its colour.
+    pub intensity: f64,
+    /// Whether it shines.
+    pub on: bool,
+    /// Whether material attenuates it.
+    pub casts_shadows: bool,
+    /// Narrows a perspective light to a cone.
+    pub hood: Hood,
+    /// Multiplies the extinction that it meets.
+    pub density_scale: f64,
+}
+
 impl Light {
-    /// The same light with its position in the scene.
-    #[must_use]
-    pub fn in_world(&self, camera: &Camera) -> Self {
-        match self.lock {
-            LightLock::World => self.clone(),
-            LightLock::Camera => {
-                let position = camera.scene_from_view() * DVec3::from(self.position);
-                Self { position: position.into(), lock: LightLock::World, ..self.clone() }
-            }
+    /// The light where it stands in the scene, for the given camera.
+    pub fn in_scene(&self, camera: &Camera) -> SceneLight {
+        let Self { name: _, kind, position, color, intensity, on, casts_shadows, lock, hood, density_scale } =
+            self;
+        let position = match lock {
+            LightLock::Scene => *position,
+            LightLock::Camera => (camera.scene_from_view() * DVec3::from(*position)).into(),
+        };
+        SceneLight {
+            kind: *kind,
+            position,
+            color: *color,
+            intensity: *intensity,
+            on: *on,
+            casts_shadows: *casts_shadows,
+            hood: *hood,
+            density_scale: *density_scale,
         }
     }
 
     /// Changes what the position refers to and leaves the light where it is.
     pub fn set_lock(&mut self, lock: LightLock, camera: &Camera) {
-        let world = self.in_world(camera).position;
+        let place = self.in_scene(camera).position;
         self.lock = lock;
-        self.set_world_position(world.into(), camera);
+        self.set_scene_position(place.into(), camera);
     }
 
     /// Moves the light to a position in the scene.
-    pub fn set_world_position(&mut self, world: DVec3, camera: &Camera) {
+    pub fn set_scene_position(&mut self, place: DVec3, camera: &Camera) {
         self.position = match self.lock {
-            LightLock::World => world.into(),
-            LightLock::Camera => (camera.scene_from_view().transpose() * world).into(),
+            LightLock::Scene => place.into(),
+            LightLock::Camera => (camera.scene_from_view().transpose() * place).into(),
         };
     }
 
-    /// The cone in which a light shines whose position refers to the scene.
+    /// Whether shadows of this light need an attenuation volume, or rays.
+    pub fn needs_volume(&self) -> bool {
+        self.on && self.casts_shadows && self.intensity > 0.0
+    }
+}
+
+impl Default for SceneLight {
+    fn default() -> Self {
+        Light::default().in_scene(&Camera::default())
+    }
+}
+
+impl SceneLight {
+    /// The cone in which the light shines; open for parallel lights and without a hood.
     pub fn cone(&self) -> Cone {
         let Hood { on, half_angle_deg, rim_deg } = self.hood;
         if !on || self.kind == LightKind::Parallel {

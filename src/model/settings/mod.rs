@@ -17,13 +17,14 @@ use serde::{Deserialize, Serialize};
 
 use super::transfer::unit_in_scene;
 use super::{
-    BakedTransfer, Camera, Classification, Cuts, Engine, Gradients, Ground, Kernel, Length, Light,
+    BakedTransfer, Camera, Classification, Cuts, Engine, Floor, Gradients, Kernel, Length, Light,
     LightStorage, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE};
 use crate::math::SceneSpace;
 
-/// Version of the JSON form. Older files are migrated, newer ones are read as far as possible.
+/// Version of the JSON form. Files of every version are read as far as possible: what they lack keeps its
+/// default, and what is not known here is reported.
 pub const SCHEMA: u32 = 1;
 
 /// Everything that decides what a picture of a volume looks like.
@@ -49,7 +50,7 @@ pub struct Settings {
     /// What of the volume is left out.
     pub cuts: Cuts,
     /// The floor under the volume.
-    pub ground: Ground,
+    pub floor: Floor,
     /// How the eye's sheets are sampled.
     pub sampling: Sampling,
     /// What happens to the picture at the end.
@@ -70,7 +71,7 @@ impl Default for Settings {
             shading: Shading::default(),
             shadows: Shadows::default(),
             cuts: Cuts::default(),
-            ground: Ground::default(),
+            floor: Floor::default(),
             sampling: Sampling::default(),
             output: Output::default(),
             views: BTreeMap::new(),
@@ -177,11 +178,11 @@ impl Settings {
     /// Whether all light that material has attenuated is kept in one volume of colours. Left to
     /// itself: when that takes less memory than a volume for each light, and no highlights would be
     /// lost.
-    pub fn collapses_lights(&self) -> bool {
+    pub fn combines_lights(&self) -> bool {
         let shadowed = self.lights.iter().filter(|light| light.needs_volume()).count();
         let wanted = match self.shadows.storage {
             LightStorage::PerLight => false,
-            LightStorage::Collapsed => true,
+            LightStorage::Combined => true,
             // Four 16-bit colours and weights against one number for each light.
             LightStorage::Auto => self.shading.specular == 0.0 && shadowed > 4,
         };

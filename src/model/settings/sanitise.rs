@@ -2,8 +2,8 @@
 //! negative extinction or as an endless loop.
 
 use crate::model::{
-    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Ground, Hood, Kernel, Light, MAX_BIAS_VOXELS,
-    MAX_GROUND_HEIGHT, MAX_GROUND_RADIUS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling, Settings, Shading,
+    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light, MAX_BIAS_VOXELS,
+    MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling, Settings, Shading,
     Shadows,
 };
 
@@ -83,9 +83,9 @@ impl Settings {
             *normal = ClipPlane::default().normal;
         }
         number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
-        let Ground { on: _, height, radius, color, opacity, shadow_only: _ } = &mut self.ground;
-        number(height, -MAX_GROUND_HEIGHT, MAX_GROUND_HEIGHT, default.ground.height);
-        number(radius, 0.1, MAX_GROUND_RADIUS, default.ground.radius);
+        let Floor { on: _, height, radius, color, opacity, shadow_only: _ } = &mut self.floor;
+        number(height, -MAX_FLOOR_HEIGHT, MAX_FLOOR_HEIGHT, default.floor.height);
+        number(radius, 0.1, MAX_FLOOR_RADIUS, default.floor.radius);
         rgb(color);
         number(opacity, 0.0, 1.0, 1.0);
         let length = self.opacity_unit.number();

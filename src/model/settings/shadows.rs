@@ -88,7 +88,7 @@ pub enum LightStorage {
     PerLight,
     /// One volume of the diffuse light of all (P §4): no highlights from lights that cast shadows, and
     /// every change of one fills the volumes of all again.
-    Collapsed,
+    Combined,
 }
 
 /// How light is attenuated on its way, and the cures for darkness (P §4).

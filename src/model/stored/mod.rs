@@ -3,3 +3,4 @@
 pub(super) mod library;
 pub(super) mod preset;
 pub(super) mod record;
+mod renames;

@@ -4,6 +4,7 @@
 
 use serde_json::Value;
 
+use super::renames::{current_path, rename};
 use crate::model::{SCHEMA, Settings};
 
 /// Why JSON does not become settings.
@@ -44,8 +45,10 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     if !overlay.is_object() {
         return Err(PresetError::NotAnObject);
     }
+    let mut overlay = overlay.clone();
+    rename("", &mut overlay);
     let mut merged = serde_json::to_value(settings).map_err(PresetError::Form)?;
-    merge(&mut merged, overlay);
+    merge(&mut merged, &overlay);
     let mut result: Settings = serde_json::from_value(merged).map_err(PresetError::Form)?;
     let mut warnings = Vec::new();
     if result.schema > SCHEMA {
@@ -53,7 +56,7 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     }
     result.schema = SCHEMA;
     let understood = serde_json::to_value(&result).map_err(PresetError::Form)?;
-    list_unknown(overlay, &understood, "", &mut warnings);
+    list_unknown(&overlay, &understood, "", &mut warnings);
     result.sanitise();
     Ok((result, warnings))
 }
@@ -75,7 +78,8 @@ pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Setting
     let mut tree = serde_json::to_value(settings).map_err(PresetError::Form)?;
     let mut node = &mut tree;
     let mut walked: Vec<&str> = Vec::new();
-    for key in path.split('.') {
+    let current = current_path(path);
+    for key in current.split('.') {
         let known = match &*node {
             Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
             Value::Array(items) => format!("0 … {}", items.len().saturating_sub(1)),
@@ -94,6 +98,7 @@ pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Setting
         walked.push(key);
     }
     *node = serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.to_owned()));
+    rename(&current, node);
     let mut result: Settings = serde_json::from_value(tree).map_err(PresetError::Form)?;
     result.sanitise();
     Ok(result)
@@ -132,7 +137,7 @@ fn list_unknown(given: &Value, understood: &Value, path: &str, warnings: &mut Ve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Kernel, Length};
+    use crate::model::{Kernel, Length, LightLock, LightStorage};
 
     #[test]
     fn round_trip() {
@@ -171,6 +176,20 @@ mod tests {
         let err = apply_path(&settings, "shadows.strenght", "1").unwrap_err().to_string();
         assert!(err.contains("shadows") && err.contains("strength"), "{err}");
         assert!(apply_path(&settings, "shadows.strength", "much").is_err());
+    }
+
+    #[test]
+    fn names_from_before_are_understood() {
+        let saved =
+            r#"{"ground": {"on": true}, "lights": [{"lock": "world"}], "shadows": {"storage": "collapsed"}}"#;
+        let (settings, warnings) = load_json(&Settings::default(), saved).unwrap();
+        assert!(settings.floor.on && warnings.is_empty(), "{warnings:?}");
+        assert_eq!(settings.shadows.storage, LightStorage::Combined);
+        let set = |path: &str, value: &str| apply_path(&Settings::default(), path, value).unwrap();
+        assert!(set("ground.on", "true").floor.on && set("ground", r#"{"on": true}"#).floor.on);
+        assert_eq!(set("shadows.storage", "collapsed").shadows.storage, LightStorage::Combined);
+        assert_eq!(set("lights.0.lock", "world").lights[0].lock, LightLock::Scene);
+        assert!(apply_path(&Settings::default(), "ground.colour", "1").is_err());
     }
 
     #[test]

@@ -15,7 +15,7 @@ pub fn linear_from_oklab(lab: [f64; 3]) -> [f64; 3] {
 
 /// The same as lightness, chroma and hue in degrees (0 … 360; 0 for greys).
 pub fn lch_from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
-    let chroma = a.hypot(b);
+    let chroma = (a * a + b * b).sqrt();
     // Rounding gives greys a chroma of 1e-8, and any hue.
     let hue = if chroma < 1e-6 { 0.0 } else { b.atan2(a).to_degrees().rem_euclid(360.0) };
     [l, chroma, hue]

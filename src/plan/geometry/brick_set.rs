@@ -101,7 +101,7 @@ impl BrickSet {
     }
 }
 
-/// One line of a separable Chebyshev transform: out[i] = min over j of max(in[j], |i − j|).
+/// One line of a separable Chebyshev transform: `out[i]` = min over j of max(`in[j]`, |i − j|).
 fn sweep(distances: &mut [u8], start: usize, stride: usize, length: usize) {
     let line: Vec<u8> = (0..length).map(|i| distances[start + i * stride]).collect();
     if line.iter().all(|&d| d == 255) || line.iter().all(|&d| d == 0) {

@@ -5,7 +5,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::sheet_frame::{Placement, SheetFrame};
 use crate::math::SceneSpace;
-use crate::model::{Light, LightKind, Shadows};
+use crate::model::{LightKind, SceneLight, Shadows};
 
 /// A perspective light nearer than this many radii of the volume is split into six views: beyond
 /// it, the volume fits a cone of ± asin(1/1.5) = 42°, no wider than one face of a cube.
@@ -105,7 +105,7 @@ impl LightView {
 }
 
 /// The views of a light over a scene, with the pitch, slab and resolution that `shadows` asks for.
-pub fn light_views(light: &Light, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
+pub fn light_views(light: &SceneLight, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
     let radius = scene.support_radius();
     let edge = (scene.smallest_edge() * shadows.resolution.divisor() as f64).max(2.0 * radius / MAX_PIXELS);
     let position = DVec3::from(light.position);
@@ -218,7 +218,7 @@ mod tests {
     }
 
     fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
-        light_views(&Light { kind, position, ..Light::default() }, &Shadows::default(), &scene())
+        light_views(&SceneLight { kind, position, ..SceneLight::default() }, &Shadows::default(), &scene())
     }
 
     #[test]
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn flat_voxels_do_not_need_endless_sheets() {
         let flat = SceneSpace::new([10, 10, 400], DAffine3::from_scale(DVec3::new(0.01, 0.01, 5.0)));
-        let light = Light { position: [1.0, 1.0, 1.0], ..Light::default() };
+        let light = SceneLight { position: [1.0, 1.0, 1.0], ..SceneLight::default() };
         for view in light_views(&light, &Shadows::default(), &flat) {
             assert!(view.frame.size.iter().all(|&n| n <= 2048), "{:?}", view.frame.size);
             assert!(view.frame.slab_count <= 2048);

@@ -28,11 +28,11 @@ const SLACK: f64 = 1.0;
 /// An entry is the tile's column, its row (from bit 15), and a bit for the first chunk in which it occurs
 /// (bit 31).
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ReadTiles {
+pub struct MarchTiles {
     chunks: Vec<Vec<u32>>,
 }
 
-impl ReadTiles {
+impl MarchTiles {
     /// Every tile in every chunk of so many slabs.
     pub fn all(view: &LightView, chunk: u32) -> Self {
         let mut marked = Marked::new(view, chunk);
@@ -129,7 +129,7 @@ impl Marked {
         }
     }
 
-    fn listed(self) -> ReadTiles {
+    fn listed(self) -> MarchTiles {
         let mut is_new = vec![true; (self.size[0] * self.size[1]) as usize];
         let width = self.size[0];
         let list = |tiles: &Vec<bool>| {
@@ -140,7 +140,7 @@ impl Marked {
             };
             marked.map(entry).collect()
         };
-        ReadTiles { chunks: self.chunks.iter().map(list).collect() }
+        MarchTiles { chunks: self.chunks.iter().map(list).collect() }
     }
 }
 
@@ -154,7 +154,7 @@ fn whole(low: f64, high: f64, length: f64, count: usize) -> Option<RangeInclusiv
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Light, LightKind, Shadows};
+    use crate::model::{LightKind, SceneLight, Shadows};
     use crate::plan::light_views;
 
     const CHUNK: u32 = 8;
@@ -164,10 +164,10 @@ mod tests {
     }
 
     fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
-        light_views(&Light { kind, position, ..Light::default() }, &Shadows::default(), &scene())
+        light_views(&SceneLight { kind, position, ..SceneLight::default() }, &Shadows::default(), &scene())
     }
 
-    fn has(tiles: &ReadTiles, [i, j]: [u32; 2], slab: u32) -> bool {
+    fn has(tiles: &MarchTiles, [i, j]: [u32; 2], slab: u32) -> bool {
         let wanted = (i / TILE_EDGE) | ((j / TILE_EDGE) << BITS);
         tiles.of_chunk((slab / CHUNK) as usize).iter().any(|tile| tile & !FIRST == wanted)
     }
@@ -184,7 +184,7 @@ mod tests {
         ] {
             let mut met = 0;
             for view in views(kind, position) {
-                let tiles = ReadTiles::behind(&view, &scene, CHUNK, std::iter::once([low, high]));
+                let tiles = MarchTiles::behind(&view, &scene, CHUNK, std::iter::once([low, high]));
                 let [width, height] = view.frame.size;
                 for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
                     for k in 0..view.frame.slab_count {
@@ -206,11 +206,11 @@ mod tests {
         let scene = scene();
         let view = &views(LightKind::Perspective, [1.0, 2.0, 3.0])[0];
         let around = |low: DVec3| std::iter::once([low, low + 1.0]);
-        let count = |tiles: &ReadTiles| tiles.chunks.iter().map(Vec::len).sum::<usize>();
-        let few = count(&ReadTiles::behind(view, &scene, CHUNK, around(DVec3::splat(10.0))));
+        let count = |tiles: &MarchTiles| tiles.chunks.iter().map(Vec::len).sum::<usize>();
+        let few = count(&MarchTiles::behind(view, &scene, CHUNK, around(DVec3::splat(10.0))));
         assert!((1..=8).contains(&few), "{few}");
-        assert_eq!(count(&ReadTiles::behind(view, &scene, CHUNK, around(DVec3::splat(500.0)))), 0);
-        let all = ReadTiles::all(view, CHUNK);
+        assert_eq!(count(&MarchTiles::behind(view, &scene, CHUNK, around(DVec3::splat(500.0)))), 0);
+        let all = MarchTiles::all(view, CHUNK);
         let each = view.frame.size.map(|n| n.div_ceil(TILE_EDGE) as usize).iter().product::<usize>();
         assert_eq!(count(&all), each * view.frame.slab_count.div_ceil(CHUNK) as usize);
     }
@@ -232,7 +232,7 @@ mod tests {
         let view = &views(LightKind::Parallel, [1.0, 0.3, 0.2])[0];
         let boxes =
             [[DVec3::splat(2.0), DVec3::splat(6.0)], [DVec3::splat(9.0), DVec3::new(30.0, 12.0, 15.0)]];
-        let tiles = ReadTiles::behind(view, &scene, CHUNK, boxes.into_iter());
+        let tiles = MarchTiles::behind(view, &scene, CHUNK, boxes.into_iter());
         let mut seen = std::collections::BTreeSet::new();
         for tile in tiles.chunks.iter().flatten() {
             assert_eq!(tile & FIRST != 0, seen.insert(tile & !FIRST), "{tile:x}");
@@ -248,7 +248,7 @@ mod tests {
         let far = [light + DVec3::new(6.0, -1.0, -1.0), light + DVec3::new(8.0, 1.0, 1.0)];
         let is_listed = |forward: DVec3| {
             let view = views.iter().find(|view| view.axes.z_axis.dot(forward) > 0.99).unwrap();
-            let tiles = ReadTiles::behind(view, &scene, CHUNK, std::iter::once(far));
+            let tiles = MarchTiles::behind(view, &scene, CHUNK, std::iter::once(far));
             tiles.chunks.iter().any(|tiles| !tiles.is_empty())
         };
         assert!(is_listed(DVec3::X) && !is_listed(DVec3::NEG_X));

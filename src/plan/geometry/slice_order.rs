@@ -39,7 +39,7 @@ mod tests {
     use super::*;
     use crate::math::SceneSpace;
     use crate::model::{Camera, Projection};
-    use crate::plan::geometry::eye_frame;
+    use crate::plan::geometry::eye_frame::eye_frame;
     use glam::DAffine3;
 
     #[test]

@@ -2,7 +2,7 @@
 //! against the paper's literal footprints.
 
 use super::{SIZE, check_against, round_to_f16};
-use crate::common::{Loaded, attenuation, context, render};
+use crate::common::{Dataset, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
 use crate::thresholds::{BYTE_STEP, BYTES, LITERAL};
@@ -16,9 +16,9 @@ use glam::DVec3;
 
 /// Sheets, light volumes and picture of one look, each against the reference.
 fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
-    let loaded = Loaded::new(scenes::creature(8, spacing_mm));
+    let loaded = Dataset::new(scenes::creature(8, spacing_mm));
     assert_eq!(
-        stored_density(&context(), &loaded.volume, 0.3),
+        stored_density(&context(), loaded.volume(), 0.3),
         round_to_f16(0.3),
         "8-bit data are stored as f16"
     );
@@ -183,9 +183,9 @@ fn check_literal(n: usize, kind: LightKind, position: [f64; 3]) {
     settings.lights = vec![scenes::light(kind, position)];
     settings.sampling.quadrature = Quadrature::Two;
     settings.shadows.quadrature = Quadrature::Two;
-    let loaded = Loaded::new(scenes::creature(n, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(n, DVec3::ONE));
     let options = Options { weights: Weights::Footprint, ..Options::default() };
-    let reference = Reference::new(&loaded.volume, &settings, options);
+    let reference = Reference::new(loaded.volume(), &settings, options);
     let expected = reference.picture(SIZE, &reference.attenuations());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let found = render(&mut renderer, &loaded, &settings, SIZE);
@@ -218,7 +218,7 @@ fn gradients_from_neighbouring_sheets() {
 /// A byte per voxel: 256 steps, which filtering smooths.
 #[test]
 fn light_volumes_of_bytes() {
-    let loaded = Loaded::new(scenes::creature(48, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
     let context = context();
     assert!(context.byte_volumes, "this adapter cannot show it");
     let mut renderer = Renderer::new(&context).expect("a renderer");
@@ -233,7 +233,7 @@ fn light_volumes_of_bytes() {
     let found = render(&mut renderer, &loaded, &settings, SIZE);
     compare("bytes: picture", &flat32(&found.light), &flat32(&picture.light), BYTES)
         .unwrap_or_else(|err| panic!("{err}"));
-    let voxels = loaded.volume.voxel_count() as u64;
+    let voxels = loaded.volume().voxel_count() as u64;
     let added = renderer.gpu_bytes() - before;
     assert_eq!(added, voxels, "the earlier volume is kept, and this one has a byte per voxel");
 }

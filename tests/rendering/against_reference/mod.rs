@@ -5,7 +5,7 @@ use chiaroscuro::model::{Settings, ShadowAlgorithm};
 use chiaroscuro::reference::{Options, Reference, Rounding};
 use glam::DVec3;
 
-use crate::common::{Loaded, attenuation, context, render};
+use crate::common::{Dataset, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
@@ -29,10 +29,10 @@ pub(crate) fn check_against(
     settings: &Settings,
     rounding: Option<Rounding>,
 ) {
-    let loaded = Loaded::new(scenes::creature(n, spacing_mm));
+    let loaded = Dataset::new(scenes::creature(n, spacing_mm));
     let context = context();
     let options = Options { rounding, ..Options::default() };
-    let reference = Reference::new(&loaded.volume, settings, options);
+    let reference = Reference::new(loaded.volume(), settings, options);
     let mut renderer = Renderer::new(&context).expect("a renderer");
     let mut failures = Vec::new();
     for light in (0..settings.lights.len()).filter(|&light| settings.lights[light].needs_volume()) {
@@ -42,9 +42,7 @@ pub(crate) fn check_against(
         let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat;
         let sheets = if splats { reference.light_sheets(light) } else { Vec::new() };
         for (view, expected) in sheets.iter().enumerate() {
-            let found = renderer
-                .light_sheets(&loaded.volume, &loaded.bricks, settings, light, view)
-                .expect("sheets are read back");
+            let found = renderer.light_sheets(&loaded, settings, light, view).expect("sheets are read back");
             let what = format!("{name}: sheets of light {light}, view {view}");
             failures.extend(compare(&what, &wide(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
         }

@@ -5,7 +5,7 @@ use chiaroscuro::model::{Camera, Engine, Kernel, LightKind, Settings};
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
-use crate::common::{Loaded, attenuation, context, render};
+use crate::common::{Dataset, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
@@ -35,13 +35,13 @@ fn disagree_with(engine: Engine, from: &str, to: &str, fault: Fault) -> bool {
     let mut settings = look();
     settings.sampling.engine = engine;
     let n = if engine == Engine::Scatter { 28 } else { 40 };
-    let loaded = Loaded::new(scenes::creature(n, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(n, DVec3::ONE));
     let context = context();
     let shaders = ShaderLibrary::with_mutation(&context, from, to);
     let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { fault, rounding: Some(rounding), ..Options::default() };
-    let reference = Reference::new(&loaded.volume, &settings, options);
+    let reference = Reference::new(loaded.volume(), &settings, options);
     let expected = reference.attenuations();
     let found = attenuation(&mut renderer, &loaded, &settings, 0);
     let values = &expected[0].as_ref().expect("the light casts shadows").values;

@@ -2,7 +2,7 @@
 //! and against the footprint itself.
 
 use super::check_against;
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::compare::{compare, flat32, wide};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
@@ -85,7 +85,7 @@ fn nothing_that_shows() {
 /// No. 16: The engines' pictures are the same sums in another order.
 #[test]
 fn both_engines_make_the_same_picture() {
-    let loaded = Loaded::new(scenes::creature(48, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = scenes::look();
     settings.sampling.gradients = Gradients::Sheets;
@@ -97,7 +97,7 @@ fn both_engines_make_the_same_picture() {
     let scattered = render(&mut renderer, &loaded, &settings, [128, 96]);
     let splats = renderer.splats().expect("they are counted");
     let voxels =
-        (0..48).flat_map(|z| loaded.volume.slice_densities(z)).filter(|&density| density > 0.0).count();
+        (0..48).flat_map(|z| loaded.volume().slice_densities(z)).filter(|&density| density > 0.0).count();
     println!("{splats} footprints of {voxels} voxels");
     // The eye's B-spline is four voxels long, so it meets four or more of the slabs; so does the light's.
     assert!(splats as usize > 4 * voxels, "{splats} footprints of {voxels} voxels");
@@ -116,7 +116,7 @@ fn single_voxels_reproduce_the_footprint() {
     let mut values = vec![0u8; n * n * n];
     values[7 + n * (8 + n * 9)] = 255;
     let volume = Volume::with_spacing("impulse", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
-    let loaded = Loaded::new(volume);
+    let loaded = Dataset::new(volume);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     // Thin, and linear in density: alpha is 1 − e^−τ with τ proportional to the footprint.
     let per_voxel = 0.5;
@@ -141,8 +141,8 @@ fn single_voxels_reproduce_the_footprint() {
         settings.sampling.kernel = Kernel::Gaussian { sigma };
         settings.sampling.engine = Engine::Scatter;
         let picture = render(&mut renderer, &loaded, &settings, size);
-        let voxel = loaded.volume.scene().scene_from_index.transform_point3(DVec3::new(7.0, 8.0, 9.0));
-        let edge = loaded.volume.scene().smallest_edge();
+        let voxel = loaded.volume().scene().scene_from_index.transform_point3(DVec3::new(7.0, 8.0, 9.0));
+        let edge = loaded.volume().scene().smallest_edge();
         for (at, texel) in picture.light.iter().enumerate() {
             let (i, j) = ((at % 40) as f64 + 0.5, (at / 40) as f64 + 0.5);
             let (origin, direction) = settings.camera.ray_through(i, j, 40.0, 40.0);
@@ -181,7 +181,7 @@ fn scattering_samples_no_density() {
 /// Mean brightness of a ball while the camera turns, and with it the light, which stands to its right:
 /// nothing but the grid's orientation changes.
 fn turned(order: SheetOrder) -> Vec<f64> {
-    let loaded = Loaded::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
+    let loaded = Dataset::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
@@ -230,7 +230,7 @@ fn volume_aligned_sheets_pop_and_image_aligned_ones_do_not() {
 #[test]
 fn every_order_has_the_opacity_of_the_chord() {
     let n = 24;
-    let loaded = Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (6..18).contains(c))));
+    let loaded = Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (6..18).contains(c))));
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     for order in [SheetOrder::ImageAligned, SheetOrder::VolumeAligned, SheetOrder::EveryFootprint] {
         for azimuth_deg in [-90.0, 0.0, 180.0] {

@@ -7,7 +7,7 @@ use chiaroscuro::plan::Request;
 use glam::DVec3;
 
 use super::{SIZE, loaded, three_lights};
-use crate::common::{Loaded, attenuation, context, render};
+use crate::common::{Dataset, attenuation, context, render};
 use crate::scenes;
 use crate::thresholds::F16_STEP;
 
@@ -15,7 +15,7 @@ use crate::thresholds::F16_STEP;
 /// so fetches between them round differently, and nothing else.
 #[test]
 fn skipping_changes_no_bit_and_chunks_only_rounding() {
-    let loaded = Loaded::new(scenes::creature(48, DVec3::new(1.0, 1.0, 1.3)));
+    let loaded = Dataset::new(scenes::creature(48, DVec3::new(1.0, 1.0, 1.3)));
     let mut looks = vec![scenes::look(), three_lights()];
     looks[0].sampling.slab = 2.0;
     looks[0].sampling.quadrature = Quadrature::Two;
@@ -30,9 +30,9 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
     biased.shadows.bias_voxels = 2.0;
     let mut halved = scenes::look();
     halved.shadows.resolution = Resolution::Half;
-    let mut collapsed = three_lights();
-    collapsed.shadows.storage = LightStorage::Collapsed;
-    looks.extend([biased, halved, collapsed]);
+    let mut combined = three_lights();
+    combined.shadows.storage = LightStorage::Combined;
+    looks.extend([biased, halved, combined]);
     for algorithm in [ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
         let mut rays = scenes::look();
         rays.shadows.algorithm = algorithm;
@@ -50,12 +50,15 @@ fn skipping_changes_no_bit_and_chunks_only_rounding() {
     for (at, settings) in looks.iter().enumerate() {
         let picture = |options: &RenderOptions| {
             let mut renderer = Renderer::new(&context()).expect("a renderer");
-            renderer.render(&loaded.volume, &loaded.bricks, settings, [120, 90], options).expect("a picture")
+            renderer.render(&loaded, settings, [120, 90], options).expect("a picture")
         };
         let usual = picture(&RenderOptions::default());
-        let plodding =
-            picture(&RenderOptions { leaping: false, fill_everything: true, ..RenderOptions::default() });
-        assert_eq!(usual.light, plodding.light, "look {at}: leaping changes the picture");
+        let plodding = picture(&RenderOptions {
+            empty_space_skipping: false,
+            fill_everything: true,
+            ..RenderOptions::default()
+        });
+        assert_eq!(usual.light, plodding.light, "look {at}: empty_space_skipping changes the picture");
         let parts = picture(&RenderOptions { light_parts: 3, ..RenderOptions::default() });
         assert_eq!(usual.light, parts.light, "look {at}: cutting chunks into parts changes the picture");
         for chunk in [1, 5, 1000] {
@@ -87,7 +90,7 @@ fn the_same_settings_give_the_same_bytes() {
 #[test]
 fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     let middle = |[x, y, z]: [usize; 3]| [x, y, z].iter().all(|c| (20..28).contains(c));
-    let (loaded, mut settings) = (Loaded::new(scenes::block(48, middle)), three_lights());
+    let (loaded, mut settings) = (Dataset::new(scenes::block(48, middle)), three_lights());
     // Even the thinnest tail of a kernel attenuates light.
     for (point, at) in settings.transfer.points.iter_mut().zip(1..) {
         (point.value, point.opacity) = (f64::from(at) / 2.0, if at == 1 { 0.0 } else { 0.3 });
@@ -96,14 +99,14 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let request = Request {
-        volume: loaded.volume.content_id(),
+        volume: loaded.volume().content_id(),
         settings: settings.clone(),
         size: SIZE.map(|n| n / 4),
         coarse: Some(Resolution::Quarter),
     };
     let options = RenderOptions { preview: true, ..RenderOptions::default() };
-    let mut job = renderer.begin(&loaded.volume, &loaded.bricks, request, &options).expect("a job");
-    while renderer.step(&mut job).expect("a step") {}
+    let mut job = renderer.begin(&loaded, request, &options).expect("a job");
+    while job.step().expect("a step") {}
     assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), fresh);
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "the picture looks up what the preview filled");
 }
@@ -120,7 +123,7 @@ fn what_is_lit_around_a_light_volume_stays_so_until_it_is_filled() {
     };
     let samples = Samples::U8((0..48 * 48 * 48).map(value).collect());
     let volume = Volume::with_spacing("haze", [48; 3], DVec3::ONE, samples).expect("a valid volume");
-    let (loaded, settings) = (Loaded::new(volume), scenes::look());
+    let (loaded, settings) = (Dataset::new(volume), scenes::look());
     let preview = |renderer: &mut Renderer, direction: [f64; 3], onset: f64| {
         let mut settings = settings.clone();
         settings.lights[0].position = direction;
@@ -130,11 +133,11 @@ fn what_is_lit_around_a_light_volume_stays_so_until_it_is_filled() {
         // Filled for a fine picture, and looked up by a coarse one.
         for size in [[256, 192], [16, 12]] {
             let settings = settings.clone();
-            let volume = loaded.volume.content_id();
+            let volume = loaded.volume().content_id();
             let request = Request { volume, settings, size, coarse: Some(Resolution::Half) };
             let options = RenderOptions { preview: true, ..RenderOptions::default() };
-            let mut job = renderer.begin(&loaded.volume, &loaded.bricks, request, &options).expect("a job");
-            while renderer.step(&mut job).expect("a step") {}
+            let mut job = renderer.begin(&loaded, request, &options).expect("a job");
+            while job.step().expect("a step") {}
         }
         renderer.read_light().expect("light")
     };

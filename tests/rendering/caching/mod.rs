@@ -5,11 +5,12 @@ use chiaroscuro::model::{LightKind, Settings};
 use chiaroscuro::plan::Request;
 use glam::DVec3;
 
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::scenes;
 use crate::thresholds::{F16_STEP, REFILLED, SPOILED};
 
 mod bits;
+mod recomputes;
 
 const SIZE: [u32; 2] = [64, 48];
 
@@ -23,8 +24,8 @@ fn three_lights() -> Settings {
     settings
 }
 
-fn loaded() -> Loaded {
-    Loaded::new(scenes::creature(32, DVec3::ONE))
+fn loaded() -> Dataset {
+    Dataset::new(scenes::creature(32, DVec3::ONE))
 }
 
 #[test]
@@ -164,7 +165,7 @@ fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     assert!(worst.fold(0.0, f32::max) <= F16_STEP);
 
     let request = |settings: &Settings| Request {
-        volume: loaded.volume.content_id(),
+        volume: loaded.volume().content_id(),
         settings: settings.clone(),
         size: SIZE,
         coarse: None,

@@ -5,7 +5,7 @@ use chiaroscuro::model::{Camera, Engine, LightKind, Quadrature, ShadowAlgorithm}
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
-use crate::common::{Loaded, attenuation, render};
+use crate::common::{Dataset, attenuation, render};
 use crate::scenes;
 use crate::thresholds::{
     BEER_LAMBERT, CHORD_OPACITY, FAINT, OBLIQUE_CHORD, RAY_BEER_LAMBERT, SLAB_MEAN_CHANGE,
@@ -36,7 +36,7 @@ fn beer_lambert_in_a_homogeneous_block(engine: Engine) {
     let n = 48;
     let face = 8;
     let loaded =
-        Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
+        Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
     for (per_voxel, slab, tolerance) in BEER_LAMBERT {
         for (quadrature, power) in [(Quadrature::One, 1), (Quadrature::Two, 2)] {
             let mut settings = base(engine, per_voxel);
@@ -70,7 +70,7 @@ fn beer_lambert_by_rays() {
     let n = 48;
     let face = 8;
     let loaded =
-        Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
+        Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
     for per_voxel in [0.1, 0.3, 0.7] {
         let mut settings = base(Engine::Gather, per_voxel);
         settings.shadows.algorithm = ShadowAlgorithm::Raycast;
@@ -91,8 +91,8 @@ fn beer_lambert_by_rays() {
 /// No. 3: What a ray sees of homogeneous material is 1 − e^(−μ·chord), whatever the slab.
 fn opacity_of_a_chord(engine: Engine) {
     let n = 48;
-    let block = Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (12..36).contains(c))));
-    let ball = Loaded::new(scenes::ball(n, DVec3::splat(23.5), 14.0));
+    let block = Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (12..36).contains(c))));
+    let ball = Dataset::new(scenes::ball(n, DVec3::splat(23.5), 14.0));
     for (name, loaded, chord) in [("block", &block, 24.0f64), ("ball", &ball, 28.0)] {
         let mut means = Vec::new();
         for (slab, quadrature) in
@@ -120,7 +120,7 @@ fn opacity_of_a_chord(engine: Engine) {
 fn oblique_rays_have_longer_paths(engine: Engine) {
     let n = 48;
     let (low, high) = (8, 40);
-    let loaded = Loaded::new(scenes::block(n, |v| v.iter().all(|c| (low..high).contains(c))));
+    let loaded = Dataset::new(scenes::block(n, |v| v.iter().all(|c| (low..high).contains(c))));
     let per_voxel = 0.02;
     let mut settings = base(engine, per_voxel);
     settings.shadows.slab = 0.5;
@@ -152,7 +152,7 @@ fn oblique_rays_have_longer_paths(engine: Engine) {
     };
     let size = [64, 64];
     let picture = render(&mut renderer(), &loaded, &settings, size);
-    let scene = loaded.volume.scene();
+    let scene = loaded.volume().scene();
     // Rays that pass the near and the far face at least three voxels from their edges.
     for (i, j) in [(32, 32), (19, 19), (44, 19), (19, 44), (44, 44)] {
         let (origin, direction) =

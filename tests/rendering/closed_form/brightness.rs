@@ -5,7 +5,7 @@ use chiaroscuro::model::{Engine, LightKind};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
-use crate::common::{Loaded, attenuation, render};
+use crate::common::{Dataset, attenuation, render};
 use crate::scenes::{self, straight};
 use crate::thresholds::{BALANCED, ROTATION_RANGE, ROTATION_STEP};
 
@@ -15,7 +15,7 @@ with_both_engines! {
 
 /// No. 7: A ball looks the same from everywhere: no popping while the camera or the light turns.
 fn turning_does_not_change_brightness(engine: Engine) {
-    let loaded = Loaded::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
+    let loaded = Dataset::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
     let mut settings = base(engine, 0.25);
     settings.shading.ambient = 1.0;
     settings.lights.clear();
@@ -63,12 +63,11 @@ fn steady(what: &str, means: &[f64]) {
 /// The measure of balance and of the darkness of shadows.
 #[test]
 fn balanced_pictures_are_as_bright_as_unshadowed_ones() {
-    let loaded = Loaded::new(scenes::creature(48, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
     let mut renderer = renderer();
     let mut settings = scenes::look();
     let plain = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).light);
-    settings.shadows.balance =
-        chiaroscuro::gpu::balance(&mut renderer, &loaded.volume, &loaded.bricks, &settings).expect("balance");
+    settings.shadows.balance = chiaroscuro::gpu::balance(&mut renderer, &loaded, &settings).expect("balance");
     let with = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).light);
     settings.shadows.algorithm = chiaroscuro::model::ShadowAlgorithm::Off;
     let without = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).light);

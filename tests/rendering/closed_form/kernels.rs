@@ -4,7 +4,7 @@ use chiaroscuro::model::{Deposit, Engine, Quadrature};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
-use crate::common::{Loaded, attenuation, render};
+use crate::common::{Dataset, attenuation, render};
 use crate::compare::{difference, wide};
 use crate::scenes;
 use crate::thresholds::{FAINT, HALF_STEP, ORDER_FRONT, ORDER_MEAN, UNITY};
@@ -20,17 +20,18 @@ with_both_engines! {
 fn kernels_are_a_partition_of_unity(engine: Engine) {
     let per_slab = 1.0;
     let n = 32;
-    let loaded = Loaded::new(scenes::block(n, |v| v != [0, 0, 0]));
+    let loaded = Dataset::new(scenes::block(n, |v| v != [0, 0, 0]));
     for light in [[0.31, -0.62, 0.77], [-0.9, 0.2, 0.13]] {
         let mut settings = base(engine, per_slab);
         settings.lights[0].position = light;
         // Sheets that deposit what arrives: successive ratios are e^−τ of one slab.
         settings.shadows.deposit = Deposit::Front;
-        let sheets =
-            renderer().light_sheets(&loaded.volume, &loaded.bricks, &settings, 0, 0).expect("sheets");
-        let view =
-            &chiaroscuro::plan::light_views(&settings.lights[0], &settings.shadows, &loaded.volume.scene())
-                [0];
+        let sheets = renderer().light_sheets(&loaded, &settings, 0, 0).expect("sheets");
+        let view = &chiaroscuro::plan::light_views(
+            &settings.lights[0].in_scene(&settings.camera),
+            &settings.shadows,
+            &loaded.volume().scene(),
+        )[0];
         let [w, h] = view.frame.size;
         let mut checked = 0;
         for k in 0..view.frame.slab_count - 1 {
@@ -52,7 +53,7 @@ fn kernels_are_a_partition_of_unity(engine: Engine) {
 
 /// No. 8: Thinner light slabs converge: first order with the literal deposit, second with the mean.
 fn thinner_slabs_converge(engine: Engine) {
-    let loaded = Loaded::new(scenes::ball(40, DVec3::splat(19.5), 13.0));
+    let loaded = Dataset::new(scenes::ball(40, DVec3::splat(19.5), 13.0));
     for (deposit, order) in [(Deposit::Front, ORDER_FRONT), (Deposit::SlabMean, ORDER_MEAN)] {
         let volume = |slab: f64| {
             let mut settings = base(engine, 0.3);
@@ -80,7 +81,7 @@ fn extremes_stay_finite(engine: Engine) {
         chiaroscuro::data::Samples::U8(noise),
     )
     .expect("a valid volume");
-    let loaded = Loaded::new(noise);
+    let loaded = Dataset::new(noise);
     let mut renderer = renderer();
     for opacity in [0.0, 0.5, 1.0] {
         let mut settings = scenes::look();

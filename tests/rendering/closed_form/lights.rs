@@ -5,7 +5,7 @@ use chiaroscuro::model::{Deposit, Engine, Hood, LightKind, ShadowAlgorithm};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
-use crate::common::{Loaded, attenuation, render};
+use crate::common::{Dataset, attenuation, render};
 use crate::compare::{Limit, compare, wide};
 use crate::scenes;
 use crate::thresholds::{
@@ -26,8 +26,9 @@ fn middle_red(picture: &Picture) -> f64 {
 
 fn headlight(engine: Engine, deposit: Deposit, slab: f64) -> f64 {
     let n = 40;
-    let loaded =
-        Loaded::new(scenes::block(n, |[x, y, z]| (6..26).contains(&y) && x > 2 && z > 2 && x < 37 && z < 37));
+    let loaded = Dataset::new(scenes::block(n, |[x, y, z]| {
+        (6..26).contains(&y) && x > 2 && z > 2 && x < 37 && z < 37
+    }));
     // From −y, as the eye of `straight(-90, 0)`.
     let mut settings = base(engine, 0.7);
     settings.lights[0].position = [0.0, -1.0, 0.0];
@@ -63,7 +64,7 @@ fn shadow_of_a_ball(engine: Engine) {
     let n = 60;
     let radius = 10.0;
     let centre = DVec3::new(29.5, 29.5, 40.0);
-    let loaded = Loaded::new(scenes::ball(n, centre, radius));
+    let loaded = Dataset::new(scenes::ball(n, centre, radius));
     let per_voxel = 0.1;
     let settings = base(engine, per_voxel);
     let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
@@ -86,7 +87,7 @@ fn shadow_of_a_ball(engine: Engine) {
 
 /// No. 15: A point light a hundred volumes away is a parallel light.
 fn a_far_point_light_is_parallel(engine: Engine) {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = scenes::look();
     settings.sampling.engine = engine;
     let direction = DVec3::new(0.5, -0.6, 0.8).normalize_or_zero();
@@ -103,7 +104,7 @@ fn a_far_point_light_is_parallel(engine: Engine) {
 fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
     let n = 40;
     // One voxel, that the volume is not empty; the light passes the rest unhindered.
-    let loaded = Loaded::new(scenes::block(n, |voxel| voxel == [0; 3]));
+    let loaded = Dataset::new(scenes::block(n, |voxel| voxel == [0; 3]));
     for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast] {
         let mut settings = base(engine, 1.0);
         settings.shadows.algorithm = algorithm;

@@ -10,10 +10,10 @@ use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
 use crate::against_reference::check_against;
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::compare::{compare, flat32, flat64};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
-use crate::thresholds::{CHORD_OPACITY, CUT_COLLAPSED, CUT_LIGHT, CUT_ORDERS, SAME_WEIGHTS};
+use crate::thresholds::{CHORD_OPACITY, CUT_COMBINED, CUT_LIGHT, CUT_ORDERS, SAME_WEIGHTS};
 
 const SIZE: [u32; 2] = [64, 56];
 
@@ -86,10 +86,10 @@ fn scattered() {
 fn the_comparison_notices_whole_slabs() {
     let mut settings = look(CutEffect::Removed, CutEffect::Removed);
     settings.sampling.slab = 2.0;
-    let loaded = Loaded::new(scenes::creature(40, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { fault: Fault::WholeSlabs, rounding: Some(rounding), ..Options::default() };
-    let reference = Reference::new(&loaded.volume, &settings, options);
+    let reference = Reference::new(loaded.volume(), &settings, options);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let found = render(&mut renderer, &loaded, &settings, SIZE);
     let expected = reference.picture(SIZE, &reference.attenuations());
@@ -97,7 +97,7 @@ fn the_comparison_notices_whole_slabs() {
 }
 
 /// A homogeneous block of 32³ voxels in the middle of 48³, seen along z, of extinction ln 2 per 16 voxels.
-fn block() -> (Loaded, Settings) {
+fn block() -> (Dataset, Settings) {
     let per_voxel = 2.0_f64.ln() / 16.0;
     let mut settings = Settings {
         transfer: linear_extinction(per_voxel),
@@ -108,7 +108,7 @@ fn block() -> (Loaded, Settings) {
     };
     isotropic(&mut settings);
     let inside = |at: [usize; 3]| at.iter().all(|c| (8..40).contains(c));
-    (Loaded::new(scenes::block(48, inside)), settings)
+    (Dataset::new(scenes::block(48, inside)), settings)
 }
 
 /// Where a share of the block lies in the grid.
@@ -117,7 +117,7 @@ fn of_block(share: f64) -> f64 {
 }
 
 /// Opacity and brightness in the middle of the picture.
-fn middle(renderer: &mut Renderer, loaded: &Loaded, settings: &Settings) -> (f64, f64) {
+fn middle(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> (f64, f64) {
     let picture = render(renderer, loaded, settings, [33, 33]);
     let [red, .., alpha] = picture.light[16 * 33 + 16].map(f64::from);
     (alpha, red)
@@ -184,7 +184,7 @@ fn effects_tell_eye_and_light_apart() {
 
 #[test]
 fn cuts_of_nothing_change_no_bit() {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = scenes::look();
     let shown = |settings: &Settings| {
         let mut renderer = Renderer::new(&context()).expect("a renderer");
@@ -201,7 +201,7 @@ fn cuts_of_nothing_change_no_bit() {
 
 #[test]
 fn the_light_is_kept_while_only_the_eye_is_concerned() {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = look(CutEffect::Hidden, CutEffect::Hidden);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut rebuilds = |settings: &Settings| {
@@ -221,7 +221,7 @@ fn the_light_is_kept_while_only_the_eye_is_concerned() {
 /// Volume-aligned sheets and single footprints are other sums; what is cut away must be the same.
 #[test]
 fn historical_orders_are_cut_too() {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = look(CutEffect::Removed, CutEffect::Removed);
     settings.sampling.engine = Engine::Scatter;
     let mut renderer = Renderer::new(&context()).expect("a renderer");
@@ -240,8 +240,8 @@ fn historical_orders_are_cut_too() {
 }
 
 #[test]
-fn collapsed_lights_know_the_faces() {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+fn combined_lights_know_the_faces() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = look(CutEffect::Removed, CutEffect::Removed);
     settings.shading.specular = 0.0;
     let mut renderer = Renderer::new(&context()).expect("a renderer");
@@ -252,7 +252,7 @@ fn collapsed_lights_know_the_faces() {
     for offset in [0.17, 0.3] {
         settings.cuts.plane.offset = offset;
         let kept = shown(LightStorage::PerLight, &mut settings);
-        let collapsed = shown(LightStorage::Collapsed, &mut settings);
-        compare("collapsed", &collapsed, &kept, CUT_COLLAPSED).expect("nearly the same");
+        let combined = shown(LightStorage::Combined, &mut settings);
+        compare("combined", &combined, &kept, CUT_COMBINED).expect("nearly the same");
     }
 }

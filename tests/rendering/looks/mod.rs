@@ -1,7 +1,7 @@
 //! What single settings do to a picture: combined lights, cuts, the floor, far away, other algorithms.
 
-mod collapse;
+mod combine;
 mod cuts;
-mod ground;
+mod floor;
 mod stretch;
 mod variants;

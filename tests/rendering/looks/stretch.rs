@@ -1,7 +1,7 @@
 //! Kernels stretched to the pixel where pixels are wider than voxels (P §4): what is finer than a
 //! pixel becomes even, and what is even stays as it was.
 
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{STRETCHED_CONTRAST, STRETCHED_FLICKER, STRETCHED_FOG};
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
@@ -23,7 +23,7 @@ fn renderer(stretches: bool) -> Renderer {
 }
 
 /// Opacities of the middle 10 × 10 pixels of pictures from a camera that pans by an eighth of a pixel.
-fn frames(renderer: &mut Renderer, engine: Engine, loaded: &Loaded) -> Vec<Vec<f64>> {
+fn frames(renderer: &mut Renderer, engine: Engine, loaded: &Dataset) -> Vec<Vec<f64>> {
     let pixel = 2.0 / f64::from(PIXELS);
     // Scattering takes a software adapter seconds per picture.
     (0..if engine == Engine::Scatter { 3 } else { 8 })
@@ -74,8 +74,8 @@ fn unrest(frames: &[Vec<f64>]) -> (f64, f64) {
 #[test]
 fn stretched_kernels_hide_what_is_finer_than_a_pixel() {
     // Columns along the view, each two voxels wide.
-    let board = Loaded::new(scenes::block(N, |[x, _, z]| (x / 2 + z / 2) % 2 == 0));
-    let fog = Loaded::new(scenes::block(N, |_| true));
+    let board = Dataset::new(scenes::block(N, |[x, _, z]| (x / 2 + z / 2) % 2 == 0));
+    let fog = Dataset::new(scenes::block(N, |_| true));
     let (mut stretched, mut plain) = (renderer(true), renderer(false));
     let (aliased, flickers) = unrest(&frames(&mut plain, Engine::Gather, &board));
     assert!(aliased > STRETCHED_CONTRAST && flickers > STRETCHED_FLICKER, "the test sees no aliasing");

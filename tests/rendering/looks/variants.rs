@@ -1,6 +1,6 @@
 //! What tells the paper's three algorithms apart (P §3.2): how often each of them blurs a shadow.
 
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{
     DIRECT_BEER_LAMBERT, EDGE_CENTRE, EDGE_WIDTH, EDGE_WIDTHS, FAINT, SELF_SHADOW, SELF_SHADOW_GROWS,
@@ -24,7 +24,7 @@ fn beer_lambert_by_rays_from_samples() {
     let n = 48;
     let face = 8;
     let loaded =
-        Loaded::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
+        Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
     let mut renderer = renderer();
     for per_voxel in [0.1, 0.3, 0.7] {
         for z in [12, 20, 31] {
@@ -74,7 +74,7 @@ fn shadow_profile(algorithm: ShadowAlgorithm, engine: Engine) -> Vec<f64> {
         })
         .collect();
     let volume = Volume::with_spacing("edge", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
-    let loaded = Loaded::new(volume);
+    let loaded = Dataset::new(volume);
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
         transfer: TransferFunction {
@@ -138,9 +138,9 @@ fn edges_of_shadows_are_as_wide_as_the_blurs() {
 #[test]
 fn cures_brighten_and_splatting_is_slightly_darker() {
     let volume = chiaroscuro::data::synthetic::builtin("chair", Some(48)).expect("the chair");
-    let histogram = Histogram::of(&volume, 256);
+    let histogram = Histogram::of(&volume);
     let mut settings = auto::first_settings(&volume, &histogram);
-    let loaded = Loaded::new(volume);
+    let loaded = Dataset::new(volume);
     let mut renderer = renderer();
     let mut brightness =
         |settings: &Settings| mean_luminance(&render(&mut renderer, &loaded, settings, [96, 96]).light);

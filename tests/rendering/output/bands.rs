@@ -3,11 +3,11 @@
 use chiaroscuro::export::Rows;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
-    Background, Depth, Engine, Ground, Projection, Sampling, Settings, ShadowAlgorithm, Shot,
+    Background, Depth, Engine, Floor, Projection, Sampling, Settings, ShadowAlgorithm, Shot,
 };
 use glam::DVec3;
 
-use crate::common::{Loaded, context};
+use crate::common::{Dataset, context};
 use crate::scenes;
 use crate::thresholds::{EIGHT_BITS, HALF_STEP, HALF_STEP_SEEN, PARTS, SAMPLED_BACKGROUND, TONE_MAP};
 
@@ -18,18 +18,18 @@ const SIZE: [u32; 2] = [93, 70];
 fn look() -> Settings {
     let mut settings = scenes::look();
     settings.output.background = Background { top: [0.9, 0.2, 0.1], bottom: [0.1, 0.3, 0.8] };
-    settings.ground = Ground { on: true, height: -0.9, ..Ground::default() };
+    settings.floor = Floor { on: true, height: -0.9, ..Floor::default() };
     settings
 }
 
 fn picture(
     renderer: &mut Renderer,
-    loaded: &Loaded,
+    loaded: &Dataset,
     settings: &Settings,
     shot: &Shot,
     parts: (u32, u32),
 ) -> Vec<f32> {
-    let bands = renderer.bands_of(&loaded.volume, &loaded.bricks, settings, shot, parts);
+    let bands = renderer.bands_of(loaded, settings, shot, parts);
     let rows = bands.all().expect("the picture is rendered");
     assert_eq!(matches!(rows, Rows::Bytes(_)), shot.depth == Depth::Eight);
     rows.values()
@@ -42,7 +42,7 @@ fn largest(left: &[f32], right: &[f32]) -> f64 {
 
 #[test]
 fn parts_are_the_whole_picture() {
-    let loaded = Loaded::new(scenes::creature(40, DVec3::new(1.0, 0.8, 1.6)));
+    let loaded = Dataset::new(scenes::creature(40, DVec3::new(1.0, 0.8, 1.6)));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut orthographic = look();
     orthographic.camera.projection = Projection::Orthographic;
@@ -72,7 +72,7 @@ fn parts_are_the_whole_picture() {
 
 #[test]
 fn parts_that_lie_elsewhere_are_noticed() {
-    let loaded = Loaded::new(scenes::creature(40, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let shot = Shot { depth: Depth::Sixteen, ..Shot::new(SIZE) };
     let whole = picture(&mut renderer, &loaded, &look(), &shot, (4096, 1 << 20));
@@ -83,7 +83,7 @@ fn parts_that_lie_elsewhere_are_noticed() {
 
 #[test]
 fn samples_are_the_mean_of_a_finer_picture() {
-    let loaded = Loaded::new(scenes::creature(40, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     for samples in [2, 3] {
         for transparent in [false, true] {
@@ -117,7 +117,7 @@ fn means(finer: &[f32], n: usize) -> Vec<f32> {
 
 #[test]
 fn sixteen_bits_are_between_the_steps_of_eight() {
-    let loaded = Loaded::new(scenes::creature(40, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let whole = (4096, 1 << 20);
     for transparent in [false, true] {
@@ -133,11 +133,11 @@ fn sixteen_bits_are_between_the_steps_of_eight() {
 
 #[test]
 fn linear_light_is_what_the_display_shows() {
-    let loaded = Loaded::new(scenes::creature(40, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = look();
     settings.output.tone_map = chiaroscuro::model::ToneMap::Clip;
-    settings.ground.on = false;
+    settings.floor.on = false;
     let whole = (4096, 1 << 20);
     let shot = Shot { depth: Depth::Linear, ..Shot::new(SIZE) };
     let linear = picture(&mut renderer, &loaded, &settings, &shot, whole);

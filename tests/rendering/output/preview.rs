@@ -6,7 +6,7 @@ use chiaroscuro::gpu::{RenderOptions, Renderer, mean_luminance};
 use chiaroscuro::model::{Kernel, Resolution, Settings, auto};
 use chiaroscuro::plan::{Request, preview_slab};
 
-use crate::common::{Loaded, context};
+use crate::common::{Dataset, context};
 use crate::thresholds::{PREVIEW_BRIGHTNESS, PREVIEW_UNEXPOSED};
 
 const SIZE: [u32; 2] = [192, 144];
@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [192, 144];
 /// The picture's mean luminance, at full quality or as a preview.
 fn brightness(
     renderer: &mut Renderer,
-    loaded: &Loaded,
+    loaded: &Dataset,
     settings: &Settings,
     size: [u32; 2],
     coarse: Option<Resolution>,
@@ -24,12 +24,12 @@ fn brightness(
     if coarse.is_some() {
         settings.sampling.kernel = Kernel::Prefiltered;
         let slab = settings.sampling.slab;
-        settings.sampling.slab = preview_slab(&settings.camera, &loaded.volume.scene(), size, slab);
+        settings.sampling.slab = preview_slab(&settings.camera, &loaded.volume().scene(), size, slab);
         settings.shadows.kernel = Kernel::Prefiltered;
     }
-    let request = Request { volume: loaded.volume.content_id(), settings, size, coarse };
-    let mut job = renderer.begin(&loaded.volume, &loaded.bricks, request, &options).expect("a job");
-    while renderer.step(&mut job).expect("a step") {}
+    let request = Request { volume: loaded.volume().content_id(), settings, size, coarse };
+    let mut job = renderer.begin(loaded, request, &options).expect("a job");
+    while job.step().expect("a step") {}
     mean_luminance(&renderer.read_light().expect("light"))
 }
 
@@ -40,8 +40,8 @@ fn previews_stay_as_bright_as_pictures() {
     let context = context();
     for name in ["chair", "cloud", "sphere", "marschner-lobb"] {
         let volume = builtin(name, Some(64)).expect("a volume");
-        let home = auto::first_settings(&volume, &Histogram::of(&volume, 256));
-        let loaded = Loaded::new(volume);
+        let home = auto::first_settings(&volume, &Histogram::of(&volume));
+        let loaded = Dataset::new(volume);
         let mut renderer = Renderer::new(&context).expect("a renderer");
         for (scale, resolution) in [1, 2, 4]
             .into_iter()

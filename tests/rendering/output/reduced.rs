@@ -5,7 +5,7 @@ use chiaroscuro::gpu::{Renderer, fitted, mean_luminance};
 use chiaroscuro::model::{Settings, auto};
 use glam::DVec3;
 
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::compare::{difference, flat32};
 use crate::scenes;
 use crate::thresholds::{AVERAGED, AVERAGED_MEAN};
@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [96, 72];
 
 /// The automatic opacity unit in the look of a test: it is what follows the number of voxels.
 fn look(volume: &Volume) -> Settings {
-    let first = auto::first_settings(volume, &Histogram::of(volume, auto::BINS));
+    let first = auto::first_settings(volume, &Histogram::of(volume));
     Settings { opacity_unit: first.opacity_unit, ..scenes::look() }
 }
 
@@ -25,7 +25,7 @@ fn averaged_voxels_look_like_those_that_they_stand_for() {
     assert_eq!(half.dims(), [32; 3]);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut picture = |volume: &Volume, settings: &Settings| {
-        render(&mut renderer, &Loaded::new(volume.clone()), settings, SIZE)
+        render(&mut renderer, &Dataset::new(volume.clone()), settings, SIZE)
     };
     let (before, after) = (picture(&whole, &look(&whole)), picture(&half, &look(&half)));
     let far = difference(&flat32(&after.light), &flat32(&before.light)).rmse;

@@ -4,7 +4,7 @@ use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{Depth, Settings, Shot, ToneMap};
 use glam::DVec3;
 
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::compare::{Difference, Limit, compare};
 use crate::scenes;
 use crate::thresholds::TONE_MAP;
@@ -57,14 +57,14 @@ fn look(intensity: f64, tone_map: ToneMap) -> Settings {
 
 /// Light of all the pictures, and what the renderer shows of it with 16 bits.
 fn sweep(mut renderer: Renderer, tone_map: ToneMap) -> (Vec<[f32; 4]>, Vec<f64>) {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let (mut light, mut found) = (Vec::new(), Vec::new());
     for intensity in INTENSITIES {
         let settings = look(intensity, tone_map);
         light.extend(render(&mut renderer, &loaded, &settings, SIZE).light);
         let shot = Shot { depth: Depth::Sixteen, transparent: true, ..Shot::new(SIZE) };
         let whole = (4096, 1 << 20);
-        let rows = renderer.bands_of(&loaded.volume, &loaded.bricks, &settings, &shot, whole).all();
+        let rows = renderer.bands_of(&loaded, &settings, &shot, whole).all();
         found.extend(rows.expect("the picture is rendered").values().into_iter().map(f64::from));
     }
     (light, found)

@@ -85,19 +85,19 @@ fn a_fading_picture_lets_the_ground_through() {
     let context = context();
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
-    let ground = [40_u8, 80, 120];
-    let filled = drawn(&context, format, |pass| painter.fill(pass, ground));
+    let floor = [40_u8, 80, 120];
+    let filled = drawn(&context, format, |pass| painter.fill(pass, floor));
     assert!(filled.chunks(4).all(|pixel| pixel == [40, 80, 120, 255]), "{:?}", &filled[..4]);
     let shown = painter.place(None, SIZE, &picture(), true);
     for opacity in [0_u8, 85, 255] {
         let both = drawn(&context, format, |pass| {
-            painter.fill(pass, ground);
+            painter.fill(pass, floor);
             shown.draw(pass, opacity);
         });
         let share = f64::from(opacity) / 255.0;
         for (got, on_top) in both.chunks(4).zip(picture().chunks(4)) {
             for channel in 0..3 {
-                let wanted = f64::from(on_top[channel]) * share + f64::from(ground[channel]) * (1.0 - share);
+                let wanted = f64::from(on_top[channel]) * share + f64::from(floor[channel]) * (1.0 - share);
                 // Rounded where it is blended, to either side.
                 let apart = (f64::from(got[channel]) - wanted).abs() / 255.0;
                 assert!(apart <= EIGHT_BITS, "{opacity}: {got:?}, {on_top:?}");

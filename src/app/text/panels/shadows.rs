@@ -75,7 +75,7 @@ pub(crate) const STORAGE: Named = named("Volumes", "A light volume for each ligh
 pub(crate) const AUTO: Named = named("Auto", "One for all from five lights on, where nothing shines");
 pub(crate) const PER_LIGHT: Named =
     named("Each", "A volume for each light: highlights, and colours that change at once");
-pub(crate) const COLLAPSED: Named = named(
+pub(crate) const COMBINED: Named = named(
     "One",
     "The diffuse light of all in one volume: quick pictures under many lights, without their highlights",
 );

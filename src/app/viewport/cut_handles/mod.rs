@@ -9,7 +9,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::orbit::wheel_notches;
-use super::view_projection::Sight;
+use super::view_projection::ViewProjection;
 use crate::app::shell::theme;
 use crate::app::text;
 use crate::math::SceneSpace;
@@ -55,7 +55,7 @@ impl CutHandles {
         if hidden {
             return;
         }
-        let sight = Sight { camera: settings.camera.clone(), picture };
+        let sight = ViewProjection { camera: settings.camera.clone(), picture };
         let visible = ui.rect_contains_pointer(picture) || self.drag.is_some();
         let opacity = ui.ctx().animate_bool_with_time(Id::unique("cut handles"), visible, theme::FADE_S);
         let mut painter = ui.painter_at(picture);
@@ -68,7 +68,14 @@ impl CutHandles {
         }
     }
 
-    fn crop(&mut self, ui: &Ui, painter: &Painter, sight: &Sight, crop: &mut CropBox, scene: &SceneSpace) {
+    fn crop(
+        &mut self,
+        ui: &Ui,
+        painter: &Painter,
+        sight: &ViewProjection,
+        crop: &mut CropBox,
+        scene: &SceneSpace,
+    ) {
         let stroke = Stroke::new(1.2, theme::ACCENT.gamma_multiply(0.75));
         for [a, b] in outline::edges(crop, scene) {
             if let (Some(a), Some(b)) = (sight.point(a), sight.point(b)) {
@@ -102,7 +109,7 @@ impl CutHandles {
         &mut self,
         ui: &Ui,
         painter: &Painter,
-        sight: &Sight,
+        sight: &ViewProjection,
         settings: &mut Settings,
         scene: &SceneSpace,
     ) {

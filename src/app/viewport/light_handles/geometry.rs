@@ -6,8 +6,8 @@ use eframe::egui::{Pos2, Rect, pos2};
 use glam::DVec3;
 
 use super::theme;
-use crate::app::viewport::view_projection::Sight;
-use crate::model::{Camera, Light, LightKind, Projection};
+use crate::app::viewport::view_projection::ViewProjection;
+use crate::model::{Camera, LightKind, Projection, SceneLight};
 
 /// The sphere of parallel lights is a little larger than the volume …
 const SPHERE_PER_SUPPORT: f64 = 1.15;
@@ -32,7 +32,7 @@ pub(crate) struct Handle {
 /// The camera over the picture's rectangle.
 #[derive(Debug, Clone)]
 pub(crate) struct View {
-    sight: Sight,
+    sight: ViewProjection,
     radius: f64,
 }
 
@@ -51,7 +51,10 @@ impl View {
             Projection::Perspective => camera.distance * tan / (1.0 + tan * tan).sqrt(),
             Projection::Orthographic => camera.distance * tan,
         };
-        Self { sight: Sight { camera, picture }, radius: (SPHERE_PER_SUPPORT * support_radius).min(fits) }
+        Self {
+            sight: ViewProjection { camera, picture },
+            radius: (SPHERE_PER_SUPPORT * support_radius).min(fits),
+        }
     }
 
     /// Where a scene point is seen, in points; `None` behind the eye.
@@ -70,7 +73,7 @@ impl View {
     }
 
     /// The handle of a light; `None` for one behind the eye.
-    pub(crate) fn handle(&self, light: &Light) -> Option<Handle> {
+    pub(crate) fn handle(&self, light: &SceneLight) -> Option<Handle> {
         let scene = match light.kind {
             LightKind::Parallel => light.direction() * self.radius,
             LightKind::Perspective => DVec3::from(light.position),
@@ -98,7 +101,7 @@ impl View {
     }
 
     /// Moves a light so that its handle comes to lie at a point of the window.
-    pub(crate) fn move_light(&self, light: &mut Light, to: Pos2, behind: bool) {
+    pub(crate) fn move_light(&self, light: &mut SceneLight, to: Pos2, behind: bool) {
         let (origin, direction) = self.sight.ray(to);
         let position = DVec3::from(light.position);
         light.position = match light.kind {
@@ -125,7 +128,7 @@ impl View {
     }
 
     /// Moves a perspective light nearer to the eye or further away, along the line of sight.
-    pub(crate) fn move_along_sight(&self, light: &mut Light, notches: f64) {
+    pub(crate) fn move_along_sight(&self, light: &mut SceneLight, notches: f64) {
         if light.kind == LightKind::Parallel {
             return;
         }
@@ -179,8 +182,8 @@ mod tests {
         View::new(Camera { projection, ..Camera::default() }, picture, 1.8)
     }
 
-    fn light(kind: LightKind) -> Light {
-        Light { kind, position: [0.3, -1.5, 0.8], ..Light::default() }
+    fn light(kind: LightKind) -> SceneLight {
+        SceneLight { kind, position: [0.3, -1.5, 0.8], ..SceneLight::default() }
     }
 
     #[test]
@@ -220,7 +223,8 @@ mod tests {
         assert!(
             view.sight.picture.contains(handle.position) && handle.position.x > view.sight.picture.center().x
         );
-        let far = Light { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..Light::default() };
+        let far =
+            SceneLight { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..SceneLight::default() };
         if let Some(handle) = view.handle(&far) {
             assert!(view.sight.picture.contains(handle.position));
         }

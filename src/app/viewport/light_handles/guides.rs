@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::geometry::View;
 use crate::app::shell::theme;
-use crate::model::{Light, LightKind};
+use crate::model::{LightKind, SceneLight};
 
 /// Corners of a circle.
 const CORNERS: usize = 72;
@@ -15,7 +15,7 @@ const CORNERS: usize = 72;
 const RIBS: usize = 6;
 
 /// Paints all that help with a light, whose position refers to the scene, over a ground at that height.
-pub(crate) fn paint(painter: &Painter, view: &View, light: &Light, ground: f64) {
+pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, ground: f64) {
     let line = |points: &[DVec3], strength: f32| {
         let seen: Option<Vec<Pos2>> = points.iter().map(|&point| view.point(point)).collect();
         if let Some(seen) = seen {
@@ -67,7 +67,7 @@ impl Stand {
 }
 
 /// The cone of a hood, up to the middle of the volume: its rim, and lines to it. None without a hood.
-fn hood(light: &Light) -> Vec<Vec<DVec3>> {
+fn hood(light: &SceneLight) -> Vec<Vec<DVec3>> {
     if light.kind != LightKind::Perspective || !light.hood.on {
         return Vec::new();
     }
@@ -101,11 +101,11 @@ mod tests {
     #[test]
     fn cones_are_as_wide_as_their_hoods() {
         let hooded = Hood { on: true, half_angle_deg: 30.0, rim_deg: 5.0 };
-        let mut light = Light {
+        let mut light = SceneLight {
             kind: LightKind::Perspective,
             position: [0.0, 0.0, 2.0],
             hood: hooded,
-            ..Light::default()
+            ..SceneLight::default()
         };
         let cone = hood(&light);
         assert_eq!(cone.len(), 1 + RIBS);

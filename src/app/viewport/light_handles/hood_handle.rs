@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::geometry::View;
 use crate::app::shell::theme;
 use crate::app::text;
-use crate::model::{Hood, Light, LightKind};
+use crate::model::{Hood, LightKind, SceneLight};
 
 /// Half angles that can be dragged, in degrees, as in the side panel.
 const HALF_ANGLES_DEG: RangeInclusive<f64> = 1.0..=89.0;
@@ -18,7 +18,7 @@ const HALF_ANGLES_DEG: RangeInclusive<f64> = 1.0..=89.0;
 const HALF_EDGE: f32 = 5.0;
 
 /// Whether a light has a cone.
-fn has_cone(light: &Light) -> bool {
+fn has_cone(light: &SceneLight) -> bool {
     light.kind == LightKind::Perspective && light.hood.on
 }
 
@@ -38,28 +38,28 @@ struct Spot {
 
 impl Spot {
     /// Across the axis of the cone, towards the line.
-    fn across(self, view: &View, light: &Light) -> DVec3 {
+    fn across(self, view: &View, light: &SceneLight) -> DVec3 {
         let axis = light.direction();
         let right = view.right().reject_from(axis).normalize_or(axis.any_orthonormal_vector());
         let (sin, cos) = (f64::from(self.eighth) * FRAC_PI_4).sin_cos();
         right * cos + axis.cross(right) * sin
     }
 
-    fn place(self, view: &View, light: &Light) -> DVec3 {
+    fn place(self, view: &View, light: &SceneLight) -> DVec3 {
         let position = DVec3::from(light.position);
         let slope = light.hood.half_angle_deg.to_radians().tan();
         position + (self.across(view, light) * slope - light.direction()) * position.length() * self.share
     }
 
     /// The first that the picture shows, as far along as possible.
-    fn seen(view: &View, light: &Light) -> Option<Self> {
+    fn seen(view: &View, light: &SceneLight) -> Option<Self> {
         let spots = SHARES.iter().flat_map(|&share| EIGHTHS.map(|eighth| Self { eighth, share }));
         let is_seen = |spot: &Self| view.point(spot.place(view, light)).is_some_and(|at| view.shows(at));
         spots.into_iter().find(is_seen)
     }
 
     /// The half angle of a cone from a light through a point; on the other side of its axis, the least.
-    fn half_angle_deg(self, view: &View, light: &Light, through: DVec3) -> f64 {
+    fn half_angle_deg(self, view: &View, light: &SceneLight, through: DVec3) -> f64 {
         let ray = through - DVec3::from(light.position);
         let is_beyond = ray.dot(self.across(view, light)) < 0.0;
         let angle = if is_beyond { 0.0 } else { (-light.direction()).angle_between(ray).to_degrees() };
@@ -88,7 +88,8 @@ impl HoodHandle {
         ui: &Ui,
         painter: &Painter,
         view: &View,
-        light: &Light,
+        light: &SceneLight,
+        name: &str,
         index: usize,
     ) -> Option<f64> {
         let dragged = self.dragged.take();
@@ -98,7 +99,7 @@ impl HoodHandle {
         let seen = view.point(at)?;
         let area = Rect::from_center_size(seen, Vec2::splat(2.0 * HALF_EDGE + 6.0));
         let response = ui.interact(area, Id::unique("hood handle").with(index), Sense::drag());
-        let name = text::lights::hood_handle(&light.name);
+        let name = text::lights::hood_handle(name);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
         self.dragged = response.dragged().then_some(spot);
         self.active = response.hovered() || response.dragged();
@@ -114,7 +115,7 @@ impl HoodHandle {
         let half_angle_deg = spot.half_angle_deg(view, light, view.facing(at, moved?)?);
         // Not so far that nobody could grab it any more.
         let hood = Hood { half_angle_deg, ..light.hood };
-        let moved = spot.place(view, &Light { hood, ..light.clone() });
+        let moved = spot.place(view, &SceneLight { hood, ..light.clone() });
         view.point(moved).is_some_and(|at| view.shows(at)).then_some(half_angle_deg)
     }
 }
@@ -129,11 +130,11 @@ mod tests {
     fn the_cone_follows_the_pointer() {
         let picture = Rect::from_min_size(Pos2::new(10.0, 20.0), Vec2::new(800.0, 600.0));
         let view = View::new(Camera::default(), picture, 1.2);
-        let mut light = Light {
+        let mut light = SceneLight {
             kind: LightKind::Perspective,
             position: [0.4, -1.1, 2.0],
             hood: Hood { on: true, half_angle_deg: 20.0, rim_deg: 5.0 },
-            ..Light::default()
+            ..SceneLight::default()
         };
         let spot = Spot::seen(&view, &light).unwrap();
         assert_eq!(spot, Spot { eighth: 0, share: 1.0 });
@@ -152,7 +153,7 @@ mod tests {
         assert_eq!(closed, 1.0, "closed, and not open to the other side");
         // Wherever the light is, some spot of its cone can be grabbed.
         for position in [[0.0, 0.0, 6.0], [4.0, 3.0, 2.0], [-5.0, 0.1, 0.0], [0.0, 3.0, -1.0]] {
-            let light = Light { position, ..light.clone() };
+            let light = SceneLight { position, ..light };
             let spot = Spot::seen(&view, &light).expect("a spot");
             assert!(view.shows(view.point(spot.place(&view, &light)).unwrap()));
         }

@@ -71,7 +71,7 @@ impl LightHandles {
             if !settings.lights[light].on {
                 continue;
             }
-            let seen = |settings: &Settings| view.handle(&settings.lights[light].in_world(&settings.camera));
+            let seen = |settings: &Settings| view.handle(&settings.lights[light].in_scene(&settings.camera));
             let Some(handle) = seen(settings) else { continue };
             let area = Rect::from_center_size(handle.position, Vec2::splat(2.0 * theme::HANDLE_RADIUS + 6.0));
             let response = ui.interact(area, Id::unique("light handle").with(light), Sense::click_and_drag());
@@ -81,12 +81,13 @@ impl LightHandles {
             let active = response.hovered() || self.drag.is_some_and(|drag| drag.light == light);
             let handle = seen(settings).unwrap_or(handle);
             self.positions.push(handle.position);
-            let lamp = settings.lights[light].in_world(&settings.camera);
+            let lamp = settings.lights[light].in_scene(&settings.camera);
             if active || (*selected == light && self.hood.is_active()) {
-                guides::paint(&painter, &view, &lamp, settings.ground.height);
+                guides::paint(&painter, &view, &lamp, settings.floor.height);
             }
             if *selected == light
-                && let Some(half_angle_deg) = self.hood.show(ui, &painter, &view, &lamp, light)
+                && let Some(half_angle_deg) =
+                    self.hood.show(ui, &painter, &view, &lamp, &settings.lights[light].name, light)
             {
                 settings.lights[light].hood.half_angle_deg = half_angle_deg;
             }
@@ -129,9 +130,9 @@ impl LightHandles {
             && response.dragged()
             && ui.input(|input| input.pointer.delta()) != Vec2::ZERO
         {
-            let mut moved = settings.lights[light].in_world(&settings.camera);
+            let mut moved = settings.lights[light].in_scene(&settings.camera);
             view.move_light(&mut moved, pointer + drag.grip, drag.behind);
-            settings.lights[light].set_world_position(moved.position.into(), &settings.camera);
+            settings.lights[light].set_scene_position(moved.position.into(), &settings.camera);
         }
         if self.drag.is_some_and(|drag| drag.light == light) && !response.dragged() {
             self.drag = None;
@@ -141,9 +142,9 @@ impl LightHandles {
             self.takes_wheel = true;
             let notches = wheel_notches(ui);
             if notches != 0.0 {
-                let mut moved = settings.lights[light].in_world(&settings.camera);
+                let mut moved = settings.lights[light].in_scene(&settings.camera);
                 view.move_along_sight(&mut moved, notches);
-                settings.lights[light].set_world_position(moved.position.into(), &settings.camera);
+                settings.lights[light].set_scene_position(moved.position.into(), &settings.camera);
             }
         }
     }

@@ -2,12 +2,11 @@
 //! shows.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 
-use crate::data::{Bricks, Volume};
+use crate::data::Dataset;
 use crate::export::{Animation, AnimationFormat, ExportError, Reel, write_picture};
 use crate::gpu::{Context, GpuError, RenderOptions, Renderer};
 use crate::model::{PictureRecord, Record, Settings, Shot, VolumeRecord};
@@ -18,9 +17,7 @@ pub(in crate::app) struct Subject {
     /// The window's device.
     pub context: Context,
     /// The open volume.
-    pub volume: Arc<Volume>,
-    /// Its bricks.
-    pub bricks: Arc<Bricks>,
+    pub dataset: Dataset,
     /// The whole look.
     pub settings: Settings,
     /// What was opened.
@@ -110,14 +107,13 @@ impl Worker {
         shot: &Shot,
     ) -> Result<Vec<u8>, String> {
         let options = RenderOptions::of_shot(shot);
-        let Subject { volume, bricks, .. } = subject;
-        let shown = self.renderer.render_shown(volume, bricks, settings, shot.size, &options);
+        let shown = self.renderer.render_shown(&subject.dataset, settings, shot.size, &options);
         shown.map_err(|err| err.to_string())
     }
 
     /// How a picture was made, for a file in a folder.
     fn record(&self, subject: &Subject, settings: &Settings, shot: &Shot, folder: Option<&Path>) -> String {
-        let volume = VolumeRecord::new(&subject.source, subject.volume.content_id(), folder);
+        let volume = VolumeRecord::new(&subject.source, subject.dataset.volume().content_id(), folder);
         let how = PictureRecord::new(*shot, self.adapter.clone());
         Record::text(settings, Some(&volume), Some(&how))
     }
@@ -132,8 +128,8 @@ pub(crate) fn still(
 ) -> Result<Exported, String> {
     let mut worker = Worker::new(subject)?;
     let record = worker.record(subject, &subject.settings, shot, path.parent());
-    let Subject { volume, bricks, settings, .. } = subject;
-    let mut bands = worker.renderer.bands(volume, bricks, settings, shot);
+    let Subject { dataset, settings, .. } = subject;
+    let mut bands = worker.renderer.bands(dataset, settings, shot);
     let mut rows = || {
         let (done, total) = bands.progress();
         progress.set(done as u32, total as u32)?;

@@ -16,7 +16,7 @@ use crate::app::shell::theme;
 use crate::app::shell::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::app::viewport::orbit::wheel_notches;
-use crate::app::viewport::view_projection::Sight;
+use crate::app::viewport::view_projection::ViewProjection;
 use crate::data::Volume;
 use crate::math::SceneSpace;
 use crate::model::TransferFunction;
@@ -202,7 +202,7 @@ impl Slices {
     }
 
     /// The cursor in the picture: a line along each axis of the grid.
-    pub(crate) fn mark(&self, painter: &Painter, sight: &Sight, scene: &SceneSpace) {
+    pub(crate) fn mark(&self, painter: &Painter, sight: &ViewProjection, scene: &SceneSpace) {
         if !self.open || self.of.is_none() {
             return;
         }

@@ -6,11 +6,11 @@ use rayon::prelude::*;
 use super::Reference;
 use super::shade::linear_from_srgb;
 use super::shadow_ray::ShadowRays;
-use crate::model::{Light, LightKind, Projection, ShadowAlgorithm};
+use crate::model::{LightKind, Projection, SceneLight, ShadowAlgorithm};
 
 impl Reference<'_> {
     /// The floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
-    pub fn ground(&self, size: [u32; 2]) -> Vec<[f64; 4]> {
+    pub fn floor(&self, size: [u32; 2]) -> Vec<[f64; 4]> {
         let settings = self.settings;
         let kernel = (settings.shadows.kernel, settings.shadows.quadrature);
         let attenuates = settings.shadows.algorithm != ShadowAlgorithm::Off;
@@ -35,17 +35,17 @@ impl Reference<'_> {
         &self,
         eye: DVec3,
         direction: DVec3,
-        lamps: &[(Light, Option<ShadowRays<'_>>)],
+        lamps: &[(SceneLight, Option<ShadowRays<'_>>)],
     ) -> [f64; 4] {
-        let (ground, shading) = (&self.settings.ground, &self.settings.shading);
+        let (floor, shading) = (&self.settings.floor, &self.settings.shading);
         // An orthographic eye is nowhere: its rays begin behind everything.
-        let along = (ground.height - eye.z) / direction.z;
+        let along = (floor.height - eye.z) / direction.z;
         let is_in_front = along > 0.0 || self.settings.camera.projection == Projection::Orthographic;
         if direction.z >= 0.0 || !is_in_front {
             return [0.0; 4];
         }
         let place = eye + direction * along;
-        let presence = ground.presence(place.truncate().length());
+        let presence = floor.presence(place.truncate().length());
         let index = self.scene.index_from_scene.transform_point3(place);
         let (mut fallen, mut bare) = ([0.0; 3], [0.0; 3]);
         for (light, rays) in lamps {
@@ -65,11 +65,11 @@ impl Reference<'_> {
         let reflected = |light: [f64; 3]| light.map(|c| shading.ambient + shading.diffuse * c);
         let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
         let (shown, unshadowed) = (reflected(fallen), reflected(bare));
-        if ground.shadow_only {
+        if floor.shadow_only {
             let missing = (1.0 - luminance(shown) / luminance(unshadowed).max(1e-6)).clamp(0.0, 1.0);
             return [0.0, 0.0, 0.0, presence * missing];
         }
-        let [r, g, b] = [0, 1, 2].map(|c| presence * linear_from_srgb(ground.color[c]) * shown[c]);
+        let [r, g, b] = [0, 1, 2].map(|c| presence * linear_from_srgb(floor.color[c]) * shown[c]);
         [r, g, b, presence]
     }
 }

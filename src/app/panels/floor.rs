@@ -8,26 +8,26 @@ use super::controls::{Number, color, row, switch};
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
-    let (ground, defaults) = (&mut panels.settings.ground, &panels.defaults.ground);
-    switch(ui, text::floor::ON, &mut ground.on);
+    let (floor, defaults) = (&mut panels.settings.floor, &panels.defaults.floor);
+    switch(ui, text::floor::ON, &mut floor.on);
     let mm = panels.volume.map_or(1.0, |volume| volume.scene.mm_per_unit);
-    ui.add_enabled_ui(ground.on, |ui| {
+    ui.add_enabled_ui(floor.on, |ui| {
         let (mut height_mm, reach) =
-            (ground.height * mm, panels.volume.map_or(1.0, |v| v.scene.support_radius()));
+            (floor.height * mm, panels.volume.map_or(1.0, |v| v.scene.support_radius()));
         let before_mm = height_mm;
         let height = Number::new(text::floor::HEIGHT, -reach * mm..=reach * mm);
         height.unit(text::common::MM).decimals(1).show(ui, &mut height_mm, defaults.height * mm);
         if height_mm != before_mm {
-            ground.height = height_mm / mm;
+            floor.height = height_mm / mm;
         }
         let radius = Number::new(text::floor::RADIUS, 0.5..=20.0).log();
-        radius.show(ui, &mut ground.radius, defaults.radius);
+        radius.show(ui, &mut floor.radius, defaults.radius);
         let opacity = Number::new(text::floor::OPACITY, 0.0..=1.0);
-        opacity.show(ui, &mut ground.opacity, defaults.opacity);
+        opacity.show(ui, &mut floor.opacity, defaults.opacity);
         let named = text::floor::COLOR;
         row(ui, named, |ui| {
-            ui.add_enabled_ui(!ground.shadow_only, |ui| color(ui, named.name, &mut ground.color));
+            ui.add_enabled_ui(!floor.shadow_only, |ui| color(ui, named.name, &mut floor.color));
         });
-        switch(ui, text::floor::SHADOW_ALONE, &mut ground.shadow_only);
+        switch(ui, text::floor::SHADOW_ALONE, &mut floor.shadow_only);
     });
 }

@@ -1,9 +1,9 @@
 //! Several lights in one volume of colours (P §4).
 
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::compare::{compare, difference, flat32};
 use crate::scenes::{self, isotropic};
-use crate::thresholds::{COLLAPSED, COLLAPSED_NORMALS};
+use crate::thresholds::{COMBINED, COMBINED_NORMALS};
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{Light, LightKind, LightStorage, Settings};
 use glam::DVec3;
@@ -27,11 +27,11 @@ fn look() -> Settings {
     settings
 }
 
-/// No. 14: Where material answers evenly, the collapsed light is the sum of all lights; where it does
+/// No. 14: Where material answers evenly, the combined light is the sum of all lights; where it does
 /// not, the angle to the light is interpolated too.
 #[test]
-fn collapsed_light_is_the_sum_of_the_lights() {
-    let loaded = Loaded::new(scenes::creature(48, DVec3::new(1.0, 1.2, 1.5)));
+fn combined_light_is_the_sum_of_the_lights() {
+    let loaded = Dataset::new(scenes::creature(48, DVec3::new(1.0, 1.2, 1.5)));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = look();
     let surfaces = |storage: LightStorage, even: bool, settings: &mut Settings| {
@@ -44,19 +44,19 @@ fn collapsed_light_is_the_sum_of_the_lights() {
     };
     surfaces(LightStorage::PerLight, true, &mut settings);
     let apart = render(&mut renderer, &loaded, &settings, SIZE);
-    settings.shadows.storage = LightStorage::Collapsed;
+    settings.shadows.storage = LightStorage::Combined;
     let together = render(&mut renderer, &loaded, &settings, SIZE);
-    compare("collapsed", &flat32(&together.light), &flat32(&apart.light), COLLAPSED)
+    compare("combined", &flat32(&together.light), &flat32(&apart.light), COMBINED)
         .unwrap_or_else(|err| panic!("{err}"));
     // With normals: the difference is reported, and must be there, or the test would see nothing.
     let mut settings = look();
     let apart = render(&mut renderer, &loaded, &settings, SIZE);
-    settings.shadows.storage = LightStorage::Collapsed;
+    settings.shadows.storage = LightStorage::Combined;
     let together = render(&mut renderer, &loaded, &settings, SIZE);
     let found = difference(&flat32(&together.light), &flat32(&apart.light));
-    println!("collapsed with normals: RMSE {:.2e}, largest {:.2e}", found.rmse, found.max);
+    println!("combined with normals: RMSE {:.2e}, largest {:.2e}", found.rmse, found.max);
     assert!(
-        found.rmse > 0.0 && found.rmse < COLLAPSED_NORMALS,
+        found.rmse > 0.0 && found.rmse < COMBINED_NORMALS,
         "interpolated normals differ a little: {}",
         found.rmse
     );
@@ -64,14 +64,14 @@ fn collapsed_light_is_the_sum_of_the_lights() {
 
 /// One volume is kept in place of those of the lights, until one of them changes.
 #[test]
-fn a_collapsed_volume_is_kept_until_a_light_changes() {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+fn a_combined_volume_is_kept_until_a_light_changes() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = look();
     render(&mut renderer, &loaded, &settings, SIZE);
-    let voxels = loaded.volume.voxel_count() as u64;
+    let voxels = loaded.volume().voxel_count() as u64;
     assert_eq!(renderer.light_bytes(), 3 * 2 * voxels, "three lights cast shadows");
-    settings.shadows.storage = LightStorage::Collapsed;
+    settings.shadows.storage = LightStorage::Combined;
     let first = render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_bytes(), 8 * voxels, "four 16-bit numbers, and the lights' own are gone");
     let fills = |renderer: &Renderer| renderer.light_rebuilds().iter().sum::<u64>();
@@ -92,11 +92,11 @@ fn a_collapsed_volume_is_kept_until_a_light_changes() {
     let recolored = render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(fills(&renderer), before + 3, "all lights are filled again");
     assert!(recolored.light != first.light);
-    // Left to itself it collapses only where that costs nothing.
+    // Left to itself it combines only where that costs nothing.
     settings.shadows.storage = LightStorage::Auto;
-    assert!(!settings.collapses_lights(), "three volumes take less than one of colours");
+    assert!(!settings.combines_lights(), "three volumes take less than one of colours");
     settings.lights.extend(vec![settings.lights[0].clone(); 3]);
-    assert!(settings.collapses_lights());
+    assert!(settings.combines_lights());
     settings.shading.specular = 0.1;
-    assert!(!settings.collapses_lights(), "highlights would be lost");
+    assert!(!settings.combines_lights(), "highlights would be lost");
 }

@@ -2,13 +2,13 @@
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Background, Camera, Deposit, Ground, Hood, Kernel, Length, LightKind, Projection, Settings,
+    Background, Camera, Deposit, Floor, Hood, Kernel, Length, LightKind, Projection, Settings,
     ShadowAlgorithm, ToneMap,
 };
 use chiaroscuro::reference::{Options, Reference};
 use glam::DVec3;
 
-use crate::common::{Loaded, context, render};
+use crate::common::{Dataset, context, render};
 use crate::compare::compare;
 use crate::scenes::{self, linear_extinction, straight};
 use crate::thresholds::{EIGHT_BITS, F16_STEP, FLOOR_EDGE, FLOOR_SHADOW, SAME_WEIGHTS};
@@ -16,15 +16,15 @@ use crate::thresholds::{EIGHT_BITS, F16_STEP, FLOOR_EDGE, FLOOR_SHADOW, SAME_WEI
 const SIZE: [u32; 2] = [96, 80];
 
 fn on(settings: Settings) -> Settings {
-    Settings { ground: Ground { on: true, height: -0.9, ..Ground::default() }, ..settings }
+    Settings { floor: Floor { on: true, height: -0.9, ..Floor::default() }, ..settings }
 }
 
 /// What is seen of the floor past the volume, by both sides.
 fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
-    let loaded = Loaded::new(scenes::creature(40, spacing_mm));
+    let loaded = Dataset::new(scenes::creature(40, spacing_mm));
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { rounding: Some(rounding), ..Options::default() };
-    let reference = Reference::new(&loaded.volume, settings, options);
+    let reference = Reference::new(loaded.volume(), settings, options);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let picture = render(&mut renderer, &loaded, settings, SIZE);
     let floor = renderer.read_floor().expect("a floor");
@@ -35,7 +35,7 @@ fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
     let found: Vec<f64> =
         floor.iter().enumerate().flat_map(|(at, texel)| past(texel.map(f64::from), at)).collect();
     let expected: Vec<f64> =
-        reference.ground(SIZE).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
+        reference.floor(SIZE).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
     assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
     compare(name, &found, &expected, SAME_WEIGHTS).unwrap_or_else(|err| panic!("{err}"));
 }
@@ -56,8 +56,8 @@ fn floor_and_shadows_as_in_the_reference() {
     settings.shadows.kernel = Kernel::Prefiltered;
     settings.shadows.deposit = Deposit::Front;
     check("hood, cures, orthographic camera", DVec3::new(1.0, 0.8, 1.6), &settings);
-    settings.ground.shadow_only = true;
-    settings.ground.opacity = 0.8;
+    settings.floor.shadow_only = true;
+    settings.floor.opacity = 0.8;
     settings.lights[0].casts_shadows = true;
     settings.cuts.plane.on = true;
     check("shadow alone, and cut", DVec3::ONE, &settings);
@@ -66,7 +66,7 @@ fn floor_and_shadows_as_in_the_reference() {
 #[test]
 fn every_algorithm_and_engine_has_it() {
     let mut settings = on(scenes::look());
-    let loaded = Loaded::new(scenes::creature(24, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(24, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut shadows = Vec::new();
     for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
@@ -92,7 +92,7 @@ fn every_algorithm_and_engine_has_it() {
 #[test]
 fn what_a_block_lets_through_falls_on_the_floor() {
     let inside = |at: [usize; 3]| at.iter().all(|c| (8..40).contains(c));
-    let loaded = Loaded::new(scenes::block(48, inside));
+    let loaded = Dataset::new(scenes::block(48, inside));
     let mut settings = Settings {
         transfer: linear_extinction(2.0_f64.ln() / 16.0),
         opacity_unit: Length::Voxels(1.0),
@@ -103,7 +103,7 @@ fn what_a_block_lets_through_falls_on_the_floor() {
     };
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
-    settings.ground = Ground { on: true, height: -3.0, color: [1.0; 3], radius: 50.0, ..Ground::default() };
+    settings.floor = Floor { on: true, height: -3.0, color: [1.0; 3], radius: 50.0, ..Floor::default() };
     let camera = settings.camera.clone();
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     // Where a point of the floor is seen.
@@ -125,7 +125,7 @@ fn what_a_block_lets_through_falls_on_the_floor() {
 
 #[test]
 fn it_lies_behind_the_volume_and_before_the_background() {
-    let loaded = Loaded::new(scenes::creature(32, DVec3::ONE));
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = scenes::look();
     settings.output.background = Background { top: [0.2; 3], bottom: [0.2; 3] };
     settings.output.tone_map = ToneMap::Clip;
@@ -152,10 +152,9 @@ fn it_lies_behind_the_volume_and_before_the_background() {
     }
     assert!(seen > 300, "{seen} pixels of the bare floor");
     // On transparent pictures shadows are half-transparent black.
-    settings.ground.shadow_only = true;
+    settings.floor.shadow_only = true;
     let options = RenderOptions { transparent: true, ..RenderOptions::default() };
-    let picture =
-        renderer.render(&loaded.volume, &loaded.bricks, &settings, SIZE, &options).expect("a picture");
+    let picture = renderer.render(&loaded, &settings, SIZE, &options).expect("a picture");
     let shadows = (0..bare.light.len()).filter(|&at| {
         let [r, g, b, alpha] = texel(&picture.shown, at);
         bare.light[at][3] == 0.0 && alpha > 100 && [r, g, b] == [0; 3]

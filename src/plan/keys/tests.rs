@@ -1,8 +1,11 @@
-//! What each setting makes stale.
+//! What each setting changes: the keys that differ, setting by setting.
+
+use serde_json::Value;
 
 use super::*;
-use crate::model::{ControlPoint, LightLock, apply_path, to_json};
-use serde_json::Value;
+use crate::model::{
+    ControlPoint, Light, LightKind, LightLock, Settings, TransferFunction, apply_path, to_json,
+};
 
 fn request() -> Request {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
@@ -18,10 +21,8 @@ fn request() -> Request {
     Request { volume: 1, settings, size: [100, 80], coarse: None }
 }
 
-fn changed(path: &str, value: &str) -> Plan {
-    let before = request();
-    let settings = apply_path(&before.settings, path, value).unwrap();
-    plan(Some(&before), &Request { settings, ..before.clone() })
+fn keys(request: &Request) -> FrameKeys {
+    FrameKeys::of(request, &RenderOptions::default())
 }
 
 /// What a change is expected to cause.
@@ -29,19 +30,26 @@ fn changed(path: &str, value: &str) -> Plan {
 enum Effect {
     Nothing,
     Display,
+    Floor,
     Eye,
     OneLight,
     AllLights,
 }
 
-fn effect(plan: &Plan) -> Effect {
-    match plan.lights.iter().filter(|&&rebuild| rebuild).count() {
+fn effect(before: &FrameKeys, after: &FrameKeys) -> Effect {
+    match after.lights_missing_in(before) {
         1 => Effect::OneLight,
         n if n > 1 => Effect::AllLights,
-        _ if plan.eye => Effect::Eye,
-        _ if plan.display => Effect::Display,
+        _ if after.eye != before.eye => Effect::Eye,
+        _ if after.floor != before.floor => Effect::Floor,
+        _ if after.display != before.display => Effect::Display,
         _ => Effect::Nothing,
     }
+}
+
+fn effect_of(before: &Request, path: &str, value: &str) -> Effect {
+    let settings = apply_path(&before.settings, path, value).unwrap();
+    effect(&keys(before), &keys(&Request { settings, ..before.clone() }))
 }
 
 #[test]
@@ -59,12 +67,13 @@ fn every_setting_causes_what_the_design_says() {
         ("lights.1.intensity", "2", Effect::Eye),
         ("lights.1.on", "false", Effect::Eye),
         ("lights.1.casts_shadows", "false", Effect::Eye),
-        ("lights.1.position", "[0,6,0]", Effect::Eye),
+        // Further out is where a parallel light was before.
+        ("lights.1.position", "[0,6,0]", Effect::Nothing),
         ("lights.1.position", "[0,6,1]", Effect::OneLight),
         ("lights.2.position", "[4,-4,5]", Effect::OneLight),
         ("lights.1.kind", "perspective", Effect::OneLight),
         ("lights.1.lock", "camera", Effect::OneLight),
-        ("lights.1.hood", r#"{"on": true}"#, Effect::Eye),
+        ("lights.1.hood", r#"{"on": true}"#, Effect::Nothing),
         ("lights.2.hood", r#"{"on": true}"#, Effect::OneLight),
         ("lights.1.density_scale", "0.5", Effect::OneLight),
         ("transfer.points.0.color", "[1,0,0]", Effect::Eye),
@@ -73,7 +82,7 @@ fn every_setting_causes_what_the_design_says() {
         ("transfer.interpolation", "extinction", Effect::AllLights),
         ("lighting.scale", "0.5", Effect::AllLights),
         ("lighting.linked", "false", Effect::AllLights),
-        ("lighting.curve.interpolation", "extinction", Effect::Eye),
+        ("lighting.curve.interpolation", "extinction", Effect::Nothing),
         ("opacity_unit", r#"{"mm": 3}"#, Effect::AllLights),
         ("shading.emission", "0.1", Effect::Eye),
         ("shading.ambient", "0.1", Effect::Eye),
@@ -96,29 +105,31 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.quadrature", "two", Effect::AllLights),
         ("shadows.resolution", "half", Effect::AllLights),
         ("shadows.precision", "byte", Effect::AllLights),
-        ("shadows.storage", "collapsed", Effect::Eye),
+        ("shadows.storage", "combined", Effect::Eye),
         ("transfer.mixing", "seen", Effect::Eye),
-        ("lighting.curve.mixing", "seen", Effect::Eye),
+        ("lighting.curve.mixing", "seen", Effect::Nothing),
         ("cuts.crop", r#"{"on": true}"#, Effect::Nothing),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, Effect::AllLights),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0], "effect": "hidden"}"#, Effect::Eye),
         ("cuts.plane", r#"{"offset": 0.1}"#, Effect::Nothing),
         ("cuts.plane", r#"{"on": true}"#, Effect::AllLights),
         ("cuts.plane", r#"{"on": true, "effect": "shadowless"}"#, Effect::AllLights),
-        ("ground", r#"{"on": true}"#, Effect::Eye),
+        ("floor", r#"{"on": true}"#, Effect::Floor),
         ("sampling.kernel", "prefiltered", Effect::Eye),
         ("sampling.slab", "0.5", Effect::Eye),
         ("sampling.quadrature", "two", Effect::Eye),
         ("sampling.gradients", "sheets", Effect::Eye),
         ("sampling.classification", "pre", Effect::AllLights),
         ("sampling.engine", "scatter", Effect::AllLights),
-        ("sampling.order", "volume_aligned", Effect::Eye),
+        // Gathering has no order.
+        ("sampling.order", "volume_aligned", Effect::Nothing),
         ("output.background.top", "[0,0,0]", Effect::Display),
         ("output.background.bottom", "[0,0,0]", Effect::Display),
         ("output.tone_map", "clip", Effect::Display),
+        ("views", r#"{"1": {}}"#, Effect::Nothing),
     ];
     for (path, value, expected) in &table {
-        assert_eq!(&effect(&changed(path, value)), expected, "{path} = {value}");
+        assert_eq!(&effect_of(&request(), path, value), expected, "{path} = {value}");
     }
     // The table is complete: every leaf of the settings is named, or lies below a name.
     let tree: Value = serde_json::from_str(&to_json(&request().settings)).unwrap();
@@ -146,40 +157,76 @@ fn collect(tree: &Value, path: String, leaves: &mut Vec<String>) {
 }
 
 #[test]
-fn the_same_request_needs_nothing_and_the_first_needs_all() {
-    assert!(plan(Some(&request()), &request()).is_empty());
-    let first = plan(None, &request());
-    assert!(first.volume && first.eye_table && first.eye && first.lights == [true; 3]);
+fn requests_that_are_the_same_have_the_same_keys() {
+    assert_eq!(keys(&request()), keys(&request()));
+    let larger = Request { size: [101, 80], ..request() };
+    assert_eq!(effect(&keys(&request()), &keys(&larger)), Effect::Eye);
+}
+
+#[test]
+fn options_that_only_display_reads_change_the_display_alone() {
+    let options = RenderOptions { exposure: 1.5, ..RenderOptions::default() };
+    assert_eq!(effect(&keys(&request()), &FrameKeys::of(&request(), &options)), Effect::Display);
+    let options = RenderOptions { transparent: true, ..RenderOptions::default() };
+    assert_eq!(effect(&keys(&request()), &FrameKeys::of(&request(), &options)), Effect::Display);
+    let options = RenderOptions { timed: true, light_parts: 3, ..RenderOptions::default() };
+    assert_eq!(effect(&keys(&request()), &FrameKeys::of(&request(), &options)), Effect::Nothing);
+}
+
+#[test]
+fn a_light_that_is_off_may_move() {
+    let mut before = request();
+    before.settings.lights[1].on = false;
+    assert_eq!(effect_of(&before, "lights.1.position", "[5,0,0]"), Effect::Nothing);
+    assert_eq!(effect_of(&before, "lights.1.on", "true"), Effect::OneLight);
 }
 
 #[test]
 fn a_light_that_is_locked_to_the_camera_turns_with_it() {
     let mut before = request();
     before.settings.lights[1].lock = LightLock::Camera;
-    let settings = apply_path(&before.settings, "camera.azimuth_deg", "10").unwrap();
-    let next = Request { settings, ..before.clone() };
-    assert_eq!(effect(&plan(Some(&before), &next)), Effect::OneLight);
+    assert_eq!(effect_of(&before, "camera.azimuth_deg", "10"), Effect::OneLight);
 }
 
 #[test]
 fn removing_a_light_rebuilds_nothing() {
     let mut next = request();
     next.settings.lights.remove(0);
-    assert_eq!(effect(&plan(Some(&request()), &next)), Effect::Eye);
+    assert_eq!(effect(&keys(&request()), &keys(&next)), Effect::Eye);
 }
 
 #[test]
 fn an_unlinked_lighting_curve_frees_the_eye() {
     let mut before = request();
     before.settings.lighting.linked = false;
-    let settings = apply_path(&before.settings, "transfer.points.1.opacity", "0.4").unwrap();
-    let next = Request { settings, ..before.clone() };
-    assert_eq!(effect(&plan(Some(&before), &next)), Effect::Eye);
+    assert_eq!(effect_of(&before, "transfer.points.1.opacity", "0.4"), Effect::Eye);
+    // Rays to lights meet the lighting curve in the eye pass itself.
+    before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Direct;
+    assert_eq!(effect_of(&before, "lighting.scale", "0.4"), Effect::Eye);
 }
 
 #[test]
-fn another_volume_rebuilds_everything() {
-    let next = Request { volume: 2, ..request() };
-    let plan = plan(Some(&request()), &next);
-    assert!(plan.volume && plan.eye_table && plan.eye && plan.lights == [true; 3]);
+fn another_volume_changes_every_key() {
+    let (before, after) = (keys(&request()), keys(&Request { volume: 2, ..request() }));
+    assert!(before.volume != after.volume && before.tables != after.tables && before.eye != after.eye);
+    assert_eq!(after.lights_missing_in(&before), 3);
+}
+
+#[test]
+fn combined_light_follows_what_its_samples_see() {
+    let mut before = request();
+    before.settings.shadows.storage = crate::model::LightStorage::Combined;
+    let differs = |path: &str, value: &str| {
+        let settings = apply_path(&before.settings, path, value).unwrap();
+        keys(&Request { settings, ..before.clone() }).combined != keys(&before).combined
+    };
+    assert!(keys(&before).combined.is_some() && keys(&request()).combined.is_none());
+    for (path, value) in
+        [("lights.0.color", "[1,0,0]"), ("shadows.gain", "2"), ("shading.surface_gradient", "1")]
+    {
+        assert!(differs(path, value), "{path}");
+    }
+    for (path, value) in [("camera.azimuth_deg", "9"), ("shading.diffuse", "0.1"), ("lights.0.name", "Key")] {
+        assert!(!differs(path, value), "{path}");
+    }
 }

@@ -1,0 +1,38 @@
+# shellcheck shell=bash
+# Programs that check the project, and how they come to this machine. Sourced after common.sh.
+
+# need_component COMPONENT COMMAND…: adds a part of the Rust toolchain if COMMAND does not work.
+need_component() {
+    local component=$1
+    shift
+    "$@" >/dev/null 2>&1 && return
+    has rustup || die "$component is missing; install it next to this machine's Rust"
+    say "adding $component to the Rust toolchain"
+    rustup component add "$component"
+}
+
+need_shellcheck() {
+    want_command shellcheck shellcheck ShellCheck "reads the scripts"
+    install_wanted
+    has shellcheck || die "shellcheck was not found; install it (macOS: brew install shellcheck)"
+}
+
+# need_tools: puts the programs of tools.txt first in PATH, and installs them into the target folder if that list
+# is another than the one they were installed from.
+need_tools() {
+    local list folder
+    list=$(dirname "${BASH_SOURCE[0]}")/tools.txt
+    folder=$(target_folder)/tools
+    if ! cmp -s "$list" "$folder/tools.txt"; then
+        want_command python3 python3 python3 "installs programs that check the project"
+        python3 -m pip --version >/dev/null 2>&1 ||
+            want_package python3-pip python3-pip "installs programs that check the project"
+        install_wanted
+        say "installing into $folder: $(sed -n 's/^\([a-z-]*\)==\([0-9.]*\) .*/\1 \2/p' "$list" | paste -s -d ',' -)"
+        rm -rf "$folder"
+        PIP_ROOT_USER_ACTION=ignore python3 -m pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --require-hashes \
+            --target "$folder" --requirement "$list" >&2 || die "the programs of $list could not be installed"
+        cp "$list" "$folder/tools.txt"
+    fi
+    PATH=$folder/bin:$PATH
+}

@@ -1,0 +1,38 @@
+//! A volume together with what follows from its voxels alone.
+
+use std::sync::Arc;
+
+use super::{Bricks, Histogram, Volume};
+
+/// A volume with the bounds of its bricks and its histogram, which are made from it and cannot be mixed up with
+/// those of another. Copies share the voxels.
+#[derive(Debug, Clone)]
+pub struct Dataset {
+    volume: Arc<Volume>,
+    bricks: Arc<Bricks>,
+    histogram: Arc<Histogram>,
+}
+
+impl Dataset {
+    /// Finds bounds and histogram of a volume: about a second for 512³ voxels.
+    pub fn new(volume: impl Into<Arc<Volume>>) -> Self {
+        let volume = volume.into();
+        let (bricks, histogram) = (Arc::new(Bricks::of(&volume)), Arc::new(Histogram::of(&volume)));
+        Self { volume, bricks, histogram }
+    }
+
+    /// The voxels.
+    pub fn volume(&self) -> &Arc<Volume> {
+        &self.volume
+    }
+
+    /// Bounds of the density in bricks of 8³ and cells of 2³ voxels.
+    pub fn bricks(&self) -> &Arc<Bricks> {
+        &self.bricks
+    }
+
+    /// How often each density occurs.
+    pub fn histogram(&self) -> &Arc<Histogram> {
+        &self.histogram
+    }
+}

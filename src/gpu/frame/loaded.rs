@@ -1,0 +1,99 @@
+//! A volume with everything on the GPU that is made from it.
+
+use std::sync::Arc;
+
+use crate::data::Dataset;
+use crate::gpu::light::combine::CombinedLight;
+use crate::gpu::light::volume::LightVolume;
+use crate::gpu::resources::cached::Cached;
+use crate::gpu::scatter::voxels::ScatterVoxels;
+use crate::gpu::volume::GpuVolume;
+use crate::gpu::volume::transfer_tables::Tables;
+use crate::gpu::{Context, GpuError};
+use crate::model::{Classification, Settings, SheetOrder};
+use crate::plan::{CombinedKey, LightKey, TablesKey};
+
+/// A volume on the GPU, and what makes sense only together with it.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    /// Density, pyramid and gradients.
+    pub volume: GpuVolume,
+    /// Both transfer functions, and where they show anything.
+    pub tables: Cached<TablesKey, Tables>,
+    /// Attenuation volumes, most recently used first.
+    pub lights: Vec<Cached<LightKey, LightVolume>>,
+    /// The diffuse light of all of them in one.
+    pub combined: Option<Cached<CombinedKey, CombinedLight>>,
+    /// Voxels for scattering, once a picture has asked for them.
+    pub voxels: Option<Arc<ScatterVoxels>>,
+}
+
+impl Loaded {
+    /// Makes room for a volume, and tables for a first look; nothing is uploaded yet.
+    ///
+    /// # Errors
+    /// When the adapter cannot hold them.
+    pub(super) fn new(
+        context: &Context,
+        dataset: &Dataset,
+        settings: &Settings,
+        tables_key: &TablesKey,
+    ) -> Result<Self, GpuError> {
+        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks())?;
+        let (tables, _) = Tables::new(context, &volume, settings, tables_key, None)?;
+        let tables = Cached::complete(tables_key.clone(), tables);
+        Ok(Self { volume, tables, lights: Vec::new(), combined: None, voxels: None })
+    }
+
+    /// Brings the tables up to date. Returns how many were baked.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(super) fn refresh_tables(
+        &mut self,
+        context: &Context,
+        settings: &Settings,
+        key: &TablesKey,
+    ) -> Result<u32, GpuError> {
+        if self.tables.holds(key) {
+            return Ok(0);
+        }
+        let known = Some((self.tables.key(), &self.tables.value));
+        let (fresh, baked) = Tables::new(context, &self.volume, settings, key, known)?;
+        self.tables = Cached::complete(key.clone(), fresh);
+        Ok(baked)
+    }
+
+    /// The voxels that a picture scatters.
+    ///
+    /// # Errors
+    /// When they are more than a buffer of the adapter can hold.
+    pub(super) fn voxels_for(
+        &mut self,
+        context: &Context,
+        settings: &Settings,
+    ) -> Result<Arc<ScatterVoxels>, GpuError> {
+        // Sums of nothing are zeros, but voxels of nothing are not splatted by themselves.
+        let by_voxel = settings.sampling.classification == Classification::Pre
+            || settings.sampling.order == SheetOrder::EveryFootprint;
+        let all = by_voxel && self.tables.value.shows_empty_space();
+        if let Some(known) = self.voxels.as_ref().filter(|known| known.holds_all || !all) {
+            return Ok(Arc::clone(known));
+        }
+        let fresh = Arc::new(ScatterVoxels::new(context, &self.volume, all)?);
+        self.voxels = Some(Arc::clone(&fresh));
+        Ok(fresh)
+    }
+
+    /// Bytes of light volumes, of which pictures look up those of their lights, or one for all.
+    pub(super) fn light_bytes(&self) -> u64 {
+        let combined = self.combined.as_ref().map_or(0, |combined| combined.value.bytes());
+        combined + self.lights.iter().map(|light| light.value.bytes()).sum::<u64>()
+    }
+
+    /// Bytes of all textures and buffers.
+    pub(super) fn bytes(&self) -> u64 {
+        let voxels = self.voxels.as_ref().map_or(0, |voxels| voxels.bytes());
+        self.volume.bytes() + voxels + self.light_bytes()
+    }
+}

@@ -1,0 +1,249 @@
+//! Planning a picture: compares what it needs with what is there, and lists the steps that make the difference.
+
+use std::time::Instant;
+
+use super::job::Job;
+use super::light_cache::{PlacedLights, Wanted};
+use super::loaded::Loaded;
+use super::report::Report;
+use super::step::{Product, Step};
+use super::targets::{Role, shown_key};
+use crate::data::Dataset;
+use crate::gpu::eye::gather::{EyePass, LightInput};
+use crate::gpu::light::combine;
+use crate::gpu::light::volume::LightVolume;
+use crate::gpu::output::target::Shape;
+use crate::gpu::resources::cached::Cached;
+use crate::gpu::scatter::eye::SLABS_PER_STEP;
+use crate::gpu::scatter::voxels::Scattering;
+use crate::gpu::volume::{GpuVolume, prefilter};
+use crate::gpu::{GpuError, RenderOptions, Renderer};
+use crate::model::{Depth, SheetOrder};
+use crate::plan::{EyeKey, FloorKey, FrameKeys, LitLights, Request, SliceOrder};
+
+impl Renderer {
+    /// Whether a picture would take no more than a display pass, or nothing at all.
+    pub fn is_drawn(&self, request: &Request, options: &RenderOptions) -> bool {
+        let keys = FrameKeys::of(request, options);
+        let floor_is_drawn = |role| self.targets.get(role).floor.holds(&keys.floor);
+        self.targets.holding(&keys, shape(request, options)).is_some_and(floor_is_drawn)
+    }
+
+    /// Starts a picture: finds what is stale and lists the steps.
+    ///
+    /// # Errors
+    /// When memory for it cannot be had. What was shown stays.
+    pub fn begin(
+        &mut self,
+        dataset: &Dataset,
+        request: Request,
+        options: &RenderOptions,
+    ) -> Result<Job<'_>, GpuError> {
+        let mut keys = FrameKeys::of(&request, options);
+        let lit = LitLights::of(&request.settings);
+        let shape = shape(&request, options);
+        self.pictures += 1;
+        self.report = Report { peak_gpu_bytes: self.report.peak_gpu_bytes, ..Report::default() };
+        self.fills.resize(self.fills.len().max(request.settings.lights.len()), 0);
+        let mut steps = Vec::new();
+
+        let loaded = match self.loaded.take() {
+            Some(known) if known.holds(&keys.volume) => known,
+            _ => {
+                self.tools.pool.clear();
+                let fresh = Loaded::new(&self.tools.context, dataset, &request.settings, &keys.tables)?;
+                steps.extend(upload_steps(&fresh.volume));
+                self.report.runs.tables = 2;
+                Cached::unfilled(keys.volume, fresh)
+            }
+        };
+        let loaded = self.loaded.insert(loaded);
+
+        let mut placed = PlacedLights::default();
+        let mut scattering = None;
+        let mut role = self.targets.holding(&keys, shape);
+        if role.is_none() || keys.floor.is_some() {
+            let start = Instant::now();
+            let baked = loaded.value.refresh_tables(&self.tools.context, &request.settings, &keys.tables)?;
+            if baked > 0 {
+                self.tools.pool.forget_groups();
+            }
+            self.report.runs.tables += baked;
+            self.report.bricks_ms = start.elapsed().as_secs_f64() * 1000.0;
+        }
+        if role.is_none() {
+            let mut recyclable = loaded.value.take_unfinished();
+            let wanted = Wanted {
+                context: &self.tools.context,
+                request: &request,
+                options,
+                keys: &keys,
+                now: self.pictures,
+            };
+            placed = loaded.value.place_lights(wanted, &mut recyclable)?;
+            if !recyclable.is_empty() {
+                recyclable.clear();
+                self.tools.pool.forget_groups();
+            }
+            if placed.builds.is_empty() {
+                self.tools.pool.drop_sheets();
+            }
+            keys.eye = EyeKey::of(&request, options, &placed.keys, keys.combined.as_ref());
+            keys.floor = FloorKey::of(&request, &keys.eye);
+            // A preview may find that its lights are there at full resolution.
+            role = self.targets.holding(&keys, shape);
+        }
+        let is_drawn = role.is_some();
+        let role = match role {
+            Some(role) => role,
+            None => {
+                for (at, build) in placed.builds.iter().enumerate() {
+                    steps.extend(build.steps(at, options.light_parts.max(1)));
+                }
+                steps.extend(combine_steps(placed.bricks_to_combine));
+                if request.settings.scatters() {
+                    let voxels = loaded.value.voxels_for(&self.tools.context, &request.settings)?;
+                    scattering = Some(Scattering::new(&self.tools.context, voxels));
+                }
+                self.targets.fit_back(&self.tools, shape)?;
+                Role::Back
+            }
+        };
+
+        let value = &loaded.value;
+        let volumes = inputs(&lit, &placed.slots, value);
+        let window = options.window(&request);
+        let of_lights = |lights: &[LightInput<'_>]| {
+            EyePass::new(&value.volume.scene, &request.settings, window, lights, None, options)
+        };
+        let combine = placed.bricks_to_combine.is_some().then(|| of_lights(&volumes));
+        let combined = value.combined.as_ref().filter(|_| keys.combined.is_some());
+        let eye = match combined {
+            Some(combined) => {
+                let unshadowed = inputs_of(lit.unshadowed(), &[], value);
+                let scene = &value.volume.scene;
+                EyePass::new(scene, &request.settings, window, &unshadowed, Some(&combined.value), options)
+            }
+            None => of_lights(&volumes),
+        };
+        self.report.slabs = eye.slab_count();
+        self.report.size = window.size;
+        let looked_up = |inputs: &[LightInput<'_>]| {
+            inputs.iter().filter_map(|input| input.volume).map(|volume| volume.divisor).max().unwrap_or(0)
+        };
+        self.report.light_divisor = if combined.is_some() { 0 } else { looked_up(&volumes) };
+
+        let target = self.targets.get_mut(role);
+        if !is_drawn {
+            target.light.restart(Some(keys.eye.clone()));
+            target.light.value.splats = scattering.as_ref().map(|scattering| scattering.counter.clone());
+            steps.extend(eye_steps(&value.volume, &eye, &request, scattering.is_some()));
+            steps.push(Step::Finish(Product::Picture));
+        }
+        if target.place_floor(&self.tools.context, keys.floor.as_ref())? {
+            self.tools.pool.forget_groups();
+        }
+        if !target.floor.holds(&keys.floor) {
+            target.floor.restart(keys.floor.clone());
+            steps.push(Step::Floor(0..shape.drawn()[1]));
+            steps.push(Step::Finish(Product::Floor));
+        }
+        if !target.shown.holds(&Some(shown_key(&keys))) {
+            steps.push(Step::Display);
+        }
+        // Shown at last, whether or not anything had to be done.
+        steps.push(Step::Finish(Product::Shown));
+
+        let bytes = self.targets.bytes() + value.bytes() + self.tools.pool.bytes();
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
+        let total = steps.len();
+        Ok(Job {
+            tools: &self.tools,
+            gpu_clock: self.gpu_clock.as_ref(),
+            loaded,
+            targets: &mut self.targets,
+            fills: &mut self.fills,
+            report: &mut self.report,
+            options: options.clone(),
+            keys,
+            lit,
+            slots: placed.slots,
+            builds: placed.builds,
+            combine,
+            eye,
+            scattering,
+            eye_sheets: None,
+            role,
+            steps: steps.into(),
+            total,
+            request,
+        })
+    }
+}
+
+/// What a target for a request has room for.
+fn shape(request: &Request, options: &RenderOptions) -> Shape {
+    Shape { size: options.shown(request).size, samples: options.samples, deep: options.depth != Depth::Eight }
+}
+
+/// The lights of a picture, each with its volume.
+pub(super) fn inputs<'a>(
+    lit: &'a LitLights,
+    slots: &[Option<usize>],
+    loaded: &'a Loaded,
+) -> Vec<LightInput<'a>> {
+    inputs_of(lit.all(), slots, loaded)
+}
+
+fn inputs_of<'a>(
+    lights: &'a [crate::plan::LitLight],
+    slots: &[Option<usize>],
+    loaded: &'a Loaded,
+) -> Vec<LightInput<'a>> {
+    let volume_of = |index: usize| -> Option<&'a LightVolume> {
+        let slot = slots.get(index).copied().flatten()?;
+        loaded.lights.get(slot).map(|light| &light.value)
+    };
+    lights.iter().map(|lit| LightInput { lit, volume: volume_of(lit.index) }).collect()
+}
+
+/// The steps that bring a volume to the GPU.
+fn upload_steps(volume: &GpuVolume) -> Vec<Step> {
+    let slices = volume.volume.dims()[2];
+    let each = volume.slices_per_step();
+    let mut steps: Vec<_> =
+        (0..slices).step_by(each).map(|first| Step::Upload(first..slices.min(first + each))).collect();
+    steps.extend(prefilter::steps(volume).map(|(level, bricks)| Step::Pyramid(level, bricks)));
+    if volume.gradients.is_some() {
+        steps.extend(prefilter::steps(volume).map(|(level, bricks)| Step::Gradients(level, bricks)));
+    }
+    steps.push(Step::Finish(Product::Volume));
+    steps
+}
+
+/// The steps that fill the combined light volume.
+fn combine_steps(bricks: Option<usize>) -> Vec<Step> {
+    let Some(bricks) = bricks else { return Vec::new() };
+    let firsts = (0..bricks).step_by(combine::BRICKS_PER_STEP);
+    let end = |first: usize| bricks.min(first + combine::BRICKS_PER_STEP);
+    let mut steps: Vec<_> = firsts.map(|first| Step::Combine(first..end(first))).collect();
+    steps.push(Step::Finish(Product::CombinedLight));
+    steps
+}
+
+/// The steps that draw the linear picture.
+fn eye_steps(volume: &GpuVolume, eye: &EyePass, request: &Request, scatters: bool) -> Vec<Step> {
+    let frame = eye.frame();
+    // With everything behind the eye there is no sheet: the gathering pass clears the picture.
+    if !scatters || frame.slab_count == 0 {
+        return vec![Step::Eye(0..frame.size[1])];
+    }
+    let count = match request.settings.sampling.order {
+        SheetOrder::ImageAligned => frame.slab_count,
+        SheetOrder::VolumeAligned | SheetOrder::EveryFootprint => {
+            SliceOrder::new(frame, volume.volume.dims()).count
+        }
+    };
+    let firsts = (0..count).step_by(SLABS_PER_STEP as usize);
+    firsts.map(|k| Step::ScatterEye(k..count.min(k + SLABS_PER_STEP))).collect()
+}

@@ -1,0 +1,92 @@
+//! Settings under the names that they had before: what was saved stays readable.
+
+use serde_json::Value;
+
+/// Fields that were called otherwise, by their path: (before, now).
+const FIELDS: [(&str, &str); 1] = [("ground", "floor")];
+
+/// Values that were called otherwise: (path of the setting as it is called now, before, now). `*` stands for any
+/// item of a list.
+const VALUES: [(&str, &str, &str); 2] =
+    [("lights.*.lock", "world", "scene"), ("shadows.storage", "collapsed", "combined")];
+
+/// The present path of a setting.
+pub(super) fn current_path(path: &str) -> String {
+    for (before, now) in FIELDS {
+        match path.strip_prefix(before) {
+            Some("") => return now.to_owned(),
+            Some(rest) if rest.starts_with('.') => return format!("{now}{rest}"),
+            _ => {}
+        }
+    }
+    path.to_owned()
+}
+
+/// Replaces names from before in a value that stands at a path, and in all that it holds.
+pub(super) fn rename(path: &str, value: &mut Value) {
+    let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    match value {
+        Value::Object(fields) => {
+            let before = std::mem::take(fields);
+            for (key, mut value) in before {
+                let now = current_path(&below(&key));
+                rename(&now, &mut value);
+                let key = now.rsplit('.').next().unwrap_or(&now).to_owned();
+                fields.insert(key, value);
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| rename(&below("*"), item)),
+        Value::String(text) => {
+            let is_here = |pattern: &str| matches(pattern, path);
+            let known = VALUES.iter().find(|(pattern, before, _)| is_here(pattern) && before == text);
+            if let Some((.., now)) = known {
+                (*now).clone_into(text);
+            }
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+    }
+}
+
+/// Whether a path is what a pattern describes.
+fn matches(pattern: &str, path: &str) -> bool {
+    let is_item = |part: &str| part == "*" || part.parse::<usize>().is_ok();
+    pattern.split('.').count() == path.split('.').count()
+        && pattern
+            .split('.')
+            .zip(path.split('.'))
+            .all(|(pattern, part)| pattern == part || pattern == "*" && is_item(part))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn fields_and_values_get_their_present_names() {
+        let mut saved = json!({
+            "ground": {"on": true, "height": -1.0},
+            "lights": [{"lock": "world", "name": "world"}, {"lock": "camera"}],
+            "shadows": {"storage": "collapsed"},
+            "_note": "world",
+        });
+        rename("", &mut saved);
+        let now = json!({
+            "floor": {"on": true, "height": -1.0},
+            "lights": [{"lock": "scene", "name": "world"}, {"lock": "camera"}],
+            "shadows": {"storage": "combined"},
+            "_note": "world",
+        });
+        assert_eq!(saved, now);
+    }
+
+    #[test]
+    fn paths_get_their_present_names() {
+        assert_eq!(current_path("ground"), "floor");
+        assert_eq!(current_path("ground.on"), "floor.on");
+        assert_eq!(current_path("grounds.on"), "grounds.on");
+        let mut value = json!("world");
+        rename("lights.3.lock", &mut value);
+        assert_eq!(value, json!("scene"));
+    }
+}

@@ -1,0 +1,200 @@
+//! What linear pictures are made from: the volume as the eye sees it, and the floor under it.
+
+use super::combined::LightLook;
+use super::light::LightKey;
+use super::lit_lights::{Attenuation, LitLights};
+use super::table::{EyeTableKey, OpacityKey};
+use crate::model::{
+    Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
+    Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder,
+};
+use crate::plan::{CombinedKey, PixelWindow, RenderOptions, Request};
+
+/// Everything that the eye pass makes a linear picture from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EyeKey {
+    volume: u64,
+    window: PixelWindow,
+    camera: Camera,
+    curve: EyeTableKey,
+    shading: Shading,
+    /// The length to which gradients of surfaces refer.
+    unit: Length,
+    sampling: SamplingKey,
+    seen: Remains,
+    shading_cut: Remains,
+    received: ReceivedLight,
+    lights: Vec<EyeLightKey>,
+    /// Diffuse light of all shadowed lights, which are not among `lights` then.
+    combined: Option<CombinedKey>,
+    /// What rays to lights meet, where samples cast them.
+    rays: Option<RaysKey>,
+    options: RenderOptions,
+}
+
+/// A light, and what attenuates it.
+#[derive(Debug, Clone, PartialEq)]
+struct EyeLightKey {
+    look: LightLook,
+    attenuation: Attenuation,
+    /// The volume from which its attenuation is read, if it has one.
+    volume: Option<LightKey>,
+}
+
+/// How sheets are filled.
+#[derive(Debug, Clone, PartialEq)]
+struct SamplingKey {
+    kernel: Kernel,
+    slab: f64,
+    quadrature: Quadrature,
+    gradients: Gradients,
+    classification: Classification,
+    engine: Engine,
+    /// Only scattering has an order.
+    order: Option<SheetOrder>,
+}
+
+/// What becomes of light that arrives: the cures for darkness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ReceivedLight {
+    algorithm: ShadowAlgorithm,
+    strength: f64,
+    ambient_offset: f64,
+    gain: f64,
+    bias_voxels: f64,
+    balance: f64,
+}
+
+/// What rays from samples or from the floor to lights meet.
+#[derive(Debug, Clone, PartialEq)]
+struct RaysKey {
+    opacity: OpacityKey,
+    shadows: Shadows,
+}
+
+impl ReceivedLight {
+    /// The part of the shadows that acts where light is looked up.
+    pub(super) fn of(shadows: &Shadows) -> Self {
+        let Shadows {
+            algorithm,
+            strength,
+            ambient_offset,
+            gain,
+            bias_voxels,
+            balance,
+            // In the keys of light volumes and of rays.
+            first_touch: _,
+            deposit: _,
+            kernel: _,
+            slab: _,
+            quadrature: _,
+            resolution: _,
+            precision: _,
+            storage: _,
+        } = *shadows;
+        Self { algorithm, strength, ambient_offset, gain, bias_voxels, balance }
+    }
+}
+
+impl SamplingKey {
+    fn of(settings: &Settings) -> Self {
+        let Sampling { kernel, slab, quadrature, gradients, classification, engine, order } =
+            settings.sampling;
+        let order = settings.scatters().then_some(order);
+        Self { kernel, slab, quadrature, gradients, classification, engine, order }
+    }
+}
+
+impl RaysKey {
+    fn of(settings: &Settings) -> Self {
+        Self { opacity: OpacityKey::of(settings), shadows: settings.shadows.clone() }
+    }
+}
+
+impl EyeKey {
+    /// The key of the picture that is made with these light volumes, one for each light of the settings that has
+    /// any, or with their combination.
+    pub fn of(
+        request: &Request,
+        options: &RenderOptions,
+        volumes: &[Option<LightKey>],
+        combined: Option<&CombinedKey>,
+    ) -> Self {
+        let Request { volume, settings, size: _, coarse: _ } = request;
+        let Settings {
+            schema: _,
+            camera,
+            lights: _,
+            transfer: _,
+            lighting: _,
+            opacity_unit,
+            shading,
+            shadows,
+            cuts,
+            floor: _,
+            sampling: _,
+            output: _,
+            views: _,
+        } = settings;
+        let lit = LitLights::of(settings);
+        let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };
+        let lights = own.iter().map(|lit| EyeLightKey {
+            look: LightLook::of(&lit.light),
+            attenuation: lit.attenuation,
+            volume: volumes.get(lit.index).cloned().flatten(),
+        });
+        let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
+        Self {
+            volume: *volume,
+            window: options.window(request),
+            camera: camera.clone(),
+            curve: EyeTableKey::of(settings),
+            shading: shading.clone(),
+            unit: *opacity_unit,
+            sampling: SamplingKey::of(settings),
+            seen: cuts.seen(),
+            shading_cut: cuts.shading(),
+            received: ReceivedLight::of(shadows),
+            lights: lights.collect(),
+            combined: combined.cloned(),
+            rays: casts_rays.then(|| RaysKey::of(settings)),
+            options: computing(options),
+        }
+    }
+}
+
+/// Options as far as they say how light is computed: not how it is shown, nor how the work is cut.
+fn computing(options: &RenderOptions) -> RenderOptions {
+    RenderOptions {
+        transparent: false,
+        exposure: 1.0,
+        timed: false,
+        light_parts: 1,
+        depth: Depth::Eight,
+        ..options.clone()
+    }
+}
+
+/// Everything that the floor pass makes the light on the floor from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FloorKey {
+    /// What covers it, under which lights.
+    eye: EyeKey,
+    floor: Floor,
+    rays: RaysKey,
+    /// Lights may be combined for the eye, but not for the floor.
+    lights: LitLights,
+}
+
+impl FloorKey {
+    /// The key of the floor under a picture; `None` without floor.
+    pub fn of(request: &Request, eye: &EyeKey) -> Option<Self> {
+        let settings = &request.settings;
+        settings.floor.on.then(|| Self {
+            eye: eye.clone(),
+            floor: settings.floor.clone(),
+            rays: RaysKey::of(settings),
+            lights: LitLights::of(settings),
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! What the attenuation volume of a light is made from.
+
+use super::table::OpacityKey;
+use crate::model::{
+    Classification, Deposit, Engine, Hood, Kernel, LightKind, Precision, Quadrature, Remains, Resolution,
+    Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
+};
+use crate::plan::Request;
+
+/// Everything that one light's attenuation volume is made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightKey {
+    volume: u64,
+    kind: LightKind,
+    /// The position, or for a parallel light the direction: moving it outwards changes nothing.
+    placed: [f64; 3],
+    /// Angles of the hood, if there is one.
+    hood_deg: Option<[f64; 2]>,
+    density_scale: f64,
+    algorithm: ShadowAlgorithm,
+    classification: Classification,
+    engine: Engine,
+    opacity: OpacityKey,
+    first_touch: bool,
+    deposit: Deposit,
+    kernel: Kernel,
+    slab: f64,
+    quadrature: Quadrature,
+    resolution: Resolution,
+    precision: Precision,
+    shading_cut: Remains,
+}
+
+impl LightKey {
+    /// The same light volume at another resolution.
+    #[must_use]
+    pub fn at_resolution(&self, resolution: Resolution) -> Self {
+        Self { resolution, ..self.clone() }
+    }
+
+    /// Resolution of the light volume.
+    pub fn resolution(&self) -> Resolution {
+        self.resolution
+    }
+
+    /// How its values are stored.
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// The key of light `index` of a request; `None` when it needs no attenuation volume.
+    pub fn of(request: &Request, index: usize) -> Option<Self> {
+        let Settings {
+            schema: _,
+            camera,
+            lights,
+            // In the key of opacities.
+            transfer: _,
+            lighting: _,
+            opacity_unit: _,
+            shading: _,
+            shadows,
+            cuts,
+            floor: _,
+            sampling:
+                Sampling { kernel: _, slab: _, quadrature: _, gradients: _, classification, engine, order: _ },
+            output: _,
+            views: _,
+        } = &request.settings;
+        let light = lights.get(index)?.in_scene(camera);
+        let SceneLight {
+            kind,
+            position,
+            color: _,
+            intensity: _,
+            on: _,
+            casts_shadows: _,
+            hood: Hood { on: hooded, half_angle_deg, rim_deg },
+            density_scale,
+        } = &light;
+        let hooded = *hooded && *kind == LightKind::Perspective;
+        let Shadows {
+            algorithm,
+            strength: _,
+            ambient_offset: _,
+            gain: _,
+            bias_voxels: _,
+            balance: _,
+            first_touch,
+            deposit,
+            kernel,
+            slab,
+            quadrature,
+            resolution,
+            precision,
+            storage: _,
+        } = shadows;
+        let wanted = algorithm.has_volume() && light.needs_volume();
+        wanted.then(|| Self {
+            volume: request.volume,
+            kind: *kind,
+            placed: match kind {
+                LightKind::Parallel => light.direction().into(),
+                LightKind::Perspective => *position,
+            },
+            hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
+            density_scale: *density_scale,
+            algorithm: *algorithm,
+            // Rays need no sheets.
+            classification: if *algorithm == ShadowAlgorithm::Splat {
+                *classification
+            } else {
+                Classification::Post
+            },
+            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
+            opacity: OpacityKey::of(&request.settings),
+            first_touch: *first_touch,
+            deposit: *deposit,
+            kernel: *kernel,
+            slab: *slab,
+            quadrature: *quadrature,
+            resolution: *resolution,
+            precision: *precision,
+            shading_cut: cuts.shading(),
+        })
+    }
+}

@@ -1,0 +1,70 @@
+//! Keys: what each product of the renderer is made from.
+//!
+//! A product is kept together with its key, and is stale exactly when the key that a picture needs differs.
+//! Settings are taken apart without `..`, so that a new field does not compile until it is classified.
+
+mod combined;
+mod display;
+mod eye;
+mod light;
+mod lit_lights;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use combined::CombinedKey;
+pub use display::DisplayKey;
+pub use eye::{EyeKey, FloorKey};
+pub use light::LightKey;
+pub use lit_lights::{Attenuation, LitLight, LitLights};
+pub use table::{EyeTableKey, OpacityKey, TablesKey};
+
+use super::{RenderOptions, Request};
+
+/// The keys of everything that a picture needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameKeys {
+    /// Density, pyramid and gradients on the GPU.
+    pub volume: u64,
+    /// Both lookup tables, and where they show anything.
+    pub tables: TablesKey,
+    /// Attenuation volume of each light of the settings, at the resolution of the settings; `None` for lights
+    /// without.
+    pub lights: Vec<Option<LightKey>>,
+    /// The diffuse light of all of them in one volume, where the settings ask for it.
+    pub combined: Option<CombinedKey>,
+    /// Linear light of the volume.
+    pub eye: EyeKey,
+    /// Linear light on the floor, if there is one.
+    pub floor: Option<FloorKey>,
+    /// What is shown of both.
+    pub display: DisplayKey,
+}
+
+impl FrameKeys {
+    /// The keys of a picture: a pure function of what is asked for.
+    pub fn of(request: &Request, options: &RenderOptions) -> Self {
+        let lights: Vec<_> =
+            (0..request.settings.lights.len()).map(|index| LightKey::of(request, index)).collect();
+        let combined = CombinedKey::of(request, options);
+        let eye = EyeKey::of(request, options, &lights, combined.as_ref());
+        Self {
+            volume: request.volume,
+            tables: TablesKey::of(request.volume, &request.settings),
+            floor: FloorKey::of(request, &eye),
+            display: DisplayKey::of(request, options),
+            lights,
+            combined,
+            eye,
+        }
+    }
+
+    /// How many light volumes of this picture another one does not have.
+    pub fn lights_missing_in(&self, other: &Self) -> usize {
+        self.lights
+            .iter()
+            .flatten()
+            .filter(|key| !other.lights.iter().flatten().any(|known| known == *key))
+            .count()
+    }
+}

@@ -1,0 +1,194 @@
+//! What really runs after a change, counted by the renderer itself: every setting costs what it should.
+
+use chiaroscuro::data::Dataset;
+use chiaroscuro::gpu::{Context, RenderOptions, Renderer, Runs, ShaderLibrary};
+use chiaroscuro::model::{ControlPoint, Light, LightKind, Settings, TransferFunction, apply_path};
+use glam::DVec3;
+
+use crate::common::context;
+use crate::scenes;
+
+const SIZE: [u32; 2] = [24, 18];
+
+/// What a change is expected to cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cost {
+    Nothing,
+    Display,
+    /// The floor, and what is shown.
+    Floor,
+    /// The picture, but no light volume.
+    Eye,
+    /// So many light volumes, and the picture.
+    Lights(u32),
+}
+
+fn cost(runs: Runs) -> Cost {
+    assert_eq!(runs.volume, 0, "the volume is there");
+    match runs {
+        Runs { light_volumes, eye: 1.., .. } if light_volumes > 0 => Cost::Lights(light_volumes),
+        Runs { light_volumes: 0, eye: 1.., .. } => Cost::Eye,
+        Runs { light_volumes: 0, eye: 0, floor: 1.., display: 1, .. } => Cost::Floor,
+        Runs { light_volumes: 0, eye: 0, floor: 0, display: 1, tables: 0, .. } => Cost::Display,
+        runs if runs == Runs::default() => Cost::Nothing,
+        runs => panic!("work that shows nowhere: {runs:?}"),
+    }
+}
+
+/// Three lights that cast shadows, one of them near.
+fn home() -> Settings {
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+    Settings {
+        lights: vec![
+            Light::default(),
+            Light { position: [0.0, 3.0, 0.0], ..Light::default() },
+            Light { kind: LightKind::Perspective, ..Light::default() },
+        ],
+        transfer: TransferFunction { points: vec![point(0.1, 0.0), point(1.0, 0.5)], ..Default::default() },
+        ..Settings::default()
+    }
+}
+
+/// Renders one look after another, and says what the second took.
+struct Bench {
+    context: Context,
+    shaders: ShaderLibrary,
+    dataset: Dataset,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let context = context();
+        let shaders = ShaderLibrary::new(&context);
+        Self { context, shaders, dataset: Dataset::new(scenes::creature(12, DVec3::ONE)) }
+    }
+
+    /// What the second look takes after the first, with options of its own.
+    fn runs(&self, first: &Settings, second: &Settings, options: &RenderOptions) -> Runs {
+        let mut renderer = Renderer::with_shaders(&self.context, self.shaders.clone()).expect("a renderer");
+        let usual = RenderOptions::default();
+        renderer.draw(&self.dataset, first, SIZE, &usual).expect("the first picture");
+        renderer.draw(&self.dataset, second, SIZE, options).expect("the second picture");
+        renderer.report().runs
+    }
+
+    fn cost_of(&self, path: &str, value: &str) -> Cost {
+        let changed = apply_path(&home(), path, value).expect("a setting");
+        cost(self.runs(&home(), &changed, &RenderOptions::default()))
+    }
+}
+
+#[test]
+fn every_setting_costs_what_it_should() {
+    let table = [
+        ("camera.azimuth_deg", "10", Cost::Eye),
+        ("camera.target", "[0.1,0,0]", Cost::Eye),
+        ("camera.fov_y_deg", "40", Cost::Eye),
+        ("camera.projection", "orthographic", Cost::Eye),
+        ("lights.1.name", "Fill", Cost::Nothing),
+        ("lights.1.color", "[1,0,0]", Cost::Eye),
+        ("lights.1.intensity", "2", Cost::Eye),
+        ("lights.1.on", "false", Cost::Eye),
+        ("lights.1.casts_shadows", "false", Cost::Eye),
+        ("lights.1.position", "[0,6,0]", Cost::Nothing),
+        ("lights.1.position", "[0,6,1]", Cost::Lights(1)),
+        ("lights.2.position", "[4,-4,5]", Cost::Lights(1)),
+        ("lights.1.kind", "perspective", Cost::Lights(1)),
+        ("lights.1.lock", "camera", Cost::Lights(1)),
+        ("lights.1.hood", r#"{"on": true}"#, Cost::Nothing),
+        ("lights.2.hood", r#"{"on": true}"#, Cost::Lights(1)),
+        ("lights.1.density_scale", "0.5", Cost::Lights(1)),
+        ("transfer.points.0.color", "[1,0,0]", Cost::Eye),
+        ("transfer.points.1.opacity", "0.4", Cost::Lights(3)),
+        ("lighting.scale", "0.5", Cost::Lights(3)),
+        ("lighting.curve.mixing", "seen", Cost::Nothing),
+        ("opacity_unit", r#"{"mm": 3}"#, Cost::Lights(3)),
+        ("shading.diffuse", "0.1", Cost::Eye),
+        ("shadows.algorithm", "off", Cost::Eye),
+        ("shadows.algorithm", "direct", Cost::Eye),
+        ("shadows.algorithm", "raycast", Cost::Lights(3)),
+        ("shadows.strength", "0.5", Cost::Eye),
+        ("shadows.gain", "2", Cost::Eye),
+        // Looks further from material: what lies there is filled once.
+        ("shadows.bias_voxels", "1", Cost::Lights(3)),
+        ("shadows.balance", "1.5", Cost::Eye),
+        ("shadows.first_touch", "true", Cost::Lights(3)),
+        ("shadows.kernel", "prefiltered", Cost::Lights(3)),
+        ("shadows.resolution", "half", Cost::Lights(3)),
+        ("shadows.storage", "combined", Cost::Eye),
+        ("cuts.crop", r#"{"on": true}"#, Cost::Nothing),
+        ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, Cost::Lights(3)),
+        ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0], "effect": "hidden"}"#, Cost::Eye),
+        ("cuts.plane", r#"{"offset": 0.1}"#, Cost::Nothing),
+        ("floor", r#"{"on": true}"#, Cost::Floor),
+        ("floor", r#"{"height": -2}"#, Cost::Nothing),
+        ("sampling.kernel", "prefiltered", Cost::Eye),
+        ("sampling.order", "volume_aligned", Cost::Nothing),
+        ("output.background.top", "[0,0,0]", Cost::Display),
+        ("output.background.bottom", "[0,0,0]", Cost::Display),
+        ("output.tone_map", "clip", Cost::Display),
+        ("views", r#"{"1": {}}"#, Cost::Nothing),
+    ];
+    let bench = Bench::new();
+    for (path, value, expected) in table {
+        assert_eq!(bench.cost_of(path, value), expected, "{path} = {value}");
+    }
+}
+
+#[test]
+fn how_a_picture_is_shown_costs_one_display_pass() {
+    let bench = Bench::new();
+    let options = [
+        RenderOptions { exposure: 1.5, ..RenderOptions::default() },
+        RenderOptions { transparent: true, ..RenderOptions::default() },
+    ];
+    for options in options {
+        assert_eq!(cost(bench.runs(&home(), &home(), &options)), Cost::Display, "{options:?}");
+    }
+    assert_eq!(cost(bench.runs(&home(), &home(), &RenderOptions::default())), Cost::Nothing);
+}
+
+#[test]
+fn a_floor_that_changes_leaves_the_volume_as_it_is() {
+    let bench = Bench::new();
+    let on = apply_path(&home(), "floor.on", "true").expect("a setting");
+    let lower = apply_path(&on, "floor.height", "-1.5").expect("a setting");
+    assert_eq!(cost(bench.runs(&on, &lower, &RenderOptions::default())), Cost::Floor);
+    assert_eq!(cost(bench.runs(&on, &home(), &RenderOptions::default())), Cost::Display, "it goes away");
+}
+
+#[test]
+fn tables_are_baked_when_their_curves_change() {
+    let bench = Bench::new();
+    let baked = |path: &str, value: &str| {
+        let changed = apply_path(&home(), path, value).expect("a setting");
+        bench.runs(&home(), &changed, &RenderOptions::default()).tables
+    };
+    assert_eq!(baked("camera.azimuth_deg", "10"), 0);
+    assert_eq!(baked("transfer.points.0.color", "[1,0,0]"), 1, "the light meets no colours");
+    assert_eq!(baked("lighting.scale", "0.5"), 1);
+    assert_eq!(baked("transfer.points.1.opacity", "0.4"), 2);
+}
+
+/// What is served without being drawn again is what would have been drawn.
+#[test]
+fn pictures_that_are_shown_again_are_the_same_bytes() {
+    let bench = Bench::new();
+    let mut renderer = Renderer::with_shaders(&bench.context, bench.shaders.clone()).expect("a renderer");
+    let mut draw = |settings: &Settings| {
+        let picture = renderer.render(&bench.dataset, settings, SIZE, &RenderOptions::default());
+        (picture.expect("a picture"), renderer.report().runs.eye)
+    };
+    let light = apply_path(&home(), "output.background.top", "[1,1,1]").expect("a setting");
+    let (first, drawn) = draw(&home());
+    assert!(drawn > 0);
+    let (shown, drawn) = draw(&light);
+    assert_eq!(drawn, 0);
+    assert_eq!(shown.light, first.light);
+    assert_ne!(shown.shown, first.shown, "the background is seen");
+    let (again, drawn) = draw(&home());
+    assert_eq!((again, drawn), (first, 0));
+    let mut fresh = Renderer::with_shaders(&bench.context, bench.shaders.clone()).expect("a renderer");
+    let anew = fresh.render(&bench.dataset, &light, SIZE, &RenderOptions::default()).expect("a picture");
+    assert_eq!(anew, shown);
+}
