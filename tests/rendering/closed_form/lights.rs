@@ -71,7 +71,7 @@ fn shadow_of_a_ball(engine: Engine) {
     let plane = 15;
     let (mut found, mut expected) = (Vec::new(), Vec::new());
     for (x, y) in (4..n - 4).flat_map(|x| (4..n - 4).map(move |y| (x, y))) {
-        let b = (x as f64 - centre.x).hypot(y as f64 - centre.y);
+        let b = glam::DVec2::new(x as f64 - centre.x, y as f64 - centre.y).length();
         if (b - radius).abs() > 3.0 {
             found.push(f64::from(volume[x + n * (y + n * plane)]));
             expected.push((-2.0 * per_voxel * (radius * radius - b * b).max(0.0).sqrt()).exp());
