@@ -27,6 +27,7 @@ pub use frame::tiled::Bands;
 pub use output::distance::Distance;
 pub use output::light_slice::{LightSlice, export_slice, light_volume_nrrd};
 pub use output::window::{WindowPainter, WindowPicture};
+pub use resources::listed_bricks::LISTED_PER_ROW;
 pub use resources::readback::Attenuation;
 pub use resources::uniforms;
 pub use volume::fit::fitted;
