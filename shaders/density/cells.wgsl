@@ -1,4 +1,5 @@
 // Leaping over cells of 2³ voxels in which nothing can be seen (src/data/cells.rs).
+#import "common/sizes.wgsl"
 #import "density/volume.wgsl"
 
 // A ray in cells: where it crosses slab 0, and how far it comes from slab to slab.
@@ -10,8 +11,8 @@ struct Walk {
 }
 
 fn walk_along(frame: SheetFrame, ray: Ray) -> Walk {
-    let origin = (ray.origin + ray.direction * depth_of(frame, 0.0)) / 2.0;
-    let step = ray.direction * frame.slab / 2.0;
+    let origin = (ray.origin + ray.direction * depth_of(frame, 0.0)) / CELL_EDGE;
+    let step = ray.direction * frame.slab / CELL_EDGE;
     let parallel_to = abs(step) < vec3f(1e-9);
     return Walk(origin, step, 1.0 / select(step, vec3f(1e-9), parallel_to));
 }

@@ -1,6 +1,7 @@
 // The floor under the volume: one thread per pixel finds where its ray meets the floor, and sends a ray from
 // there to each light, through all that attenuates it. The result is linear and premultiplied; what the volume
 // covers is laid over it when the picture is shown (output/display.wgsl).
+#import "common/sizes.wgsl"
 #import "density/table.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
@@ -85,7 +86,7 @@ fn main(
 ) {
     grid = bound_grid;
     floor_disc = bound_floor_disc;
-    let pixel = tile_of(group, groups.y, floor_disc.runs) * 8u + local.xy + vec2u(0u, floor_disc.first_row);
+    let pixel = tile_of(group, groups.y, floor_disc.runs) * TILE_EDGE + local.xy + vec2u(0u, floor_disc.first_row);
     if (pixel.x >= floor_disc.frame.size.x || pixel.y >= floor_disc.end_row) {
         return;
     }

@@ -2,6 +2,7 @@
 // density, classifies the sum, shades it with the attenuated light and composites.
 //
 // The result is linear, premultiplied and not yet tone-mapped.
+#import "common/sizes.wgsl"
 #import "density/classify.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/shade.wgsl"
@@ -147,7 +148,7 @@ fn main(
 ) {
     eye = bound_eye;
     grid = bound_grid;
-    let pixel = tile_of(group, groups.y, eye.runs) * 8u + in_tile(local.xy) + vec2u(0u, eye.first_row);
+    let pixel = tile_of(group, groups.y, eye.runs) * TILE_EDGE + in_tile(local.xy) + vec2u(0u, eye.first_row);
     if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
         return;
     }

@@ -4,6 +4,7 @@
 //
 // A voxel is written when the last sheet that it needs has been marched (the paper's rolling
 // normalisation); voxels of other chunks leave at once.
+#import "common/sizes.wgsl"
 #import "density/kernel.wgsl"
 #import "sheets/sheet_frame.wgsl"
 #import "common/listed_bricks.wgsl"
@@ -220,7 +221,7 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
         let cell = select(firstTrailingBit(left.y) + 32u, firstTrailingBit(left.x), low);
         next.left = select(vec2u(left.x, left.y & (left.y - 1u)), vec2u(left.x & (left.x - 1u), left.y), low);
         let place = vec3u(cell, cell >> 2u, cell >> 4u) & vec3u(3u);
-        next.voxel = unpacked(brick) * 8u + place * 2u + in_cell;
+        next.voxel = unpacked(brick) * BRICK_EDGE + place * CELL_EDGE + in_cell;
         let found = footprint_of(next.voxel);
         next.found = found;
         next.is_due = found.is_seen && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
@@ -231,6 +232,9 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
     return next;
 }
 
+// Voxels of a cell, a lane each.
+const CELL_VOXELS = CELL_EDGE * CELL_EDGE * CELL_EDGE;
+
 // Lanes that share a brick, a power of two from 8 to 64 (src/gpu/light_backproject.rs).
 override LANES: u32 = 64u;
 
@@ -238,14 +242,14 @@ override LANES: u32 = 64u;
 @compute @workgroup_size(LANES)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     view = bound_view;
-    let listed = group.y * 16384u + group.x;
+    let listed = group.y * LISTED_PER_ROW + group.x;
     if (listed >= view.bricks) {
         return;
     }
     let brick = bricks[listed];
     // One bit in as many as there are eights of lanes.
-    let every = 0xffffffffu / ((1u << (LANES / 8u)) - 1u);
-    var next = next_due(brick.x, lane, brick.yz & vec2u(every << (lane / 8u)));
+    let every = 0xffffffffu / ((1u << (LANES / CELL_VOXELS)) - 1u);
+    var next = next_due(brick.x, lane, brick.yz & vec2u(every << (lane / CELL_VOXELS)));
     // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
     // there, not from the middle.
     loop {

@@ -3,6 +3,7 @@
 //
 // Sheets go to a ring of layers; the back-projection reads them before they are overwritten. Only
 // what it will read is stored: the rest of the ring holds leftovers.
+#import "common/sizes.wgsl"
 #import "density/classify.wgsl"
 #import "density/cells.wgsl"
 #import "sheets/march.wgsl"
@@ -10,7 +11,7 @@
 
 // Distances: r to the nearest cell that either transfer function shows, g to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
-// What is to be marched (src/plan/read_tiles.rs): column, row from bit 15, and whether light arrives there for
+// What is to be marched (src/plan/geometry/march_tiles.rs): column, row from bit 15, and whether light arrives there for
 // the first time. The list may be longer.
 @group(0) @binding(5) var<storage, read> tiles: array<u32>;
 
@@ -52,6 +53,9 @@ fn next_attenuating(walk: Walk, pixel: vec2u, inside: vec2i, t: f32, start: Reac
     return at;
 }
 
+// The bits of a tile's column, and of its row further up.
+const TILE_PLACE = (1u << TILE_ROW_BIT) - 1u;
+
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3u,
@@ -59,12 +63,12 @@ fn main(
 ) {
     grid = bound_grid;
     march = bound_march;
-    let listed = group.y * 16384u + group.x;
+    let listed = group.y * LISTED_PER_ROW + group.x;
     if (listed >= march.tiles) {
         return;
     }
     let tile = tiles[listed];
-    let id = vec2u(tile & 32767u, tile >> 15u & 32767u) * 8u + in_tile(local.xy);
+    let id = vec2u(tile & TILE_PLACE, tile >> TILE_ROW_BIT & TILE_PLACE) * TILE_EDGE + in_tile(local.xy);
     if (any(id >= march.frame.size)) {
         return;
     }
@@ -73,7 +77,7 @@ fn main(
     let inside = slabs_within(march.frame, span, slabs_inside(march.frame, ray));
     let pixel = id.y * march.frame.size.x + id.x;
     let end = i32(march.end);
-    var t = select(transmittance[pixel], unattenuated(vec2f(id)), tile >> 31u == 1u);
+    var t = select(transmittance[pixel], unattenuated(vec2f(id)), tile >> TILE_FIRST_BIT == 1u);
     let walk = walk_along(march.frame, ray);
     let begin = i32(march.begin);
     var at = next_attenuating(walk, id, inside, t, Reached(begin, begin, vec4f(t)));

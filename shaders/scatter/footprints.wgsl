@@ -39,12 +39,12 @@ fn density_of(voxel: vec3i) -> f32 {
     if (any(voxel < vec3i(0)) || any(vec3f(voxel) >= scatter.dims)) {
         return 0.0;
     }
-    let brick = voxel / 8;
+    let brick = voxel / BRICK_EDGE;
     let first = first_words[brick.x + scatter.bricks.x * (brick.y + scatter.bricks.y * brick.z)];
     if (first < 0) {
         return 0.0;
     }
-    return voxel_density(u32(first), vec3u(voxel % 8));
+    return voxel_density(u32(first), vec3u(voxel % BRICK_EDGE));
 }
 
 // Central differences between voxels, in scene space.
@@ -74,8 +74,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let slice = u32(slice_of(f32(scatter.k)));
-    let voxel = brick * 8u * (u_axis + v_axis) + u_axis * phase.u + v_axis * phase.v + along * slice;
-    let material = classify(voxel_density(listed.y, voxel % 8u));
+    let voxel = brick * BRICK_EDGE * (u_axis + v_axis) + u_axis * phase.u + v_axis * phase.v + along * slice;
+    let material = classify(voxel_density(listed.y, voxel % BRICK_EDGE));
     if (material.a <= 0.0 || any(vec3f(voxel) >= scatter.dims)) {
         return;
     }

@@ -1,4 +1,5 @@
 // Splatting as the paper has it (P §3.5, figure 3): what all its passes know about the slab at hand.
+#import "common/sizes.wgsl"
 #import "sheets/sheet_frame.wgsl"
 
 struct Scatter {
@@ -110,7 +111,7 @@ fn locate(p: vec3f) -> vec3f {
 
 // The brick of a point; what lies beyond the grid belongs to the bricks at its border.
 fn brick_near(p: vec3f) -> vec3i {
-    return clamp(vec3i(floor(p / 8.0)), vec3i(0), scatter.bricks - 1);
+    return clamp(vec3i(floor(p / BRICK_EDGE)), vec3i(0), scatter.bricks - 1);
 }
 
 // The brick of a point in the grid or up to two voxels around it; −1 elsewhere.

@@ -19,7 +19,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     }
     let brick = bricks[scatter.first + listed];
     let voxel = voxel_in(brick.x, group, local);
-    let density = voxel_density(brick.y, voxel % 8u);
+    let density = voxel_density(brick.y, voxel % BRICK_EDGE);
     let material = classify(density);
     let extinction = material.a / scatter.extinction_unit;
     // What lies beyond the grid is no voxel.

@@ -29,6 +29,7 @@ pub use output::light_slice::{LightSlice, export_slice, light_volume_nrrd};
 pub use output::window::{WindowPainter, WindowPicture};
 #[doc(hidden)]
 pub use resources::layouts::{ShaderBindings, shader_bindings};
+pub use resources::listed_bricks::LISTED_PER_ROW;
 pub use resources::readback::Attenuation;
 pub use resources::uniforms;
 pub use volume::fit::fitted;

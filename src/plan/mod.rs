@@ -15,7 +15,7 @@ pub use self::geometry::eye_frame::{eye_frame, preview_slab};
 pub use self::geometry::light_frame::{
     LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views,
 };
-pub use self::geometry::march_tiles::{MarchTiles, TILE_EDGE};
+pub use self::geometry::march_tiles::{MarchTiles, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT};
 pub use self::geometry::pixel_window::PixelWindow;
 pub use self::geometry::reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach, slab_reach,

@@ -10,4 +10,5 @@ mod names;
 mod opening;
 mod panels;
 mod snapshots;
+mod thresholds;
 mod views;

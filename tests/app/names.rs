@@ -6,14 +6,21 @@ use eframe::egui::{self, Key, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{click, wait_until, window};
+use crate::harness::{click, turn_wheel, wait_until, window};
 
-/// All sections unfolded, and a window that is tall enough for them.
+/// All sections unfolded, and a window that is tall enough for them: nothing is scrolled away.
 pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
     let mut harness = window();
+    // From far away: of a picture that high, that much less is to be rendered.
+    let (picture, _) = harness.state().viewport_rect().expect("a picture");
+    harness.hover_at(picture.center());
+    harness.step();
+    turn_wheel(&harness, -4000.0);
+    harness.run_steps(8);
+    harness.remove_cursor();
     // Pictures of a window that high are larger than egui assumes to be safe.
     harness.input_mut().max_texture_side = Some(8192);
-    harness.set_size(Vec2::new(width, 2300.0));
+    harness.set_size(Vec2::new(width, 2720.0));
     harness.run_steps(3);
     for section in ["Shading", "Cut", "Floor", "Camera", "Compare", "Data"] {
         click(&mut harness, section);
@@ -46,7 +53,7 @@ fn open_menu(harness: &mut Harness<'_, App>, name: &str) {
 
 #[test]
 fn every_widget_has_a_name() {
-    let mut harness = unfolded(1100.0);
+    let mut harness = unfolded(700.0);
     check(&harness, "the panels");
     for on in ["Crop box", "Clip plane", "Floor under the volume", "Compare two looks", "Hood"] {
         if harness.query_by_label(on).is_some() {

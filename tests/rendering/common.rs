@@ -16,7 +16,7 @@ pub(crate) fn render(
     settings: &Settings,
     size: [u32; 2],
 ) -> Picture {
-    renderer.render(&loaded, settings, size, &RenderOptions::default()).expect("the picture is rendered")
+    renderer.render(loaded, settings, size, &RenderOptions::default()).expect("the picture is rendered")
 }
 
 /// A light's attenuation volume, filled everywhere.
@@ -27,7 +27,7 @@ pub(crate) fn attenuation(
     light: usize,
 ) -> Vec<f32> {
     let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
-    renderer.draw(&loaded, settings, [8, 8], &options).expect("the light volume is filled");
+    renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
     let request = chiaroscuro::plan::Request {
         volume: loaded.volume().content_id(),
         settings: settings.clone(),

@@ -110,7 +110,7 @@ pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.03;
 pub(crate) const CUT_ORDERS: f64 = 0.03;
 
 /// Combined light at cut faces: it is stored once per voxel, and normals turn within one there.
-pub(crate) const CUT_COLLAPSED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 255.0 };
+pub(crate) const CUT_COMBINED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 255.0 };
 
 /// Light on the floor, absolute: a 16-bit float near 1, and the error of the midpoint rule along a ray.
 pub(crate) const FLOOR_SHADOW: f64 = 2e-3;
@@ -121,5 +121,56 @@ pub(crate) const PARTS: f64 = 1.0 / 255.0 / 8.0;
 
 /// Half as many voxels along each axis against all of them, RMSE: edges are a voxel softer.
 pub(crate) const AVERAGED: f64 = 4.0 / 255.0;
-/// And of the mean, relative: what is thinner than a voxel gets thinner still.
+/// Half as many voxels along each axis: the mean, relative. What is thinner than a voxel gets thinner still.
 pub(crate) const AVERAGED_MEAN: f64 = 0.02;
+
+/// What is shown against the tone map's formula, before it is rounded to bits: powers in f32, by exp2 and a log2 that
+/// may be off by 2⁻²¹, whose errors a slope of up to 13 near black enlarges. 3e-7 were seen.
+pub(crate) const TONE_MAP: f64 = 1.0 / (1 << 18) as f64;
+
+/// Light that is worth comparing relatively: rays end at 1/4096 of it, and 16-bit floats get coarse.
+pub(crate) const FAINT: f64 = 1e-3;
+
+/// Headlight identity by the literal deposit: how much halving the slab shrinks the error, from 1 to ½ and from ½ to ¼.
+/// First order is 2; the thinner the slab, the more of the error is the kernel's own ([`HEADLIGHT_FINE`]).
+pub(crate) const HEADLIGHT_ORDER: (f64, f64) = (1.6, 1.4);
+
+/// How far from the edge of a hood's light the closed form holds, in degrees: two and a half voxels, the reverse kernel's
+/// reach and half a pixel, seen from the light.
+pub(crate) const HOOD_EDGE_DEG: f64 = 1.8;
+
+/// Balanced brightness against that without shadows, relative: the balance is measured in a small picture.
+pub(crate) const BALANCED: f64 = 0.02;
+
+/// Light behind cuts, absolute: the optical depth of half a voxel, by which a face is sharp, where 16 voxels halve the
+/// light.
+pub(crate) const CUT_LIGHT: f64 = 0.01;
+
+/// Combined lights with normals, RMSE: that of the light is interpolated, too, which must be seen and be small.
+pub(crate) const COMBINED_NORMALS: f64 = 0.02;
+
+/// Share of the floor's pixels that may differ between algorithms: those that the volume nearly covers are not drawn.
+pub(crate) const FLOOR_EDGE: f64 = 0.01;
+
+/// A step of 8 bits, and a thousandth for f32: values whose rounding may go to either side.
+pub(crate) const EIGHT_BITS: f64 = 1.001 / 255.0;
+
+/// Half a step of 8 bits, and a thousandth of one for f32: what rounding takes.
+pub(crate) const HALF_STEP: f64 = 0.501 / 255.0;
+
+/// What rounding to 8 bits must take somewhere in a picture, if more bits have more to say.
+pub(crate) const HALF_STEP_SEEN: f64 = 0.4 / 255.0;
+
+/// A background from top to bottom under several samples: it is that of the pixel's middle, not their mean.
+pub(crate) const SAMPLED_BACKGROUND: f64 = 5e-3;
+
+/// How much brighter a coarse preview is that is not exposed for it, at least, or the test would see nothing.
+pub(crate) const PREVIEW_UNEXPOSED: f64 = 1.2;
+
+/// Mean of a picture whose light volume was spoiled, at most, over that of the right one.
+pub(crate) const SPOILED: f64 = 0.9;
+/// Mean of a picture whose light was moved by a hair and filled again, at least, over that before.
+pub(crate) const REFILLED: f64 = 0.95;
+
+/// How far from a step of 1/255 a value of bytes may be, in steps: f32.
+pub(crate) const BYTE_STEP: f32 = 1e-3;

@@ -1,11 +1,13 @@
 //! Constants, tables and workgroups have the sizes that Rust counts on.
 
 use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
-use chiaroscuro::gpu::SHADERS;
+use chiaroscuro::gpu::LISTED_PER_ROW;
 use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS};
-use chiaroscuro::plan::{MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS};
+use chiaroscuro::plan::{
+    MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT,
+};
 
-use crate::sources::{check, code_of, entry_shaders, joined};
+use crate::sources::{check, entry_shaders, joined};
 
 /// The value of a constant in a shader. The compiler drops constants without a type of their own, so
 /// it is asked for one with a type.
@@ -53,50 +55,54 @@ fn the_table_has_room_for_all_entries() {
     }
 }
 
-/// Bricks are written as plain numbers: dividing by a constant would not read better.
+/// What a workgroup fills: half a brick, or a tile. Others have sizes of their own.
 #[test]
-fn bricks_have_the_same_edge_in_rust_and_in_the_shaders() {
-    let file = |name: &str| {
-        let (_, text) = SHADERS.iter().find(|(known, _)| *known == name).expect("the file is there");
-        code_of(text)
-    };
-    let cells = file("density/cells.wgsl");
-    let halves = format!("/ {CELL_EDGE}.0");
-    assert_eq!(cells.matches(&halves).count(), 2, "density/cells.wgsl divides by the edge of a cell");
+fn workgroups_fill_bricks_and_tiles() {
+    let (brick, tile) = (BRICK_EDGE as u32, TILE_EDGE);
+    let half_bricks =
+        ["light/clear_margin", "light/combine", "light/raycast", "scatter/normalise", "scatter/splat"];
+    let tiles = ["eye/floor", "eye/gather", "light/march"];
+    for (names, size) in [(&half_bricks[..], [brick, brick, brick / 2]), (&tiles, [tile, tile, 1])] {
+        for name in names {
+            let module = check(&joined(&format!("{name}.wgsl"))).expect("the shader is valid");
+            assert_eq!(module.entry_points[0].workgroup_size, size, "{name}");
+        }
+    }
+}
 
-    // A workgroup is half a brick.
-    let half = BRICK_EDGE / 2;
-    let listed = file("common/listed_bricks.wgsl");
-    for text in [
-        format!("brick * {BRICK_EDGE}u + local"),
-        format!("group.x % 2u * {half}u"),
-        format!("local / {CELL_EDGE}u"),
-    ] {
-        assert!(listed.contains(&text), "common/listed_bricks.wgsl must have {text}");
+/// Sizes in `common/sizes.wgsl`: their values in Rust, others with as many digits, and shaders that count on them.
+const SIZES: [(&str, usize, usize, &[&str]); 7] = [
+    ("BRICK_EDGE", BRICK_EDGE, 4, &["light/backproject", "light/combine", "light/raycast", "scatter/splat"]),
+    ("BRICK_EDGE", BRICK_EDGE, 4, &["scatter/eye", "scatter/footprints", "scatter/normalise"]),
+    ("CELL_EDGE", CELL_EDGE, 4, &["eye/gather", "light/backproject", "light/march", "light/raycast"]),
+    (
+        "LISTED_PER_ROW",
+        LISTED_PER_ROW as usize,
+        32768,
+        &["light/backproject", "light/combine", "light/march"],
+    ),
+    ("TILE_EDGE", TILE_EDGE as usize, 4, &["eye/floor", "eye/gather", "light/march"]),
+    ("TILE_ROW_BIT", TILE_ROW_BIT as usize, 14, &["light/march"]),
+    ("TILE_FIRST_BIT", TILE_FIRST_BIT as usize, 30, &["light/march"]),
+];
+
+#[test]
+fn sizes_are_the_same_in_rust_and_in_the_shaders() {
+    for (name, value, other, shaders) in SIZES {
+        for shader in shaders {
+            let source = joined(&format!("{shader}.wgsl"));
+            assert_eq!(constant(&source, name), Some(value as f64), "{name} in {shader}");
+            // What the shader does follows from it, and from no number that happens to be the same.
+            let changed = source.replace(&format!("{name} = {value};"), &format!("{name} = {other};"));
+            assert_ne!(statements(&source), statements(&changed), "{shader} does not use {name}");
+        }
     }
-    let (scatter, voxels) = (file("scatter/slab.wgsl"), file("scatter/voxels.wgsl"));
-    assert!(scatter.contains(&format!("floor(p / {BRICK_EDGE}.0)")), "scatter/slab.wgsl");
-    assert!(
-        voxels.contains(&format!("{BRICK_EDGE}u * (local.y + {BRICK_EDGE}u * local.z)")),
-        "scatter/voxels.wgsl"
-    );
-    let footprints = file("scatter/footprints.wgsl");
-    for text in [format!("voxel / {BRICK_EDGE};"), format!("brick * {BRICK_EDGE}u *")] {
-        assert!(footprints.contains(&text), "scatter/footprints.wgsl must have {text}");
-    }
-    // Or a whole one, cell by cell.
-    let backproject = file("light/backproject.wgsl");
-    for text in
-        [format!("unpacked(brick) * {BRICK_EDGE}u + place * {CELL_EDGE}u"), format!("lane / {BRICK_EDGE}u")]
-    {
-        assert!(backproject.contains(&text), "light/backproject.wgsl must have {text}");
-    }
-    let over_bricks =
-        ["light/combine.wgsl", "light/raycast.wgsl", "scatter/normalise.wgsl", "scatter/splat.wgsl"];
-    for name in over_bricks {
-        let text = format!("@workgroup_size({BRICK_EDGE}, {BRICK_EDGE}, {half})");
-        assert!(file(name).contains(&text), "{name} must have {text}");
-    }
+}
+
+/// What a shader does, as far as two shaders of the same length can be compared by it.
+fn statements(source: &str) -> String {
+    let module = check(source).expect("the shader is valid");
+    format!("{:?} {:?}", module.functions, module.entry_points)
 }
 
 #[test]

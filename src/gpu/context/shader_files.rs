@@ -8,8 +8,9 @@ macro_rules! shader_files {
 }
 
 /// Every shader file: its path below `shaders/`, and its text.
-pub const SHADERS: [(&str, &str); 42] = shader_files![
+pub const SHADERS: [(&str, &str); 43] = shader_files![
     "common/listed_bricks.wgsl",
+    "common/sizes.wgsl",
     "common/space.wgsl",
     "density/cells.wgsl",
     "density/classify.wgsl",

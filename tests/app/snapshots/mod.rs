@@ -6,19 +6,14 @@
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::app::App;
-use eframe::egui::{Key, Modifiers, Rect, Theme, ThemePreference, pos2};
+use eframe::egui::{Key, Modifiers, Rect, Role, Theme, ThemePreference, pos2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::{RgbaImage, imageops};
 
 use crate::harness::{wait_until_idle, window};
 use crate::names::unfolded;
-
-/// Steps of 255 by which a channel may differ without being seen: adapters round blended edges differently.
-const STEPS: u8 = 24;
-
-/// Pixels that may differ by more, of a thousand: edges of letters that fall between two pixels.
-const PER_THOUSAND: usize = 2;
+use crate::thresholds::{PIXELS, STEPS};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/app/snapshots")
@@ -33,15 +28,19 @@ fn looks_like(found: &RgbaImage, wanted: &RgbaImage) -> Result<(), String> {
         a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > STEPS)
     };
     let count = found.pixels().zip(wanted.pixels()).filter(differ).count();
-    let allowed = found.pixels().len() * PER_THOUSAND / 1000;
-    if count > allowed { Err(format!("{count} pixels differ, {allowed} may")) } else { Ok(()) }
+    if count > PIXELS { Err(format!("{count} pixels differ, {PIXELS} may")) } else { Ok(()) }
+}
+
+/// A part of a picture of the window, in whole pixels.
+fn part(window: &RgbaImage, area: Rect) -> RgbaImage {
+    let [left, top] = [area.min.x, area.min.y].map(|at| at.max(0.0).round() as u32);
+    let [width, height] = [area.width(), area.height()].map(|length| length.round() as u32);
+    imageops::crop_imm(window, left, top, width, height).to_image()
 }
 
 /// Compares a part of the window with its snapshot.
 fn check(window: &RgbaImage, area: Rect, name: &str, failures: &mut Vec<String>) {
-    let [left, top] = [area.min.x, area.min.y].map(|at| at.max(0.0).round() as u32);
-    let [width, height] = [area.width(), area.height()].map(|length| length.round() as u32);
-    let found = imageops::crop_imm(window, left, top, width, height).to_image();
+    let found = part(window, area);
     let path = folder().join(format!("{name}.png"));
     if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
         std::fs::create_dir_all(folder()).expect("a folder");
@@ -69,9 +68,38 @@ fn in_theme(harness: &mut Harness<'_, App>, theme: Theme) -> RgbaImage {
     harness.render().expect("the window")
 }
 
+/// Words in an area of the window, and where they are.
+fn words_in(harness: &Harness<'_, App>, area: Rect) -> Vec<(String, Rect)> {
+    let labels = harness.get_all_by_role(Role::Label);
+    let words = labels.filter_map(|node| Some((node.accesskit_node().value()?, node.rect())));
+    words.filter(|(_, rect)| area.contains_rect(*rect)).collect()
+}
+
+/// Puts another word of the window in a word's place, one at a time: each must be noticed, in a picture of an area
+/// that is as large as its snapshot.
+fn changed_words_are_noticed(window: &RgbaImage, area: Rect, words: &[(String, Rect)]) {
+    let right = part(window, area);
+    let mut changed = 0;
+    for (old, new) in words.iter().zip(words.iter().cycle().skip(1)).filter(|(old, new)| old.0 != new.0) {
+        let mut wrong = window.clone();
+        let word = part(window, new.1.expand(1.0));
+        let [left, top] = [old.1.min.x, old.1.min.y].map(|at| (at - 1.0).round() as u32);
+        let ground = *window.get_pixel(left - 1, top);
+        let [width, height] = [old.1.width(), old.1.height()].map(|length| length.ceil() as u32 + 2);
+        for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
+            wrong.put_pixel(left + x, top + y, ground);
+        }
+        imageops::replace(&mut wrong, &word, left.into(), top.into());
+        let noticed = looks_like(&part(&wrong, area), &right);
+        assert!(noticed.is_err(), "{:?} in the place of {:?} is not noticed", new.0, old.0);
+        changed += 1;
+    }
+    assert!(changed > 40, "only {changed} words were changed");
+}
+
 #[test]
 fn panels_and_editor() {
-    let mut harness = unfolded(900.0);
+    let mut harness = unfolded(700.0);
     wait_until_idle(&mut harness);
     let mut failures = Vec::new();
     for (theme, suffix) in THEMES {
@@ -80,6 +108,7 @@ fn panels_and_editor() {
         let [width, height] = [window.width(), window.height()].map(|n| n as f32);
         let side = Rect::from_min_max(pos2(picture.right(), picture.top()), pos2(width, picture.bottom()));
         check(&window, side, &format!("side-{suffix}"), &mut failures);
+        changed_words_are_noticed(&window, side, &words_in(&harness, side));
         let menu = Rect::from_min_max(pos2(0.0, 0.0), pos2(width, picture.top()));
         check(&window, menu, &format!("menu-{suffix}"), &mut failures);
         // Without the status bar, which says how fast this machine is.
@@ -105,7 +134,7 @@ fn windows_over_the_picture() {
         harness.run_steps(6);
         for (theme, suffix) in THEMES {
             let window = in_theme(&mut harness, theme);
-            let area = harness.get_by_role(eframe::egui::Role::Window).rect();
+            let area = harness.get_by_role(Role::Window).rect();
             check(&window, area.shrink(2.0), &format!("{name}-{suffix}"), &mut failures);
         }
         harness.get_by_label("Close window").click();
@@ -121,9 +150,12 @@ fn other_pictures_are_noticed() {
     let mut rounded = plain.clone();
     rounded.pixels_mut().for_each(|pixel| pixel.0[0] += STEPS);
     assert!(looks_like(&rounded, &plain).is_ok());
-    // A word that is missing: five pixels in 2000.
-    let mut changed = plain.clone();
-    (10..15).for_each(|x| changed.put_pixel(x, 7, image::Rgba([212, 216, 224, 255])));
-    assert!(looks_like(&changed, &plain).is_err());
+    let with_pixels = |count: usize| {
+        let mut changed = plain.clone();
+        changed.pixels_mut().take(count).for_each(|pixel| pixel.0[1] += STEPS + 1);
+        changed
+    };
+    assert!(looks_like(&with_pixels(PIXELS), &plain).is_ok());
+    assert!(looks_like(&with_pixels(PIXELS + 1), &plain).is_err());
     assert!(looks_like(&RgbaImage::new(50, 41), &plain).is_err());
 }

@@ -5,7 +5,7 @@ use super::{SIZE, check_against, round_to_f16};
 use crate::common::{Dataset, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
-use crate::thresholds::{BYTES, LITERAL};
+use crate::thresholds::{BYTE_STEP, BYTES, LITERAL};
 use chiaroscuro::gpu::{Renderer, stored_density};
 use chiaroscuro::model::{
     Camera, Classification, Deposit, Gradients, Kernel, LightKind, LightLock, Precision, Projection,
@@ -228,7 +228,7 @@ fn light_volumes_of_bytes() {
     let before = renderer.gpu_bytes();
     settings.shadows.precision = Precision::Byte;
     let bytes = attenuation(&mut renderer, &loaded, &settings, 0);
-    assert!(bytes.iter().all(|value| (value * 255.0).fract().abs() < 1e-3), "steps of 1/255");
+    assert!(bytes.iter().all(|value| (value * 255.0).fract().abs() < BYTE_STEP), "steps of 1/255");
     compare("bytes: light volume", &wide(&bytes), &wide(&fine), BYTES).unwrap_or_else(|err| panic!("{err}"));
     let found = render(&mut renderer, &loaded, &settings, SIZE);
     compare("bytes: picture", &flat32(&found.light), &flat32(&picture.light), BYTES)

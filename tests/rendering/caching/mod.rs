@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::common::{Dataset, context, render};
 use crate::scenes;
-use crate::thresholds::F16_STEP;
+use crate::thresholds::{F16_STEP, REFILLED, SPOILED};
 
 mod bits;
 mod recomputes;
@@ -174,11 +174,11 @@ fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     let mean =
         |picture: &chiaroscuro::gpu::Picture| picture.light.iter().map(|t| f64::from(t[1])).sum::<f64>();
     let spoiled = render(&mut renderer, &loaded, &settings, SIZE);
-    assert!(mean(&spoiled) < 0.9 * mean(&fresh), "no light is left");
+    assert!(mean(&spoiled) < SPOILED * mean(&fresh), "no light is left");
     settings.lights[0].intensity = 1.01;
     let still = render(&mut renderer, &loaded, &settings, SIZE);
-    assert!(mean(&still) < 0.9 * mean(&fresh), "a live control does not refill it");
+    assert!(mean(&still) < SPOILED * mean(&fresh), "a live control does not refill it");
     settings.lights[0].position = [1.31, -0.8, 1.7];
     let moved = render(&mut renderer, &loaded, &settings, SIZE);
-    assert!(mean(&moved) > 0.95 * mean(&fresh), "moving the light does");
+    assert!(mean(&moved) > REFILLED * mean(&fresh), "moving the light does");
 }

@@ -7,7 +7,9 @@ use glam::DVec3;
 use super::{base, renderer, with_both_engines};
 use crate::common::{Dataset, attenuation, render};
 use crate::scenes;
-use crate::thresholds::{BEER_LAMBERT, CHORD_OPACITY, OBLIQUE_CHORD, RAY_BEER_LAMBERT, SLAB_MEAN_CHANGE};
+use crate::thresholds::{
+    BEER_LAMBERT, CHORD_OPACITY, FAINT, OBLIQUE_CHORD, RAY_BEER_LAMBERT, SLAB_MEAN_CHANGE,
+};
 
 with_both_engines! {
     beer_lambert_in_a_homogeneous_block
@@ -49,7 +51,7 @@ fn beer_lambert_in_a_homogeneous_block(engine: Engine) {
                 let depth = (n - face) as f64 - 0.5 - z as f64;
                 let expected = (-per_voxel * depth).exp() * factor;
                 let found = f64::from(volume[n / 2 + n * (n / 2 + n * z)]);
-                if expected > 1e-3 {
+                if expected > FAINT {
                     let error = (found / expected - 1.0).abs();
                     assert!(
                         error <= tolerance,
@@ -78,8 +80,7 @@ fn beer_lambert_by_rays() {
             let depth = (n - face) as f64 - 0.5 - z as f64;
             let expected = (-per_voxel * depth).exp();
             let found = f64::from(volume[n / 2 + n * (n / 2 + n * z)]);
-            // Rays end at 1/4096 of the light.
-            if expected > 1e-3 {
+            if expected > FAINT {
                 let error = (found / expected - 1.0).abs();
                 assert!(error <= RAY_BEER_LAMBERT, "μ {per_voxel}: {found} not {expected} at depth {depth}");
             }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{base, renderer, with_both_engines};
 use crate::common::{Dataset, attenuation, render};
 use crate::scenes::{self, straight};
-use crate::thresholds::{ROTATION_RANGE, ROTATION_STEP};
+use crate::thresholds::{BALANCED, ROTATION_RANGE, ROTATION_STEP};
 
 with_both_engines! {
     turning_does_not_change_brightness
@@ -72,6 +72,6 @@ fn balanced_pictures_are_as_bright_as_unshadowed_ones() {
     settings.shadows.algorithm = chiaroscuro::model::ShadowAlgorithm::Off;
     let without = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).light);
     println!("shadows, unbalanced {plain:.4}, balanced {with:.4}, none {without:.4}");
-    assert!((with / without - 1.0).abs() < 0.02, "{with} against {without}");
+    assert!((with / without - 1.0).abs() < BALANCED, "{with} against {without}");
     assert!(plain < without, "shadows take light away");
 }

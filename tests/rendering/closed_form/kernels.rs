@@ -7,7 +7,7 @@ use super::{base, renderer, with_both_engines};
 use crate::common::{Dataset, attenuation, render};
 use crate::compare::{difference, wide};
 use crate::scenes;
-use crate::thresholds::{ORDER_FRONT, ORDER_MEAN, UNITY};
+use crate::thresholds::{FAINT, HALF_STEP, ORDER_FRONT, ORDER_MEAN, UNITY};
 
 with_both_engines! {
     kernels_are_a_partition_of_unity
@@ -40,7 +40,7 @@ fn kernels_are_a_partition_of_unity(engine: Engine) {
                 // Three voxels away from the faces, and from the one empty voxel.
                 let inside = p.min_element() > 3.0 && p.max_element() < n as f64 - 4.0;
                 let at = |k: u32| f64::from(sheets[(i + w * (j + h * k)) as usize]);
-                if inside && at(k) > 1e-3 {
+                if inside && at(k) > FAINT {
                     let density = -(at(k + 1) / at(k)).ln() / per_slab;
                     assert!((density - 1.0).abs() <= UNITY, "{density} at {p}");
                     checked += 1;
@@ -99,8 +99,9 @@ fn extremes_stay_finite(engine: Engine) {
             for (at, texel) in picture.shown.chunks_exact(4).enumerate() {
                 let down = ((at / 64) as f32 + 0.5) / 64.0;
                 for c in 0..3 {
-                    let expected = (top[c] + (bottom[c] - top[c]) * down) * 255.0;
-                    assert!((f32::from(texel[c]) - expected).abs() <= 0.501, "{texel:?} in row {}", at / 64);
+                    let expected = top[c] + (bottom[c] - top[c]) * down;
+                    let apart = f64::from(f32::from(texel[c]) / 255.0 - expected).abs();
+                    assert!(apart <= HALF_STEP, "{texel:?} in row {}", at / 64);
                 }
             }
         }

@@ -8,7 +8,9 @@ use super::{base, renderer, with_both_engines};
 use crate::common::{Dataset, attenuation, render};
 use crate::compare::{Limit, compare, wide};
 use crate::scenes;
-use crate::thresholds::{BALL_SHADOW, FAR_LIGHT, HEADLIGHT_COARSE, HEADLIGHT_FINE};
+use crate::thresholds::{
+    BALL_SHADOW, FAR_LIGHT, HEADLIGHT_COARSE, HEADLIGHT_FINE, HEADLIGHT_ORDER, HOOD_EDGE_DEG,
+};
 
 with_both_engines! {
     headlight_gives_one_half
@@ -51,7 +53,10 @@ fn headlight_gives_one_half(engine: Engine) {
     );
     assert!(front[0] > mean[0], "the literal deposit is brighter");
     // First order: halving the slab halves the error.
-    assert!(front[0] / front[1] > 1.6 && front[1] / front[2] > 1.4, "front: {front:?}");
+    assert!(
+        front[0] / front[1] > HEADLIGHT_ORDER.0 && front[1] / front[2] > HEADLIGHT_ORDER.1,
+        "front: {front:?}"
+    );
 }
 
 /// No. 5: Behind a ball of radius r the light is e^(−2μ√(r² − b²)) at distance b from its axis.
@@ -66,7 +71,7 @@ fn shadow_of_a_ball(engine: Engine) {
     let plane = 15;
     let (mut found, mut expected) = (Vec::new(), Vec::new());
     for (x, y) in (4..n - 4).flat_map(|x| (4..n - 4).map(move |y| (x, y))) {
-        let b = (x as f64 - centre.x).hypot(y as f64 - centre.y);
+        let b = glam::DVec2::new(x as f64 - centre.x, y as f64 - centre.y).length();
         if (b - radius).abs() > 3.0 {
             found.push(f64::from(volume[x + n * (y + n * plane)]));
             expected.push((-2.0 * per_voxel * (radius * radius - b * b).max(0.0).sqrt()).exp());
@@ -115,11 +120,14 @@ fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
                 ((away / z).atan().to_degrees(), volume[x + n * (middle + n * middle)])
             })
             .collect();
-        // Two and a half voxels, the reverse kernel's reach and half a pixel, are 1.8° from here.
         for (angle_deg, arriving) in &row {
             match angle_deg {
-                angle if *angle > 11.0 + 1.8 => assert_eq!(*arriving, 0.0, "{algorithm:?}, {angle}°"),
-                angle if *angle < 7.0 - 1.8 => assert_eq!(*arriving, 1.0, "{algorithm:?}, {angle}°"),
+                angle if *angle > 11.0 + HOOD_EDGE_DEG => {
+                    assert_eq!(*arriving, 0.0, "{algorithm:?}, {angle}°");
+                }
+                angle if *angle < 7.0 - HOOD_EDGE_DEG => {
+                    assert_eq!(*arriving, 1.0, "{algorithm:?}, {angle}°");
+                }
                 _ => {}
             }
         }

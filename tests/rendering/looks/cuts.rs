@@ -13,7 +13,7 @@ use crate::against_reference::check_against;
 use crate::common::{Dataset, context, render};
 use crate::compare::{compare, flat32, flat64};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
-use crate::thresholds::{CHORD_OPACITY, CUT_ORDERS, SAME_WEIGHTS};
+use crate::thresholds::{CHORD_OPACITY, CUT_COMBINED, CUT_LIGHT, CUT_ORDERS, SAME_WEIGHTS};
 
 const SIZE: [u32; 2] = [64, 56];
 
@@ -171,11 +171,14 @@ fn effects_tell_eye_and_light_apart() {
     let (removed, hidden, shadowless) =
         (with(CutEffect::Removed), with(CutEffect::Hidden), with(CutEffect::Shadowless));
     // 16 voxels halve the light; half of it is met again in each case but the last.
-    assert!((removed.0 - 0.5).abs() < 0.01 && (hidden.0 - 0.5).abs() < 0.01, "{removed:?} {hidden:?}");
-    assert!((shadowless.0 - 0.75).abs() < 0.01, "{shadowless:?}");
+    assert!(
+        (removed.0 - 0.5).abs() < CUT_LIGHT && (hidden.0 - 0.5).abs() < CUT_LIGHT,
+        "{removed:?} {hidden:?}"
+    );
+    assert!((shadowless.0 - 0.75).abs() < CUT_LIGHT, "{shadowless:?}");
     // Below the face a voxel's worth of material lets light pass.
     let wanted = 0.5 * 2.0_f64.powf(-1.0 / 16.0);
-    assert!((hidden.1 / removed.1 - wanted).abs() < 0.01, "{removed:?} {hidden:?}, wanted {wanted}");
+    assert!((hidden.1 / removed.1 - wanted).abs() < CUT_LIGHT, "{removed:?} {hidden:?}, wanted {wanted}");
     assert!(shadowless.1 > removed.1, "the front is seen in full light: {removed:?} {shadowless:?}");
 }
 
@@ -237,7 +240,7 @@ fn historical_orders_are_cut_too() {
 }
 
 #[test]
-fn collapsed_lights_know_the_faces() {
+fn combined_lights_know_the_faces() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = look(CutEffect::Removed, CutEffect::Removed);
     settings.shading.specular = 0.0;
@@ -250,7 +253,6 @@ fn collapsed_lights_know_the_faces() {
         settings.cuts.plane.offset = offset;
         let kept = shown(LightStorage::PerLight, &mut settings);
         let combined = shown(LightStorage::Combined, &mut settings);
-        let limit = crate::thresholds::CUT_COLLAPSED;
-        compare("combined", &combined, &kept, limit).expect("nearly the same");
+        compare("combined", &combined, &kept, CUT_COMBINED).expect("nearly the same");
     }
 }

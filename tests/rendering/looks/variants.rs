@@ -3,7 +3,7 @@
 use crate::common::{Dataset, context, render};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{
-    DIRECT_BEER_LAMBERT, EDGE_CENTRE, EDGE_WIDTH, EDGE_WIDTHS, SELF_SHADOW, SELF_SHADOW_GROWS,
+    DIRECT_BEER_LAMBERT, EDGE_CENTRE, EDGE_WIDTH, EDGE_WIDTHS, FAINT, SELF_SHADOW, SELF_SHADOW_GROWS,
 };
 use chiaroscuro::data::{Histogram, Samples, Volume};
 use chiaroscuro::gpu::{Renderer, mean_luminance};
@@ -51,8 +51,7 @@ fn beer_lambert_by_rays_from_samples() {
             let depth = (n - face) as f64 - 0.5 - f64::from(z);
             let expected = (-per_voxel * depth).exp();
             let found = f64::from(picture.light[9 * 4 + 4][0]);
-            // Rays end at 1/4096 of the light.
-            if expected > 1e-3 {
+            if expected > FAINT {
                 let error = (found / expected - 1.0).abs();
                 assert!(
                     error <= DIRECT_BEER_LAMBERT,

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::common::{Dataset, context};
 use crate::scenes;
-use crate::thresholds::PARTS;
+use crate::thresholds::{EIGHT_BITS, HALF_STEP, HALF_STEP_SEEN, PARTS, SAMPLED_BACKGROUND, TONE_MAP};
 
 /// No multiple of a part's edge, and neither square.
 const SIZE: [u32; 2] = [93, 70];
@@ -29,7 +29,7 @@ fn picture(
     shot: &Shot,
     parts: (u32, u32),
 ) -> Vec<f32> {
-    let bands = renderer.bands_of(&loaded, settings, shot, parts);
+    let bands = renderer.bands_of(loaded, settings, shot, parts);
     let rows = bands.all().expect("the picture is rendered");
     assert_eq!(matches!(rows, Rows::Bytes(_)), shot.depth == Depth::Eight);
     rows.values()
@@ -62,7 +62,7 @@ fn parts_are_the_whole_picture() {
                 let apart = largest(&found, &whole);
                 println!("{name} {depth:?} {parts:?}: {apart:.2e}");
                 // A rounded step of 8 bits, or what positions in 32 bits differ by.
-                let limit = if depth == Depth::Eight { 1.01 / 255.0 } else { PARTS };
+                let limit = if depth == Depth::Eight { EIGHT_BITS } else { PARTS };
                 assert!(apart <= limit, "{name} {depth:?} {parts:?}: {apart}");
             }
             assert_eq!(renderer.light_rebuilds(), fills, "parts share their light volumes");
@@ -93,7 +93,7 @@ fn samples_are_the_mean_of_a_finer_picture() {
             // The background of one colour: else it is that of the pixel's middle, not the mean.
             let finer = picture(&mut renderer, &loaded, &look(), &finer, (4096, 1 << 20));
             let mean = means(&finer, samples as usize);
-            let limit = if transparent { PARTS } else { 5e-3 };
+            let limit = if transparent { PARTS } else { SAMPLED_BACKGROUND };
             let apart = largest(&found, &mean);
             assert!(apart < limit, "{samples} {transparent}: {apart}");
         }
@@ -126,8 +126,8 @@ fn sixteen_bits_are_between_the_steps_of_eight() {
         let fine = Shot { depth: Depth::Sixteen, ..shot };
         let fine = picture(&mut renderer, &loaded, &look(), &fine, whole);
         let apart = largest(&coarse, &fine);
-        assert!(apart < 0.51 / 255.0, "{apart}");
-        assert!(apart > 0.4 / 255.0, "nothing lies between: {apart}");
+        assert!(apart < HALF_STEP, "{apart}");
+        assert!(apart > HALF_STEP_SEEN, "nothing lies between: {apart}");
     }
 }
 
@@ -149,5 +149,5 @@ fn linear_light_is_what_the_display_shows() {
     let expected: Vec<f32> =
         linear.chunks(4).flat_map(|c| [srgb(c[0]), srgb(c[1]), srgb(c[2]), c[3]]).collect();
     let apart = largest(&shown, &expected);
-    assert!(apart < 1e-3, "{apart}");
+    assert!(apart < TONE_MAP, "{apart}");
 }

@@ -3,4 +3,5 @@
 mod bands;
 mod preview;
 mod reduced;
+mod tone_map;
 mod window;

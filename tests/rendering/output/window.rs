@@ -3,6 +3,7 @@
 use chiaroscuro::gpu::{Context, WindowPainter};
 
 use crate::common::context;
+use crate::thresholds::EIGHT_BITS;
 
 /// Pixels of target and picture; a row of 256 bytes can be read back as it is.
 const SIZE: [u32; 2] = [64, 8];
@@ -98,7 +99,8 @@ fn a_fading_picture_lets_the_ground_through() {
             for channel in 0..3 {
                 let wanted = f64::from(on_top[channel]) * share + f64::from(floor[channel]) * (1.0 - share);
                 // Rounded where it is blended, to either side.
-                assert!((f64::from(got[channel]) - wanted).abs() <= 1.0, "{opacity}: {got:?}, {on_top:?}");
+                let apart = (f64::from(got[channel]) - wanted).abs() / 255.0;
+                assert!(apart <= EIGHT_BITS, "{opacity}: {got:?}, {on_top:?}");
             }
         }
     }
