@@ -46,9 +46,9 @@ pub(crate) enum Command {
     LookFrom(StandardView),
     /// Perspective or orthographic.
     ToggleProjection,
-    /// Keep the view under a digit …
+    /// Keep the view under a digit.
     StoreView(u8),
-    /// … and look that way again.
+    /// Look from the view that is kept under a digit.
     RecallView(u8),
     /// The window fills the screen, or not.
     ToggleFullScreen,
@@ -68,17 +68,17 @@ pub(crate) enum Command {
     TryLights,
     /// Show the contact sheet of presets.
     TryPresets,
-    /// The light after the selected one …
+    /// Select the light after the selected one.
     NextLight,
-    /// … or before it.
+    /// Select the light before the selected one.
     PreviousLight,
     /// Only the selected light shines, or all.
     Solo,
     /// The selected light shines or not.
     Mute,
-    /// The selected light is brighter …
+    /// Make the selected light brighter.
     Brighter,
-    /// … or dimmer.
+    /// Make the selected light dimmer.
     Dimmer,
     /// The automatic transfer function.
     AutomaticTransfer,
@@ -86,9 +86,9 @@ pub(crate) enum Command {
     UsePreset(Preset),
     /// Other colours for the visible values: the index of a colour map, and whether it is reversed.
     UseColors(usize, bool),
-    /// Ask for a transfer function of another program …
+    /// Ask for a transfer function of another program.
     ImportTransfer,
-    /// … or where to write one.
+    /// Ask where to write the transfer function for other programs.
     ExportTransfer,
     /// Opacities the other way round.
     InvertTransfer,
@@ -302,7 +302,7 @@ impl Command {
         label.into()
     }
 
-    /// Its key, for menus.
+    /// The command's key, for menus.
     pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
         match self {
             Self::StoreView(slot) => return text::commands::store_view_keys(*slot),

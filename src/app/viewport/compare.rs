@@ -19,9 +19,9 @@ const HANDLE: f32 = 9.0;
 pub(crate) struct Compare {
     /// Whether two looks are shown.
     pub on: bool,
-    /// Left of the divider …
+    /// The look left of the divider.
     pub left: Variant,
-    /// … and right of it.
+    /// The look right of the divider.
     pub right: Variant,
     /// Show what lies between them instead.
     pub difference: bool,

@@ -15,9 +15,9 @@ use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Sh
 const SIZE: [u32; 2] = [176, 132];
 /// Pictures side by side.
 const COLUMNS: usize = 4;
-/// Places for the selected light: hours of a clock face …
+/// Places for the selected light, as hours of a clock face around the line of sight.
 const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
-/// … so far from the line of sight.
+/// Degrees from the line of sight to those places.
 const ASIDE_DEG: f64 = 55.0;
 
 /// What is tried.
@@ -42,7 +42,7 @@ struct Candidate {
 /// A look, and what it looks like.
 type Tried = (Candidate, ColorImage);
 
-/// The same for the window.
+/// A candidate and its small picture, on the GPU of the window.
 struct Print {
     name: String,
     command: Command,

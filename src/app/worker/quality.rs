@@ -9,9 +9,9 @@ use crate::plan::preview_slab;
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
-/// The same on a software adapter …
+/// Milliseconds of a frame with a preview on a software adapter, which the window shares.
 const SOFTWARE_BUDGET_MS: f64 = 66.0;
-/// … where the window itself takes so much of each frame.
+/// Milliseconds that the window itself takes of each frame on a software adapter.
 const SOFTWARE_WINDOW_MS: f64 = 26.0;
 /// Bands into which a picture is cut on a software adapter, where one may take seconds: between
 /// them the render thread looks whether something else is wanted.

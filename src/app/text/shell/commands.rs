@@ -85,22 +85,22 @@ pub(crate) fn use_colors(map: &str, reversed: bool) -> String {
     format!("Colours: {map}{}", if reversed { ", reversed" } else { "" })
 }
 
-/// To keep a view under a digit …
+/// Keeping a view under a digit.
 pub(crate) fn store_view(slot: u8) -> String {
     format!("Store view {slot}")
 }
 
-/// … and to look that way again.
+/// Looking from a saved view again.
 pub(crate) fn recall_view(slot: u8) -> String {
     format!("Recall view {slot}")
 }
 
-/// The keys that keep a view …
+/// The keys that keep a view.
 pub(crate) fn store_view_keys(slot: u8) -> String {
     format!("Ctrl+Shift+{slot}")
 }
 
-/// … and those that look that way again.
+/// The keys that look from a saved view again.
 pub(crate) fn recall_view_keys(slot: u8) -> String {
     format!("Ctrl+{slot}")
 }

@@ -9,9 +9,9 @@ use super::theme;
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::model::{Camera, LightKind, Projection, SceneLight};
 
-/// The sphere of parallel lights is a little larger than the volume …
+/// The radius of the sphere on which parallel lights are shown, per radius of the volume: a little larger.
 const SPHERE_PER_SUPPORT: f64 = 1.15;
-/// … but fits in the picture: share of the way to the border.
+/// The largest radius of that sphere, as a share of the way to the border of the picture: it fits in there.
 const SPHERE_PER_VIEW: f64 = 0.9;
 /// A panned volume must not shrink its sphere to nothing: share of half the picture's shorter side.
 const LEAST_ROOM: f64 = 0.5;

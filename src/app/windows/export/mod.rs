@@ -25,9 +25,9 @@ const PATIENCE: Duration = Duration::from_secs(10);
 enum Kind {
     /// One picture.
     Still,
-    /// A turn of the camera …
+    /// A turntable of the camera.
     Turntable,
-    /// … or of the selected light.
+    /// A turntable of the selected light.
     LightTurn,
 }
 

@@ -40,9 +40,9 @@ pub(in crate::app) enum Exported {
 /// What the window and its worker tell each other.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
-    /// Pictures or parts of one that are done …
+    /// Pictures or parts of one that are done.
     pub done: AtomicU32,
-    /// … of how many; 0 while nobody knows.
+    /// Pictures or parts of one that are to be made; 0 while nobody knows.
     pub total: AtomicU32,
     /// Nobody wants the rest.
     pub cancelled: AtomicBool,
