@@ -28,14 +28,14 @@ use self::shell::messages::Messages;
 use self::shell::status_file::StatusFile;
 use self::shell::volume_facts::VolumeFacts;
 use self::transfer_editor::TransferEditor;
-use self::viewport::canvas::{Canvas, Stage};
+use self::viewport::canvas::{Canvas, CanvasInputs};
 use self::viewport::compare::Compare;
 use self::viewport::cut_handles::CutHandles;
 use self::viewport::hints::Hints;
 use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
 use self::viewport::overlay::Overlay;
-use self::viewport::{Facts, Viewport, paint_callback as plate};
+use self::viewport::{Facts, Viewport, paint_callback};
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
 use self::windows::files::Files;
@@ -79,7 +79,7 @@ pub struct App {
     handles: LightHandles,
     cut_handles: CutHandles,
     compare: Compare,
-    marks: Overlay,
+    overlay: Overlay,
     probe: LightProbe,
     palette: Palette,
     light_slice: LightSlice,
@@ -143,7 +143,7 @@ impl App {
             handles: LightHandles::default(),
             cut_handles: CutHandles::default(),
             compare: Compare::default(),
-            marks: Overlay::default(),
+            overlay: Overlay::default(),
             probe: LightProbe::default(),
             palette: Palette::default(),
             light_slice: LightSlice::default(),
@@ -224,7 +224,7 @@ impl App {
             side: self.side_open,
             handles: !self.handles.hidden,
             compares: self.compare.on,
-            marks: self.marks.on,
+            overlay: self.overlay.on,
             probe: self.probe.on,
         };
         menu::show(
@@ -271,14 +271,14 @@ impl App {
 
     /// The picture.
     fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
-        let stage = Stage {
+        let inputs = CanvasInputs {
             settings: &mut self.settings,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
             cut_handles: &mut self.cut_handles,
             selected_light: &mut self.selected_light,
             compare: &mut self.compare,
-            marks: self.marks,
+            overlay: self.overlay,
             probe: &mut self.probe,
             slices: &mut self.slices,
             hints: &mut self.hints,
@@ -286,7 +286,7 @@ impl App {
             facts,
             commands,
         };
-        let shown = egui::CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, stage));
+        let shown = egui::CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, inputs));
         let (canvas, result) = shown.inner;
         self.canvas = Some(canvas);
         if let Err(err) = result {
@@ -303,7 +303,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let start = std::time::Instant::now();
-        ui.painter().add(plate::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
+        ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
         let mut commands = Vec::new();
         if let Some(path) = files::dropped(&ctx) {
             commands.push(Command::Open(path.display().to_string()));

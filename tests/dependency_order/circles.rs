@@ -14,8 +14,6 @@ use crate::tokens::tokens;
 const REMAINING: &[(&str, &[&str])] = &[
     // Panels and windows hand their parts of the screen to each other through the shell's state.
     ("app", &["panels", "shell", "text", "viewport", "windows", "worker"]),
-    // The thread starts the worker, which reports to it.
-    ("app/worker", &["render_thread", "render_worker"]),
     // Bricks are made of cells, whose edge is a part of a brick's.
     ("data", &["bricks", "cells"]),
     // `builtin:` is resolved where files are loaded, and built-in volumes have the errors of loading.

@@ -53,7 +53,7 @@ pub(crate) enum Command {
     /// The window fills the screen, or not.
     ToggleFullScreen,
     /// Show or hide the chips of the lights, box, scale bar and cube.
-    ToggleMarks,
+    ToggleOverlay,
     /// Say what is under the pointer, and what light gets there.
     ToggleProbe,
     /// Find a command by its name.
@@ -163,7 +163,7 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 39] = [
     plain(Key::K, Command::ToggleCrop),
     plain(Key::I, Command::ToggleProbe),
     (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleFloor),
-    plain(Key::G, Command::ToggleMarks),
+    plain(Key::G, Command::ToggleOverlay),
     plain(Key::H, Command::ToggleHandles),
     plain(Key::C, Command::ToggleCompare),
     plain(Key::D, Command::ShowSlices),
@@ -195,7 +195,7 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::FrameAll,
         Command::ToggleProjection,
         Command::ToggleFullScreen,
-        Command::ToggleMarks,
+        Command::ToggleOverlay,
         Command::ToggleProbe,
         Command::ToggleCrop,
         Command::TogglePlane,
@@ -257,12 +257,12 @@ impl Command {
             Self::FrameAll => text::commands::FRAME_ALL,
             Self::ToggleProjection => text::commands::TOGGLE_PROJECTION,
             Self::ToggleFullScreen => text::commands::TOGGLE_FULL_SCREEN,
-            Self::ToggleMarks => text::commands::TOGGLE_MARKS,
+            Self::ToggleOverlay => text::commands::TOGGLE_OVERLAY,
             Self::ToggleProbe => text::commands::TOGGLE_PROBE,
             Self::ToggleCrop => text::commands::TOGGLE_CROP,
             Self::TogglePlane => text::commands::TOGGLE_PLANE,
             Self::FacePlane => text::commands::FACE_PLANE,
-            Self::ToggleFloor => text::commands::TOGGLE_GROUND,
+            Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
             Self::ShowPalette => text::commands::SHOW_PALETTE,
             Self::UseLights(_) => text::commands::USE_LIGHTS,
             Self::TryLights => text::commands::TRY_LIGHTS,

@@ -40,7 +40,7 @@ pub(crate) struct Shown {
     /// Two looks instead of one.
     pub compares: bool,
     /// Chips of the lights, box, scale bar and cube.
-    pub marks: bool,
+    pub overlay: bool,
     /// What is under the pointer.
     pub probe: bool,
 }
@@ -151,7 +151,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         (Command::ToggleFloor, menu.settings.floor.on),
         (Command::ToggleSide, menu.shown.side),
         (Command::ToggleHandles, menu.shown.handles),
-        (Command::ToggleMarks, menu.shown.marks),
+        (Command::ToggleOverlay, menu.shown.overlay),
         (Command::ToggleProbe, menu.shown.probe),
         (Command::ToggleCompare, menu.shown.compares),
     ];

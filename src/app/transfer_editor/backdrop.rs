@@ -8,7 +8,7 @@ use eframe::egui::{Color32, Rgba, Shape, pos2};
 use super::plot::Axes;
 use super::theme;
 use crate::app::viewport::canvas::Canvas;
-use crate::app::viewport::paint_callback as plate;
+use crate::app::viewport::paint_callback;
 use crate::gpu::{WindowPainter, WindowPicture};
 use crate::model::TransferFunction;
 
@@ -87,7 +87,8 @@ impl Backdrop {
             let bytes = compose(&key, pixels_per_point);
             self.composed = Some((key, self.window.place(before, canvas.size, &bytes, true)));
         }
-        let picture = |(_, picture): &(Key, WindowPicture)| plate::picture(canvas.rect, picture, u8::MAX);
+        let picture =
+            |(_, picture): &(Key, WindowPicture)| paint_callback::picture(canvas.rect, picture, u8::MAX);
         self.composed.as_ref().map_or(Shape::Noop, picture)
     }
 }

@@ -232,9 +232,9 @@ mod tests {
         assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
         assert!((function.opacity_at(50.0) - 0.7).abs() < 1e-9);
         for value in [20.0, 37.0, 63.0, 80.0] {
-            let wanted = 0.002 * value;
+            let expected = 0.002 * value;
             let found = function.opacity_at(value);
-            assert!((found - wanted).abs() < 2e-3, "elsewhere nothing has changed: {found} at {value}");
+            assert!((found - expected).abs() < 2e-3, "elsewhere nothing has changed: {found} at {value}");
         }
         let (left, right) = (function.opacity_at(47.0), function.opacity_at(53.0));
         assert!((left - right).abs() < 0.01 && left > 0.3, "both sides: {left} and {right}");

@@ -234,8 +234,8 @@ impl TransferEditor {
             } else if response.clicked() || (response.drag_started() && !self.selection.has(index)) {
                 self.selection.only(index);
             }
-            let wanted = self.selection.wants_focus && self.selection.has(index);
-            if ((response.clicked() || response.drag_started()) && self.selection.has(index)) || wanted {
+            let is_focused = self.selection.wants_focus && self.selection.has(index);
+            if ((response.clicked() || response.drag_started()) && self.selection.has(index)) || is_focused {
                 self.selection.wants_focus = false;
                 response.request_focus();
             } else if response.gained_focus() && !self.selection.has(index) {

@@ -47,7 +47,7 @@ impl Canvas {
 }
 
 /// What the canvas works with.
-pub(crate) struct Stage<'a> {
+pub(crate) struct CanvasInputs<'a> {
     /// The look; camera and lights may be changed by the mouse.
     pub settings: &'a mut Settings,
     /// The renderer's side.
@@ -61,7 +61,7 @@ pub(crate) struct Stage<'a> {
     /// Two looks in one picture.
     pub compare: &'a mut Compare,
     /// Chips of the lights, box, scale bar and cube.
-    pub marks: Overlay,
+    pub overlay: Overlay,
     /// What is under the pointer.
     pub probe: &'a mut LightProbe,
     /// Cuts through the data, and their cursor.
@@ -77,27 +77,27 @@ pub(crate) struct Stage<'a> {
 }
 
 /// Shows the picture and everything that is done with the mouse on it.
-pub(crate) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), GpuError>) {
-    let Stage {
+pub(crate) fn show(ui: &mut egui::Ui, inputs: CanvasInputs<'_>) -> (Canvas, Result<(), GpuError>) {
+    let CanvasInputs {
         settings,
         viewport,
         handles,
         cut_handles,
         selected_light,
         compare,
-        marks,
+        overlay,
         probe,
         slices,
         hints,
         scene,
         facts,
         commands,
-    } = stage;
+    } = inputs;
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
     let Some((scene, is_anatomical)) = scene else {
-        ui.painter().rect_filled(canvas.rect, 0.0, theme::STAGE);
+        ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
         return (canvas, Ok(()));
     };
     orbit::navigate(
@@ -125,15 +125,15 @@ pub(crate) fn show(ui: &mut egui::Ui, stage: Stage<'_>) -> (Canvas, Result<(), G
     let places = [(); 2].map(|()| ui.painter().add(Shape::Noop));
     let moving =
         ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
-    marks.outline(ui, canvas.rect, &settings.camera, &scene, moving);
-    let sight = ViewProjection { camera: settings.camera.clone(), picture: canvas.rect };
-    slices.mark(&ui.painter_at(canvas.rect), &sight, &scene);
+    overlay.outline(ui, canvas.rect, &settings.camera, &scene, moving);
+    let view_projection = ViewProjection { camera: settings.camera.clone(), picture: canvas.rect };
+    slices.mark(&ui.painter_at(canvas.rect), &view_projection, &scene);
     cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
-    if let Some(view) = marks.show(ui, canvas.rect, &settings.camera, (&scene, is_anatomical)) {
+    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, (&scene, is_anatomical)) {
         commands.push(Command::LookFrom(view));
     }
-    if marks.on {
+    if overlay.on {
         light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
     }
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on) {

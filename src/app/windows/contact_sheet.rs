@@ -97,7 +97,7 @@ pub(crate) struct ContactSheet {
     /// What it shows.
     sheet: Sheet,
     /// Whether pictures are to be made as soon as that is possible.
-    pub wanted: bool,
+    pub is_due: bool,
     work: Option<Work<Result<Vec<Tried>, String>>>,
     prints: Vec<Print>,
 }
@@ -147,12 +147,12 @@ impl ContactSheet {
         if self.sheet != sheet {
             self.prints.clear();
         }
-        (self.open, self.wanted, self.sheet) = (true, true, sheet);
+        (self.open, self.is_due, self.sheet) = (true, true, sheet);
     }
 
     /// Starts to make the pictures.
     pub(crate) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
-        self.wanted = false;
+        self.is_due = false;
         let sheet = self.sheet;
         let task = move || {
             let mut worker = Worker::new(&subject)?;
@@ -189,11 +189,11 @@ impl ContactSheet {
             egui::Window::new(self.sheet.title()).open(&mut open).resizable(false).collapsible(false);
         window.default_pos([60.0, 60.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
-                if self.work.is_some() || self.wanted {
+                if self.work.is_some() || self.is_due {
                     ui.spinner();
                     ui.label(text::contact_sheet::TRYING);
                 } else if ui.button(text::contact_sheet::AGAIN).clicked() {
-                    self.wanted = true;
+                    self.is_due = true;
                 }
                 ui.add_space(theme::HANDLE_RADIUS);
                 ui.weak(text::contact_sheet::QUALITY);

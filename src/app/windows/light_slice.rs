@@ -52,7 +52,7 @@ pub(crate) struct Scene<'a> {
     pub dataset: Option<Dataset>,
     /// A device beside which the worker may open its own.
     pub context: &'a Context,
-    /// Nothing moves: a light volume that is filled now will be wanted.
+    /// Nothing moves: a light volume that is filled now will be used.
     pub at_rest: bool,
 }
 
@@ -118,7 +118,7 @@ impl LightSlice {
         written.map_err(|err| err.to_string())
     }
 
-    /// Takes in what the worker has filled, and sends it again when something else is wanted.
+    /// Takes in what the worker has filled, and sends it again when something else is to be shown.
     fn collect(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<(), String> {
         if let Some(result) = self.work.as_ref().and_then(Work::take) {
             self.work = None;

@@ -110,7 +110,7 @@ impl Drop for WarmUp {
     }
 }
 
-/// What the user is told, by phase.
+/// The words for each phase, in the status bar.
 const PHASES: [&str; 5] = [
     text::opening::READING,
     text::opening::FITTING,
@@ -135,12 +135,12 @@ impl Loader {
         Ok(Self { context, shaders, options, running: None, warm_up })
     }
 
-    /// Makes pipelines that may be wanted later, once; to be called when nothing else is to be done.
+    /// Makes pipelines that may be needed later, once; to be called when nothing else is to be done.
     pub(crate) fn prepare(&mut self) {
         if self.warm_up.threads.len() < 2
             && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_rest)
         {
-            log::warn!("pipelines will be made when they are wanted: {err}");
+            log::warn!("pipelines will be made when they are needed: {err}");
         }
     }
 

@@ -33,7 +33,7 @@ pub(crate) struct LightHandles {
     /// The user does not want them.
     pub hidden: bool,
     drag: Option<Drag>,
-    /// That of the selected light.
+    /// The handle of the hood of the selected light.
     hood: HoodHandle,
     /// The pointer is on a handle for which the wheel means distance.
     pub takes_wheel: bool,
