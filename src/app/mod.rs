@@ -25,6 +25,7 @@ use self::shell::commands::Command;
 use self::shell::history::History;
 use self::shell::memory::Memory;
 use self::shell::messages::Messages;
+use self::shell::opening::PendingLook;
 use self::shell::status_file::StatusFile;
 use self::shell::volume_facts::VolumeFacts;
 use self::transfer_editor::TransferEditor;
@@ -47,7 +48,7 @@ use self::windows::slices::Slices;
 use self::worker::loader::Loader;
 use self::worker::task::Work;
 use crate::gpu::{Context, GpuError, WindowPainter};
-use crate::model::{Record, Settings};
+use crate::model::Settings;
 
 /// A frame that keeps the window's thread longer is felt.
 const LONG_FRAME_MS: f64 = 50.0;
@@ -67,7 +68,7 @@ pub struct App {
     /// Whether the next volume is shown as this one, and not as its own first look.
     keeps_look: bool,
     /// Settings of the volume that is being opened.
-    pending: Option<Record>,
+    pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
     export: Export,
     files: Files,
@@ -219,7 +220,8 @@ impl App {
     /// The panels around the picture.
     fn surroundings(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let title = self.title();
-        let undo_redo = (self.history.can_undo(&self.settings), self.history.can_redo(&self.settings));
+        let can_undo = self.history.can_undo(&self.settings);
+        let can_redo = self.history.can_redo(&self.settings);
         let shown = menu::Shown {
             side: self.side_open,
             handles: !self.handles.hidden,
@@ -232,7 +234,8 @@ impl App {
             &mut menu::Menu {
                 settings: &mut self.settings,
                 title,
-                undo_redo,
+                can_undo,
+                can_redo,
                 shown,
                 recent: self.memory.recent(),
                 keeps_look: self.keeps_look,
@@ -282,7 +285,7 @@ impl App {
             probe: &mut self.probe,
             slices: &mut self.slices,
             hints: &mut self.hints,
-            scene: self.volume.as_ref().map(|volume| (volume.scene, volume.is_anatomical)),
+            volume: self.volume.as_ref(),
             facts,
             commands,
         };

@@ -7,21 +7,19 @@ use super::messages::Messages;
 use super::theme;
 use crate::app::text;
 use crate::app::viewport::{Doing, Facts};
-
-/// Opening a volume: what, the phase, and the share that is done.
-pub(crate) type Opening<'a> = (&'a str, &'static str, Option<f32>);
+use crate::app::worker::loader::LoadProgress;
 
 /// Shows the bar.
 pub(crate) fn show(
     ui: &mut egui::Ui,
     facts: &Facts,
-    opening: Option<Opening<'_>>,
+    opening: Option<LoadProgress<'_>>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            if let Some((source, phase, fraction)) = opening {
+            if let Some(LoadProgress { source, phase, fraction }) = opening {
                 let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);
                 ui.add(bar.animate(fraction.is_none()));
                 ui.label(text::status::opening(phase, source));

@@ -13,10 +13,10 @@ use super::{Facts, Viewport};
 use super::{light_chips, light_probe, orbit};
 use crate::app::shell::commands::Command;
 use crate::app::shell::theme;
+use crate::app::shell::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::app::windows::slices::Slices;
 use crate::gpu::GpuError;
-use crate::math::SceneSpace;
 use crate::model::Settings;
 
 /// The picture's rectangle in points and its size in physical pixels, on the pixel grid.
@@ -68,8 +68,8 @@ pub(crate) struct CanvasInputs<'a> {
     pub slices: &'a mut Slices,
     /// What the first picture says.
     pub hints: &'a mut Hints,
-    /// Of the open volume, and whether it is a body that knows its sides; `None` without one.
-    pub scene: Option<(SceneSpace, bool)>,
+    /// The open volume.
+    pub volume: Option<&'a VolumeFacts>,
     /// What is known of the renderer's work.
     pub facts: &'a Facts,
     /// What the user asks for.
@@ -89,14 +89,14 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: CanvasInputs<'_>) -> (Canvas, Resu
         probe,
         slices,
         hints,
-        scene,
+        volume,
         facts,
         commands,
     } = inputs;
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
-    let Some((scene, is_anatomical)) = scene else {
+    let Some(&VolumeFacts { scene, is_anatomical, .. }) = volume else {
         ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
         return (canvas, Ok(()));
     };
@@ -130,7 +130,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: CanvasInputs<'_>) -> (Canvas, Resu
     slices.mark(&ui.painter_at(canvas.rect), &view_projection, &scene);
     cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
-    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, (&scene, is_anatomical)) {
+    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, &scene, is_anatomical) {
         commands.push(Command::LookFrom(view));
     }
     if overlay.on {

@@ -38,7 +38,8 @@ impl Overlay {
         ui: &Ui,
         picture: Rect,
         camera: &Camera,
-        (scene, is_anatomical): (&SceneSpace, bool),
+        scene: &SceneSpace,
+        is_anatomical: bool,
     ) -> Option<StandardView> {
         if !self.on || picture.width() < 4.0 * CUBE || picture.height() < 4.0 * CUBE {
             return None;
