@@ -3,6 +3,7 @@
 //! Panels change one [`Settings`] value; the viewport turns it into a picture. Only `viewport`, the
 //! loader and the export worker know the renderer; panels see settings and read-only facts.
 
+mod common;
 mod panels;
 mod shell;
 mod text;
@@ -17,19 +18,20 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 
-use self::shell::{commands, light_keys, menu, opening, status, status_file, theme};
-use self::viewport::canvas;
+use self::common::{commands, light_keys, theme};
+use self::shell::{menu, opening, picture, status, status_file};
 use self::windows::files;
 
-use self::shell::commands::Command;
+use self::common::commands::Command;
+use self::common::volume_facts::VolumeFacts;
 use self::shell::history::History;
 use self::shell::memory::Memory;
 use self::shell::messages::Messages;
 use self::shell::opening::PendingLook;
+use self::shell::picture::PictureInputs;
 use self::shell::status_file::StatusFile;
-use self::shell::volume_facts::VolumeFacts;
 use self::transfer_editor::TransferEditor;
-use self::viewport::canvas::{Canvas, CanvasInputs};
+use self::viewport::canvas::Canvas;
 use self::viewport::compare::Compare;
 use self::viewport::cut_handles::CutHandles;
 use self::viewport::hints::Hints;
@@ -274,7 +276,7 @@ impl App {
 
     /// The picture.
     fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
-        let inputs = CanvasInputs {
+        let inputs = PictureInputs {
             settings: &mut self.settings,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
@@ -289,7 +291,7 @@ impl App {
             facts,
             commands,
         };
-        let shown = egui::CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, inputs));
+        let shown = egui::CentralPanel::no_frame().show(ui, |ui| picture::show(ui, inputs));
         let (canvas, result) = shown.inner;
         self.canvas = Some(canvas);
         if let Err(err) = result {

@@ -6,7 +6,7 @@ use super::super::text::common::DEGREES;
 use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice};
 use super::{Panels, sampling};
-use crate::app::shell::commands::Command;
+use crate::app::common::commands::Command;
 use crate::model::Projection;
 
 const PROJECTIONS: [(Projection, Named); 2] = [

@@ -6,8 +6,8 @@ use super::super::text::common::TIMES;
 use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice, row, switch, unlabelled};
 use super::{Panels, sampling};
-use crate::app::shell::commands::Command;
-use crate::app::shell::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
 use crate::model::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm};
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::commands::Command;
-use super::light_keys;
+use crate::app::common::commands::Command;
+use crate::app::common::light_keys;
 use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;

@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, Button, ThemePreference};
 
-use super::commands::{Command, VIEW_SLOTS};
-use super::theme;
+use crate::app::common::commands::{Command, VIEW_SLOTS};
+use crate::app::common::theme;
 use crate::app::text;
 use crate::data::synthetic;
 use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use super::history::History;
-use super::volume_facts::VolumeFacts;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};

@@ -2,9 +2,9 @@
 
 use eframe::egui::{self, ProgressBar, RichText};
 
-use super::commands::Command;
 use super::messages::Messages;
-use super::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::app::viewport::{Doing, Facts};
 use crate::app::worker::loader::LoadProgress;
@@ -31,11 +31,24 @@ pub(crate) fn show(
             }
             messages.ui(ui);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let figures = RichText::new(text::status::figures(facts)).weak();
+                let figures = RichText::new(figures(facts)).weak();
                 ui.add(egui::Label::new(figures).truncate()).on_hover_text(&facts.driver);
             });
         });
     });
+}
+
+fn figures(facts: &Facts) -> String {
+    text::status::figures(&text::status::Figures {
+        full_ms: facts.full_ms,
+        preview_ms: facts.preview_ms,
+        splats: facts.splats,
+        cached_light_volumes: facts.cached_light_volumes,
+        light_rebuilds: facts.light_rebuilds,
+        gpu_mebibytes: facts.gpu_mebibytes,
+        adapter: &facts.adapter,
+        is_software: facts.software,
+    })
 }
 
 fn doing(ui: &mut egui::Ui, doing: Doing) {

@@ -4,9 +4,9 @@ use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Sense, Ui, vec2};
 
 use super::super::text::{self, Named};
 use super::zoom::ShownValues;
-use crate::app::shell::commands::Command;
-use crate::app::shell::theme;
-use crate::app::shell::volume_facts::VolumeFacts;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
 /// Size of the strip that shows a colour map.

@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Str
 use eframe::egui::{WidgetInfo, pos2, vec2};
 
 use super::{Pictures, paint_callback};
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::request::Looks;
 use crate::gpu::Distance;

@@ -3,9 +3,9 @@
 use eframe::egui::{self, Rect, Sense, Ui, UiBuilder, vec2};
 
 use super::Facts;
-use crate::app::shell::commands::Command;
-use crate::app::shell::light_keys::solo;
-use crate::app::shell::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::light_keys::solo;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Light, MAX_LIGHTS, Settings};
 

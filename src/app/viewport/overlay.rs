@@ -8,7 +8,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::view_projection::ViewProjection;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};

@@ -5,8 +5,8 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
 use glam::DVec3;
 
 use super::export::{Subject, Worker};
-use crate::app::shell::commands::Command;
-use crate::app::shell::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Shot};

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::orbit::wheel_notches;
 use super::view_projection::ViewProjection;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::math::SceneSpace;
 use crate::model::{CropBox, MAX_PLANE_OFFSET, MIN_CROP, Settings};

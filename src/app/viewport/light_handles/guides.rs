@@ -6,7 +6,7 @@ use eframe::egui::{Painter, Pos2, Shape, Stroke};
 use glam::DVec3;
 
 use super::geometry::View;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::model::{LightKind, SceneLight};
 
 /// Corners of a circle.

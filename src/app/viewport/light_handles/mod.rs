@@ -13,7 +13,7 @@ use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke,
 use self::geometry::View;
 use self::hood_handle::HoodHandle;
 use super::orbit::wheel_notches;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{LightKind, Settings};
 

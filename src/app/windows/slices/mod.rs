@@ -12,8 +12,8 @@ use eframe::egui::{
 use glam::DVec3;
 
 use self::image::{Grey, across, lookup, slice};
-use crate::app::shell::theme;
-use crate::app::shell::volume_facts::VolumeFacts;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::app::viewport::orbit::wheel_notches;
 use crate::app::viewport::view_projection::ViewProjection;
