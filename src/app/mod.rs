@@ -3,6 +3,7 @@
 //! Panels change one [`Settings`] value; the viewport turns it into a picture. Only `viewport`, the
 //! loader and the export worker know the renderer; panels see settings and read-only facts.
 
+mod common;
 mod panels;
 mod shell;
 mod text;
@@ -17,25 +18,27 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 
-use self::shell::{commands, light_keys, menu, opening, status, status_file, theme};
-use self::viewport::canvas;
+use self::common::{commands, light_keys, theme};
+use self::shell::{menu, opening, picture, status, status_file};
 use self::windows::files;
 
-use self::shell::commands::Command;
+use self::common::commands::Command;
+use self::common::volume_facts::VolumeFacts;
 use self::shell::history::History;
 use self::shell::memory::Memory;
 use self::shell::messages::Messages;
+use self::shell::opening::PendingLook;
+use self::shell::picture::PictureInputs;
 use self::shell::status_file::StatusFile;
-use self::shell::volume_facts::VolumeFacts;
 use self::transfer_editor::TransferEditor;
-use self::viewport::canvas::{Canvas, Stage};
+use self::viewport::canvas::Canvas;
 use self::viewport::compare::Compare;
 use self::viewport::cut_handles::CutHandles;
 use self::viewport::hints::Hints;
 use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
 use self::viewport::overlay::Overlay;
-use self::viewport::{Facts, Viewport, paint_callback as plate};
+use self::viewport::{Facts, Viewport, paint_callback};
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
 use self::windows::files::Files;
@@ -47,7 +50,7 @@ use self::windows::slices::Slices;
 use self::worker::loader::Loader;
 use self::worker::task::Work;
 use crate::gpu::{Context, GpuError, WindowPainter};
-use crate::model::{Record, Settings};
+use crate::model::Settings;
 
 /// A frame that keeps the window's thread longer is felt.
 const LONG_FRAME_MS: f64 = 50.0;
@@ -67,7 +70,7 @@ pub struct App {
     /// Whether the next volume is shown as this one, and not as its own first look.
     keeps_look: bool,
     /// Settings of the volume that is being opened.
-    pending: Option<Record>,
+    pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
     export: Export,
     files: Files,
@@ -79,7 +82,7 @@ pub struct App {
     handles: LightHandles,
     cut_handles: CutHandles,
     compare: Compare,
-    marks: Overlay,
+    overlay: Overlay,
     probe: LightProbe,
     palette: Palette,
     light_slice: LightSlice,
@@ -143,7 +146,7 @@ impl App {
             handles: LightHandles::default(),
             cut_handles: CutHandles::default(),
             compare: Compare::default(),
-            marks: Overlay::default(),
+            overlay: Overlay::default(),
             probe: LightProbe::default(),
             palette: Palette::default(),
             light_slice: LightSlice::default(),
@@ -219,12 +222,13 @@ impl App {
     /// The panels around the picture.
     fn surroundings(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let title = self.title();
-        let undo_redo = (self.history.can_undo(&self.settings), self.history.can_redo(&self.settings));
+        let can_undo = self.history.can_undo(&self.settings);
+        let can_redo = self.history.can_redo(&self.settings);
         let shown = menu::Shown {
             side: self.side_open,
             handles: !self.handles.hidden,
             compares: self.compare.on,
-            marks: self.marks.on,
+            overlay: self.overlay.on,
             probe: self.probe.on,
         };
         menu::show(
@@ -232,7 +236,8 @@ impl App {
             &mut menu::Menu {
                 settings: &mut self.settings,
                 title,
-                undo_redo,
+                can_undo,
+                can_redo,
                 shown,
                 recent: self.memory.recent(),
                 keeps_look: self.keeps_look,
@@ -271,22 +276,22 @@ impl App {
 
     /// The picture.
     fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
-        let stage = Stage {
+        let inputs = PictureInputs {
             settings: &mut self.settings,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
             cut_handles: &mut self.cut_handles,
             selected_light: &mut self.selected_light,
             compare: &mut self.compare,
-            marks: self.marks,
+            overlay: self.overlay,
             probe: &mut self.probe,
             slices: &mut self.slices,
             hints: &mut self.hints,
-            scene: self.volume.as_ref().map(|volume| (volume.scene, volume.is_anatomical)),
+            volume: self.volume.as_ref(),
             facts,
             commands,
         };
-        let shown = egui::CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, stage));
+        let shown = egui::CentralPanel::no_frame().show(ui, |ui| picture::show(ui, inputs));
         let (canvas, result) = shown.inner;
         self.canvas = Some(canvas);
         if let Err(err) = result {
@@ -303,7 +308,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let start = std::time::Instant::now();
-        ui.painter().add(plate::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
+        ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
         let mut commands = Vec::new();
         if let Some(path) = files::dropped(&ctx) {
             commands.push(Command::Open(path.display().to_string()));

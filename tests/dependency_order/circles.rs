@@ -12,10 +12,6 @@ use crate::tokens::tokens;
 /// Circles that there still are: the folder, and the modules in it. None may grow; one that is gone is to be taken
 /// off.
 const REMAINING: &[(&str, &[&str])] = &[
-    // Panels and windows hand their parts of the screen to each other through the shell's state.
-    ("app", &["panels", "shell", "text", "viewport", "windows", "worker"]),
-    // The thread starts the worker, which reports to it.
-    ("app/worker", &["render_thread", "render_worker"]),
     // Bricks are made of cells, whose edge is a part of a brick's.
     ("data", &["bricks", "cells"]),
     // `builtin:` is resolved where files are loaded, and built-in volumes have the errors of loading.

@@ -6,7 +6,7 @@ use super::super::text::common::DEGREES;
 use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice};
 use super::{Panels, sampling};
-use crate::app::shell::commands::Command;
+use crate::app::common::commands::Command;
 use crate::model::Projection;
 
 const PROJECTIONS: [(Projection, Named); 2] = [
@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     advanced(ui, "advanced camera", |ui| {
         let eye = &mut panels.settings.sampling;
         let default_slab = panels.defaults.sampling.slab;
-        sampling::show(ui, &mut eye.kernel, (&mut eye.slab, default_slab), &mut eye.quadrature);
+        sampling::show(ui, &mut eye.kernel, &mut eye.slab, default_slab, &mut eye.quadrature);
         sampling::show_engine(ui, eye);
     });
 }

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
 use super::controls::{row, switch, unlabelled};
-use crate::app::shell::commands::Command;
+use crate::app::common::commands::Command;
 use crate::app::viewport::compare::Compare;
 use crate::model::{Settings, Variant};
 

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Align, Layout, Response, Slider, Ui, Vec2};
 
 use super::super::text::{self, Named};
-use crate::app::shell::theme;
+use crate::app::common::theme;
 
 /// A number with a slider.
 #[derive(Debug, Clone)]

@@ -6,8 +6,8 @@ use glam::DVec3;
 use super::super::text::{self, Named};
 use super::Panels;
 use super::controls::{Number, reset, row, switch, unlabelled};
-use crate::app::shell::commands::Command;
-use crate::app::shell::volume_facts::VolumeFacts;
+use crate::app::common::commands::Command;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::model::{ClipPlane, CropBox, CutEffect, MIN_CROP};
 
 /// Shows the section.

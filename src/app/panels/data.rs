@@ -5,8 +5,8 @@ use eframe::egui::{self, Ui};
 use super::super::text::{self, Named};
 use super::Panels;
 use super::controls::{choice, row};
-use crate::app::shell::commands::Command;
-use crate::app::shell::volume_facts::VolumeFacts;
+use crate::app::common::commands::Command;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::model::{Length, Settings};
 
 /// Shows the section.

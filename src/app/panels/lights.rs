@@ -7,8 +7,8 @@ use super::super::text::common::{DEGREES, TIMES};
 use super::super::text::{self, Named};
 use super::Panels;
 use super::controls::{Number, choice, color, row, switch, unlabelled};
-use crate::app::shell::commands::Command;
-use crate::app::shell::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
 use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, Settings};
 
 const KINDS: [(LightKind, Named); 2] =

@@ -13,8 +13,8 @@ mod shadows;
 
 use eframe::egui;
 
-use super::shell::commands::Command;
-use super::shell::volume_facts::VolumeFacts;
+use super::common::commands::Command;
+use super::common::volume_facts::VolumeFacts;
 use super::text;
 use super::viewport::Facts;
 use super::viewport::compare::Compare;

@@ -36,7 +36,8 @@ const GRADIENTS: [(Gradients, Named); 2] = [
 pub(super) fn show(
     ui: &mut Ui,
     kernel: &mut Kernel,
-    (slab, default_slab): (&mut f64, f64),
+    slab: &mut f64,
+    default_slab: f64,
     quadrature: &mut Quadrature,
 ) {
     let sigma = if let Kernel::Gaussian { sigma } = kernel { *sigma } else { SIGMA };

@@ -6,8 +6,8 @@ use super::super::text::common::TIMES;
 use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice, row, switch, unlabelled};
 use super::{Panels, sampling};
-use crate::app::shell::commands::Command;
-use crate::app::shell::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
 use crate::model::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm};
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
@@ -53,12 +53,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             let shadows = &mut panels.settings.shadows;
             switch(ui, text::shadows::FIRST_TOUCH, &mut shadows.first_touch);
             let default_slab = panels.defaults.shadows.slab;
-            sampling::show(
-                ui,
-                &mut shadows.kernel,
-                (&mut shadows.slab, default_slab),
-                &mut shadows.quadrature,
-            );
+            sampling::show(ui, &mut shadows.kernel, &mut shadows.slab, default_slab, &mut shadows.quadrature);
             choice(ui, text::shadows::PRECISION, &mut shadows.precision, &PRECISIONS);
             choice(ui, text::shadows::STORAGE, &mut shadows.storage, &STORAGES);
             ui.weak(text::shadows::light_volumes(panels.facts.light_mebibytes, combines));

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::commands::Command;
-use super::light_keys;
+use crate::app::common::commands::Command;
+use crate::app::common::light_keys;
 use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;
@@ -92,7 +92,7 @@ impl App {
                 let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
             }
-            Command::ToggleMarks => self.marks.on ^= true,
+            Command::ToggleOverlay => self.overlay.on ^= true,
             Command::ToggleProbe => self.probe.on ^= true,
             Command::ShowPalette => self.palette.open(),
             Command::UseRig(rig) => {
@@ -182,7 +182,7 @@ impl App {
         ctx: &egui::Context,
         commands: &mut Vec<Command>,
     ) {
-        if self.contact_sheet.wanted
+        if self.contact_sheet.is_due
             && let Some(subject) = self.subject()
             && let Err(err) = self.contact_sheet.start(subject, ctx)
         {

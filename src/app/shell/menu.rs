@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, Button, ThemePreference};
 
-use super::commands::{Command, VIEW_SLOTS};
-use super::theme;
+use crate::app::common::commands::{Command, VIEW_SLOTS};
+use crate::app::common::theme;
 use crate::app::text;
 use crate::data::synthetic;
 use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
@@ -14,8 +14,10 @@ pub(crate) struct Menu<'a> {
     pub settings: &'a mut Settings,
     /// The open volume's name and size, for the middle of the bar.
     pub title: String,
-    /// Whether there is a step back, and one forward.
-    pub undo_redo: (bool, bool),
+    /// Whether there is a step back.
+    pub can_undo: bool,
+    /// Whether there is a step forward.
+    pub can_redo: bool,
     /// What is on screen.
     pub shown: Shown,
     /// Files that were opened, the latest first.
@@ -40,7 +42,7 @@ pub(crate) struct Shown {
     /// Two looks instead of one.
     pub compares: bool,
     /// Chips of the lights, box, scale bar and cube.
-    pub marks: bool,
+    pub overlay: bool,
     /// What is under the pointer.
     pub probe: bool,
 }
@@ -51,9 +53,9 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button(text::menu::FILE, |ui| file(ui, menu));
             ui.menu_button(text::menu::EDIT, |ui| {
-                let (undo, redo) = menu.undo_redo;
-                item(ui, menu, Command::Undo, undo);
-                item(ui, menu, Command::Redo, redo);
+                let (can_undo, can_redo) = (menu.can_undo, menu.can_redo);
+                item(ui, menu, Command::Undo, can_undo);
+                item(ui, menu, Command::Redo, can_redo);
                 ui.separator();
                 item(ui, menu, Command::ShowPalette, true);
             });
@@ -151,7 +153,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         (Command::ToggleFloor, menu.settings.floor.on),
         (Command::ToggleSide, menu.shown.side),
         (Command::ToggleHandles, menu.shown.handles),
-        (Command::ToggleMarks, menu.shown.marks),
+        (Command::ToggleOverlay, menu.shown.overlay),
         (Command::ToggleProbe, menu.shown.probe),
         (Command::ToggleCompare, menu.shown.compares),
     ];

@@ -4,7 +4,7 @@
 
 use eframe::egui::{self, RichText};
 
-use super::theme;
+use crate::app::common::theme;
 use crate::app::text;
 
 /// How long a note stays; errors stay until they are dismissed.

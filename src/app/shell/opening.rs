@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use super::history::History;
-use super::volume_facts::VolumeFacts;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
@@ -15,6 +15,15 @@ use crate::model::{Length, Record, Settings, VolumeRecord};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
+
+/// A look that waits for the volume that is being opened.
+#[derive(Debug)]
+pub(in crate::app) enum PendingLook {
+    /// A file's: laid over the volume's first look.
+    Record(Record),
+    /// Every setting, whatever the first look is.
+    Settings(Box<Settings>),
+}
 
 /// The volume that a session is of, where it says so.
 pub(crate) fn volume_of_session(session: &Path) -> Option<String> {
@@ -77,10 +86,8 @@ impl App {
             settings.opacity_unit = Length::Mm(unit);
         }
         let (source, reading) = (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading });
-        match Record::read(&Record::text(&settings, None, None)) {
-            Ok(record) if self.start_loading(&source, reading, ctx) => self.pending = Some(record),
-            Ok(_) => {}
-            Err(err) => self.messages.error(text::opening::NOT_OPENED, err.to_string()),
+        if self.start_loading(&source, reading, ctx) {
+            self.pending = Some(PendingLook::Settings(Box::new(settings)));
         }
     }
 
@@ -103,12 +110,14 @@ impl App {
         let source = match &record.volume {
             Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => volume.source_from(path.parent()),
             // What is being opened is what the user will see it on.
-            None if self.loader.progress().is_some() => return self.pending = Some(record),
+            None if self.loader.progress().is_some() => {
+                return self.pending = Some(PendingLook::Record(record));
+            }
             None if open.is_none() => DEFAULT_SOURCE.to_owned(),
             _ => return self.apply_record(&record, self.value_range()),
         };
         if self.start_loading(&source, Reading::default(), ctx) {
-            self.pending = Some(record);
+            self.pending = Some(PendingLook::Record(record));
         }
     }
 
@@ -197,11 +206,15 @@ impl App {
             }
         }
         self.memory.opened(&source);
-        if let Some(record) = self.pending.take() {
-            if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
-                self.messages.note(text::opening::OF_OTHER_VALUES);
+        match self.pending.take() {
+            None => {}
+            Some(PendingLook::Settings(settings)) => self.settings = *settings,
+            Some(PendingLook::Record(record)) => {
+                if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
+                    self.messages.note(text::opening::OF_OTHER_VALUES);
+                }
+                self.apply_record(&record, range);
             }
-            self.apply_record(&record, range);
         }
         if let Some(adjust) = self.adjust.take() {
             self.settings = adjust(std::mem::take(&mut self.settings));

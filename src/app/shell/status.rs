@@ -2,26 +2,24 @@
 
 use eframe::egui::{self, ProgressBar, RichText};
 
-use super::commands::Command;
 use super::messages::Messages;
-use super::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::app::viewport::{Doing, Facts};
-
-/// Opening a volume: what, the phase, and the share that is done.
-pub(crate) type Opening<'a> = (&'a str, &'static str, Option<f32>);
+use crate::app::worker::loader::LoadProgress;
 
 /// Shows the bar.
 pub(crate) fn show(
     ui: &mut egui::Ui,
     facts: &Facts,
-    opening: Option<Opening<'_>>,
+    opening: Option<LoadProgress<'_>>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            if let Some((source, phase, fraction)) = opening {
+            if let Some(LoadProgress { source, phase, fraction }) = opening {
                 let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);
                 ui.add(bar.animate(fraction.is_none()));
                 ui.label(text::status::opening(phase, source));
@@ -33,11 +31,24 @@ pub(crate) fn show(
             }
             messages.ui(ui);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let figures = RichText::new(text::status::figures(facts)).weak();
+                let figures = RichText::new(figures(facts)).weak();
                 ui.add(egui::Label::new(figures).truncate()).on_hover_text(&facts.driver);
             });
         });
     });
+}
+
+fn figures(facts: &Facts) -> String {
+    text::status::figures(&text::status::Figures {
+        full_ms: facts.full_ms,
+        preview_ms: facts.preview_ms,
+        splats: facts.splats,
+        cached_light_volumes: facts.cached_light_volumes,
+        light_rebuilds: facts.light_rebuilds,
+        gpu_mebibytes: facts.gpu_mebibytes,
+        adapter: &facts.adapter,
+        is_software: facts.software,
+    })
 }
 
 fn doing(ui: &mut egui::Ui, doing: Doing) {

@@ -74,7 +74,7 @@ impl State<'_> {
     }
 }
 
-/// The file, if one is wanted.
+/// The file, if the environment names one.
 #[derive(Debug)]
 pub(crate) struct StatusFile {
     path: Option<PathBuf>,

@@ -9,9 +9,9 @@ pub(crate) const TIMES: &str = " ×";
 /// Leaves what is being done or asked.
 pub(crate) const CANCEL: &str = "Cancel";
 
-/// Behind a length …
+/// Behind a length in millimetres.
 pub(crate) const MM: &str = " mm";
-/// … and one in voxels.
+/// Behind a length in voxels.
 pub(crate) const VOX: &str = " vox";
 
 /// Behind an angle.
@@ -22,7 +22,7 @@ pub(crate) fn reset(label: &str) -> String {
     format!("Reset {label}")
 }
 
-/// The same, as its tip.
+/// The tip of a button that puts a value back.
 pub(crate) fn reset_tip(label: &str) -> String {
     reset(&label.to_lowercase())
 }

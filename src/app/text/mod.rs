@@ -14,10 +14,10 @@ pub(super) mod work;
 
 pub(super) use self::panels::{camera, cuts, data, floor, lights, sampling, sections, shading, shadows};
 pub(super) use self::shell::{commands, menu, messages, opening, status};
-pub(super) use self::viewport::{compared, cut_handles, marks, picture, probe};
+pub(super) use self::viewport::{compared, cut_handles, overlay, picture, probe};
 pub(super) use self::windows::{contact_sheet, export, files, help, light_volume, raw, slices};
 
-/// A control's name, and what a pointer resting on it is told.
+/// A control's name, and its tip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Named {
     /// Beside the control or on it; also what screen readers call it.

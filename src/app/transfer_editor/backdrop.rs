@@ -8,7 +8,7 @@ use eframe::egui::{Color32, Rgba, Shape, pos2};
 use super::plot::Axes;
 use super::theme;
 use crate::app::viewport::canvas::Canvas;
-use crate::app::viewport::paint_callback as plate;
+use crate::app::viewport::paint_callback;
 use crate::gpu::{WindowPainter, WindowPicture};
 use crate::model::TransferFunction;
 
@@ -87,7 +87,8 @@ impl Backdrop {
             let bytes = compose(&key, pixels_per_point);
             self.composed = Some((key, self.window.place(before, canvas.size, &bytes, true)));
         }
-        let picture = |(_, picture): &(Key, WindowPicture)| plate::picture(canvas.rect, picture, u8::MAX);
+        let picture =
+            |(_, picture): &(Key, WindowPicture)| paint_callback::picture(canvas.rect, picture, u8::MAX);
         self.composed.as_ref().map_or(Shape::Noop, picture)
     }
 }
@@ -133,13 +134,14 @@ fn compose(key: &Key, pixels_per_point: f32) -> Vec<u8> {
 mod tests {
     use eframe::egui::{Rect, vec2};
 
+    use super::super::zoom::ShownValues;
     use super::*;
     use crate::model::ControlPoint;
 
     #[test]
     fn bars_and_colours_stand_on_the_floor() {
         let area = Rect::from_min_size(pos2(3.0, 400.0), vec2(116.0, 64.0));
-        let axes = Axes::new(area, ((0.0, 10.0), true));
+        let axes = Axes::new(area, ShownValues { low: 0.0, high: 10.0, is_whole: true });
         let bars = Bars { range: (0.0, 10.0), counts: vec![0, 8, 4, 0, 0, 0, 0, 0, 0, 0], log: false };
         // Opaque white from 6 on, nothing before.
         let points = [(0.0, 0.0), (6.0, 0.0), (6.0, 1.0), (10.0, 1.0)];

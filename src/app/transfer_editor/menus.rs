@@ -3,9 +3,10 @@
 use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Sense, Ui, vec2};
 
 use super::super::text::{self, Named};
-use crate::app::shell::commands::Command;
-use crate::app::shell::theme;
-use crate::app::shell::volume_facts::VolumeFacts;
+use super::zoom::ShownValues;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
 /// Size of the strip that shows a colour map.
@@ -126,12 +127,7 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
 }
 
 /// What changes the shape of the curve. `shown`: the values that the plot shows.
-pub(super) fn shapes(
-    ui: &mut Ui,
-    function: &mut TransferFunction,
-    volume: &VolumeFacts,
-    shown: ((f64, f64), bool),
-) {
+pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &VolumeFacts, shown: ShownValues) {
     ui.menu_button(text::transfer::SHAPE, |ui| {
         let clicked = |ui: &mut Ui, named: Named| ui.button(named.name).on_hover_text(named.tip).clicked();
         if clicked(ui, text::transfer::FIT) {
@@ -163,8 +159,8 @@ fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
 }
 
 /// A smooth bump of opacity around the middle of the window that is shown.
-fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
-    let (middle, width) = (f64::midpoint(low, high), (high - low) / 10.0);
+fn add_bump(function: &mut TransferFunction, shown: ShownValues) {
+    let (middle, width) = (f64::midpoint(shown.low, shown.high), (shown.high - shown.low) / 10.0);
     let (first, last) = (middle - 1.25 * width, middle + 1.25 * width);
     cut_out(function, first, last);
     let before = function.clone();
@@ -179,8 +175,8 @@ fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool
 }
 
 /// A band of opacity with sharp ends around the middle of the window that is shown.
-fn add_box(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
-    let (middle, half) = (f64::midpoint(low, high), (high - low) / 20.0);
+fn add_box(function: &mut TransferFunction, shown: ShownValues) {
+    let (middle, half) = (f64::midpoint(shown.low, shown.high), (shown.high - shown.low) / 20.0);
     let first = cut_out(function, middle - half, middle + half);
     let begin = function.points[first];
     let inside = ControlPoint { opacity: begin.opacity.max(0.7), easing: Easing::Step, ..begin };
@@ -210,7 +206,7 @@ mod tests {
             ..TransferFunction::default()
         };
         let before = function.clone();
-        add_box(&mut function, ((0.0, 100.0), true));
+        add_box(&mut function, ShownValues { low: 0.0, high: 100.0, is_whole: true });
         assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
         for value in [45.001, 50.0, 54.999] {
             assert!((function.opacity_at(value) - 0.7).abs() < 1e-9, "{value}");
@@ -228,13 +224,13 @@ mod tests {
             points: vec![point(0.0, 0.0), point(100.0, 0.2)],
             ..TransferFunction::default()
         };
-        add_bump(&mut function, ((0.0, 100.0), true));
+        add_bump(&mut function, ShownValues { low: 0.0, high: 100.0, is_whole: true });
         assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
         assert!((function.opacity_at(50.0) - 0.7).abs() < 1e-9);
         for value in [20.0, 37.0, 63.0, 80.0] {
-            let wanted = 0.002 * value;
+            let expected = 0.002 * value;
             let found = function.opacity_at(value);
-            assert!((found - wanted).abs() < 2e-3, "elsewhere nothing has changed: {found} at {value}");
+            assert!((found - expected).abs() < 2e-3, "elsewhere nothing has changed: {found} at {value}");
         }
         let (left, right) = (function.opacity_at(47.0), function.opacity_at(53.0));
         assert!((left - right).abs() < 0.01 && left > 0.3, "both sides: {left} and {right}");

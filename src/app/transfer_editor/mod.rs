@@ -14,11 +14,11 @@ use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo}
 
 use self::backdrop::{Backdrop, Bars};
 use self::plot::Axes;
-use self::selection::Selection;
+use self::selection::{Selection, Shift};
 use self::zoom::Zoom;
-use super::shell::commands::Command;
-use super::shell::theme;
-use super::shell::volume_facts::VolumeFacts;
+use super::common::commands::Command;
+use super::common::theme;
+use super::common::volume_facts::VolumeFacts;
 use super::text;
 use crate::gpu::WindowPainter;
 use crate::model::{Settings, TransferFunction};
@@ -108,7 +108,7 @@ impl TransferEditor {
         self.add_point(&response, &axes, function);
         self.selection.frame(ui, &response, &axes, function);
         self.select_by_keys(ui, &response, function.points.len());
-        self.edit_points(ui, &axes, function, (name, volume.range), response.contains_pointer());
+        self.edit_points(ui, &axes, function, name, volume.range, response.contains_pointer());
         self.left = self.edited(settings).clone();
         plot::readout(ui, &axes, &response, settings);
         plot::mark(ui, &axes, marked);
@@ -206,7 +206,8 @@ impl TransferEditor {
         ui: &Ui,
         axes: &Axes,
         function: &mut TransferFunction,
-        (name, range): (&str, (f64, f64)),
+        name: &str,
+        range: (f64, f64),
         hovered: bool,
     ) {
         let painter = ui.painter_at(axes.area.expand(theme::POINT_RADIUS + 2.0));
@@ -234,8 +235,8 @@ impl TransferEditor {
             } else if response.clicked() || (response.drag_started() && !self.selection.has(index)) {
                 self.selection.only(index);
             }
-            let wanted = self.selection.wants_focus && self.selection.has(index);
-            if ((response.clicked() || response.drag_started()) && self.selection.has(index)) || wanted {
+            let is_focused = self.selection.wants_focus && self.selection.has(index);
+            if ((response.clicked() || response.drag_started()) && self.selection.has(index)) || is_focused {
                 self.selection.wants_focus = false;
                 response.request_focus();
             } else if response.gained_focus() && !self.selection.has(index) {
@@ -245,7 +246,7 @@ impl TransferEditor {
             if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
                 let (value, opacity) = axes.values(pointer);
                 let point = function.points[index];
-                let by = (value - point.value, opacity - point.opacity);
+                let by = Shift { value: value - point.value, opacity: opacity - point.opacity };
                 self.selection.shift(function, range, by);
             }
             if response.has_focus() {
@@ -291,7 +292,8 @@ impl TransferEditor {
         let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
         if right != 0.0 || up != 0.0 {
             let span = axes.range.1 - axes.range.0;
-            self.selection.shift(function, range, (right * NUDGE[0] * span, up * NUDGE[1]));
+            let by = Shift { value: right * NUDGE[0] * span, opacity: up * NUDGE[1] };
+            self.selection.shift(function, range, by);
         }
     }
 }

@@ -6,6 +6,7 @@ use eframe::egui::{
 
 use super::text;
 use super::theme;
+use super::zoom::ShownValues;
 use crate::data::Histogram;
 use crate::model::{Settings, TransferFunction};
 
@@ -28,9 +29,10 @@ pub(super) struct Axes {
 
 impl Axes {
     /// Axes over an area.
-    pub(super) fn new(area: Rect, (range, is_whole): ((f64, f64), bool)) -> Self {
+    pub(super) fn new(area: Rect, shown: ShownValues) -> Self {
+        let ShownValues { low, high, is_whole } = shown;
         // A volume with a single value still needs an axis.
-        let range = if range.1 > range.0 { range } else { (range.0, range.0 + 1.0) };
+        let range = if high > low { (low, high) } else { (low, low + 1.0) };
         Self { area, range, is_whole, plot: area.shrink2(MARGIN) }
     }
 
@@ -186,13 +188,20 @@ mod tests {
 
     #[test]
     fn places_and_values_agree() {
-        let axes =
-            Axes::new(Rect::from_min_size(pos2(7.0, 400.0), vec2(900.0, 120.0)), ((-1000.0, 3000.0), true));
+        let axes = Axes::new(
+            Rect::from_min_size(pos2(7.0, 400.0), vec2(900.0, 120.0)),
+            ShownValues { low: -1000.0, high: 3000.0, is_whole: true },
+        );
         let at = axes.position(250.0, 0.37);
         let (value, opacity) = axes.values(at);
         assert!((value - 250.0).abs() < 0.5 && (opacity - 0.37).abs() < 1e-3, "{value} {opacity}");
         assert_eq!(axes.values(pos2(-50.0, 9000.0)), (-1000.0, 0.0));
-        assert!(Axes::new(axes.area, ((5.0, 5.0), true)).position(5.0, 0.0).x.is_finite());
+        assert!(
+            Axes::new(axes.area, ShownValues { low: 5.0, high: 5.0, is_whole: true })
+                .position(5.0, 0.0)
+                .x
+                .is_finite()
+        );
     }
 
     #[test]

@@ -18,6 +18,15 @@ pub(super) struct Selection {
     frame: Option<Pos2>,
 }
 
+/// How far points are moved.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shift {
+    /// Along the values.
+    pub value: f64,
+    /// Towards opaque.
+    pub opacity: f64,
+}
+
 impl Selection {
     /// Nothing but one point.
     pub(super) fn only(&mut self, index: usize) {
@@ -91,12 +100,8 @@ impl Selection {
 
     /// Moves its points by as much as none of them passes another that stays, leaves the values, or becomes more
     /// than opaque or less than clear.
-    pub(super) fn shift(
-        &mut self,
-        function: &mut TransferFunction,
-        range: (f64, f64),
-        (value, opacity): (f64, f64),
-    ) {
+    pub(super) fn shift(&mut self, function: &mut TransferFunction, range: (f64, f64), by: Shift) {
+        let Shift { value, opacity } = by;
         let selected = self.within(function.points.len());
         let points = &function.points;
         let (mut left, mut right, mut down, mut up) =
@@ -143,23 +148,23 @@ mod tests {
         }
     }
 
-    fn moved(selected: &[usize], by: (f64, f64)) -> Vec<(f64, f64)> {
+    fn moved(selected: &[usize], value: f64, opacity: f64) -> Vec<(f64, f64)> {
         let (mut function, mut selection) = (function(), Selection::default());
         for &index in selected {
             selection.toggle(index);
         }
-        selection.shift(&mut function, (0.0, 100.0), by);
+        selection.shift(&mut function, (0.0, 100.0), Shift { value, opacity });
         function.points.iter().map(|point| (point.value, (point.opacity * 1e6).round() / 1e6)).collect()
     }
 
     #[test]
     fn points_move_together_and_pass_none() {
-        assert_eq!(moved(&[1, 2], (10.0, 0.1)), [(0.0, 0.0), (30.0, 0.4), (50.0, 0.9), (90.0, 1.0)]);
-        assert_eq!(moved(&[1, 2], (70.0, 0.9))[1..3], [(70.0, 0.5), (90.0, 1.0)], "up to what stays");
-        assert_eq!(moved(&[1], (-50.0, -0.9))[1], (0.0, 0.0));
-        assert_eq!(moved(&[3], (50.0, 0.0))[3], (100.0, 1.0), "up to the values' end");
-        assert_eq!(moved(&[], (5.0, 0.5)), moved(&[1], (0.0, 0.0)));
-        assert_eq!(moved(&[7], (5.0, 0.5)), moved(&[], (0.0, 0.0)), "points that are gone");
+        assert_eq!(moved(&[1, 2], 10.0, 0.1), [(0.0, 0.0), (30.0, 0.4), (50.0, 0.9), (90.0, 1.0)]);
+        assert_eq!(moved(&[1, 2], 70.0, 0.9)[1..3], [(70.0, 0.5), (90.0, 1.0)], "up to what stays");
+        assert_eq!(moved(&[1], -50.0, -0.9)[1], (0.0, 0.0));
+        assert_eq!(moved(&[3], 50.0, 0.0)[3], (100.0, 1.0), "up to the values' end");
+        assert_eq!(moved(&[], 5.0, 0.5), moved(&[1], 0.0, 0.0));
+        assert_eq!(moved(&[7], 5.0, 0.5), moved(&[], 0.0, 0.0), "points that are gone");
     }
 
     #[test]
@@ -171,7 +176,7 @@ mod tests {
             let low = 12.3 + f64::from(i) * 0.001_7;
             function.points[0].value = low;
             function.points[1].value = 20.0 + f64::from(i) * 0.009;
-            selection.shift(&mut function, (0.0, 100.0), (-1e3, 0.0));
+            selection.shift(&mut function, (0.0, 100.0), Shift { value: -1e3, opacity: 0.0 });
             let found = function.points[1].value;
             assert!(found >= low && found - low < 1e-9, "{found} at {low}");
         }

@@ -16,19 +16,30 @@ pub(super) struct Zoom {
     part: Option<(f64, f64)>,
 }
 
+/// The values that the plot shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ShownValues {
+    /// The smallest.
+    pub low: f64,
+    /// The largest.
+    pub high: f64,
+    /// Whether these are all of the volume's values.
+    pub is_whole: bool,
+}
+
 impl Zoom {
-    /// The values that are shown of a range, and whether these are all.
-    pub(super) fn shown(&self, range: (f64, f64)) -> ((f64, f64), bool) {
+    /// The values that are shown of a range.
+    pub(super) fn shown(&self, range: (f64, f64)) -> ShownValues {
         // Another volume has other values.
         match self.part.filter(|part| part.0 >= range.0 && part.1 <= range.1) {
-            Some(part) => (part, false),
-            None => (range, true),
+            Some((low, high)) => ShownValues { low, high, is_whole: false },
+            None => ShownValues { low: range.0, high: range.1, is_whole: true },
         }
     }
 
     /// How much wider the plot of all values would be.
     pub(super) fn factor(&self, range: (f64, f64)) -> f32 {
-        let ((low, high), _) = self.shown(range);
+        let ShownValues { low, high, .. } = self.shown(range);
         ((range.1 - range.0) / (high - low).max(1e-300)).clamp(1.0, 1.0 / LEAST_SHARE) as f32
     }
 
@@ -56,7 +67,7 @@ impl Zoom {
 
     /// Shows a share of what is shown now, with the value at `share` where it is.
     fn by(&mut self, range: (f64, f64), share: f64, factor: f64) {
-        let ((low, high), _) = self.shown(range);
+        let ShownValues { low, high, .. } = self.shown(range);
         let all = range.1 - range.0;
         let width = ((high - low) * factor).clamp(LEAST_SHARE * all, all);
         let low = low + share * (high - low - width);
@@ -65,7 +76,7 @@ impl Zoom {
 
     /// Moves by a share of what is shown.
     fn along(&mut self, range: (f64, f64), share: f64) {
-        let ((low, high), is_whole) = self.shown(range);
+        let ShownValues { low, high, is_whole } = self.shown(range);
         if !is_whole {
             self.show(range, low + share * (high - low), high - low);
         }
@@ -86,11 +97,12 @@ mod tests {
     fn the_value_under_the_pointer_stays() {
         let (mut zoom, range) = (Zoom::default(), (-1000.0, 3000.0));
         zoom.by(range, 0.25, 0.5);
-        let ((low, high), is_whole) = zoom.shown(range);
+        let ShownValues { low, high, is_whole } = zoom.shown(range);
         assert!(!is_whole && (low + 0.25 * (high - low) - 0.0).abs() < 1e-9 && high - low == 2000.0);
         assert_eq!(zoom.factor(range), 2.0);
         zoom.along(range, -9.0);
-        assert_eq!(zoom.shown(range).0, (-1000.0, 1000.0), "no further than the values");
+        let ends = ShownValues { low: -1000.0, high: 1000.0, is_whole: false };
+        assert_eq!(zoom.shown(range), ends, "no further than the values");
         for _ in 0..60 {
             zoom.by(range, 0.5, 0.7);
         }
@@ -101,6 +113,6 @@ mod tests {
         assert_eq!(zoom, Zoom::default());
         // Another volume.
         zoom.by(range, 0.0, 0.1);
-        assert!(zoom.shown((0.0, 1.0)).1);
+        assert!(zoom.shown((0.0, 1.0)).is_whole);
     }
 }

@@ -3,9 +3,10 @@
 use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Stroke, Ui};
 use eframe::egui::{WidgetInfo, pos2, vec2};
 
-use super::{Pictures, paint_callback as plate};
-use crate::app::shell::theme;
+use super::{Pictures, paint_callback};
+use crate::app::common::theme;
 use crate::app::text;
+use crate::app::worker::request::Looks;
 use crate::gpu::Distance;
 use crate::model::{Settings, Variant};
 
@@ -19,9 +20,9 @@ const HANDLE: f32 = 9.0;
 pub(crate) struct Compare {
     /// Whether two looks are shown.
     pub on: bool,
-    /// Left of the divider …
+    /// The look left of the divider.
     pub left: Variant,
-    /// … and right of it.
+    /// The look right of the divider.
     pub right: Variant,
     /// Show what lies between them instead.
     pub difference: bool,
@@ -42,22 +43,26 @@ impl Compare {
     }
 
     /// What is to be rendered: the look, or the left and the right one.
-    pub(crate) fn looks(&self, settings: &Settings) -> (Settings, Option<Settings>) {
-        // Kept views are no part of a picture.
+    pub(crate) fn looks(&self, settings: &Settings) -> Looks {
+        // Saved views are no part of a picture.
         let settings = Settings { views: std::collections::BTreeMap::new(), ..settings.clone() };
-        if self.on { (self.left.of(&settings), Some(self.right.of(&settings))) } else { (settings, None) }
+        if self.on {
+            Looks { left: self.left.of(&settings), right: Some(self.right.of(&settings)) }
+        } else {
+            Looks { left: settings, right: None }
+        }
     }
 
     /// The picture, or two of them, and the part of the rectangle in which each is seen.
     pub(crate) fn shapes(&self, rect: Rect, pictures: &Pictures) -> [(Rect, Shape); 2] {
         let nothing = || (rect, Shape::Noop);
-        let opaque = |picture| plate::picture(rect, picture, u8::MAX);
+        let opaque = |picture| paint_callback::picture(rect, picture, u8::MAX);
         let Some(left) = &pictures.left else {
-            return [(rect, Shape::rect_filled(rect, 0.0, theme::STAGE)), nothing()];
+            return [(rect, Shape::rect_filled(rect, 0.0, theme::EMPTY_CANVAS)), nothing()];
         };
         let Some(other) = pictures.other.as_ref().filter(|_| self.on) else {
             let fading = pictures.fading.as_ref();
-            let faded = fading.map(|(before, left)| (rect, plate::picture(rect, before, *left)));
+            let faded = fading.map(|(before, left)| (rect, paint_callback::picture(rect, before, *left)));
             return [(rect, opaque(left)), faded.unwrap_or_else(nothing)];
         };
         if self.difference {
@@ -121,7 +126,7 @@ impl Compare {
     }
 }
 
-/// A few words on a dark ground.
+/// A few words on a dark background.
 fn chip(ui: &Ui, at: Pos2, align: Align2, text: &str) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter();

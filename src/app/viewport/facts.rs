@@ -1,8 +1,8 @@
 //! What the rest of the window may know of the renderer.
 
 use crate::app::viewport::Viewport;
+use crate::app::worker::request::Looks;
 use crate::gpu::{LightFigures, Stage};
-use crate::model::Settings;
 
 /// What is going on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,13 +48,13 @@ pub(in crate::app) struct Facts {
     pub gpu_mebibytes: f64,
     /// The light volume of each light of the picture, if it has one.
     pub light_volumes: Vec<Option<LightFigures>>,
-    /// What is going on.
+    /// What the renderer does now.
     pub doing: Doing,
 }
 
 impl Viewport {
     /// Figures about the renderer.
-    pub(in crate::app) fn facts(&self, looks: &(Settings, Option<Settings>)) -> Facts {
+    pub(in crate::app) fn facts(&self, looks: &Looks) -> Facts {
         let info = &self.context.info;
         let figures = self.thread.figures();
         Facts {
@@ -79,14 +79,14 @@ impl Viewport {
         self.thread.figures().light_rebuilds
     }
 
-    fn doing(&self, looks: &(Settings, Option<Settings>), refining: Option<(Stage, f32)>) -> Doing {
+    fn doing(&self, looks: &Looks, refining: Option<(Stage, f32)>) -> Doing {
         if self.lost {
             Doing::Lost
         } else if self.dataset.is_none() {
             Doing::Nothing
         } else if self.is_idle(looks) {
             Doing::FullQuality
-        } else if self.failed.is_some() && self.failed == self.wanted {
+        } else if self.failed.is_some() && self.failed == self.frame_request {
             Doing::Failed
         } else {
             refining.map_or(Doing::Preview, |(stage, share)| Doing::Refining(stage, share))

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align2, Color32, Id, Rect, Response, Sense, Ui, WidgetInfo, vec2};
 
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 
 /// Whether they are shown.

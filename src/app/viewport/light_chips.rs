@@ -3,9 +3,9 @@
 use eframe::egui::{self, Rect, Sense, Ui, UiBuilder, vec2};
 
 use super::Facts;
-use crate::app::shell::commands::Command;
-use crate::app::shell::light_keys::solo;
-use crate::app::shell::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::light_keys::solo;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Light, MAX_LIGHTS, Settings};
 
@@ -51,7 +51,7 @@ pub(crate) fn show(
         }
         if settings.lights.len() < MAX_LIGHTS {
             let plus = egui::RichText::new(text::lights::ADD_CHIP.name).color(theme::EYE_CURVE);
-            let add = ui.add(egui::Button::new(plus).small().fill(ground(false)));
+            let add = ui.add(egui::Button::new(plus).small().fill(fill(false)));
             if add.on_hover_text(text::lights::ADD_CHIP.tip).clicked() {
                 commands.push(Command::AddLight);
             }
@@ -59,7 +59,7 @@ pub(crate) fn show(
     });
 }
 
-fn ground(selected: bool) -> egui::Color32 {
+fn fill(selected: bool) -> egui::Color32 {
     theme::OUTLINE.gamma_multiply(if selected { 0.9 } else { 0.6 })
 }
 
@@ -78,7 +78,7 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     let spoken = text::lights::chip(name, light.on);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, selected, &spoken));
     let painter = ui.painter();
-    painter.rect_filled(rect, 10.0, ground(selected || response.hovered()));
+    painter.rect_filled(rect, 10.0, fill(selected || response.hovered()));
     if selected || response.has_focus() {
         let stroke = egui::Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.8));
         painter.rect_stroke(rect, 10.0, stroke, egui::StrokeKind::Inside);

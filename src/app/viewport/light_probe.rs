@@ -3,7 +3,7 @@
 use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
 
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::data::Volume;
 use crate::model::{Camera, Light, LightKind, Settings};

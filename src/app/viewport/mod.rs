@@ -1,6 +1,6 @@
 //! The picture in the middle of the window: previews while something moves, full quality at rest.
 //!
-//! The window's thread only says what is wanted and takes finished pictures; a thread of its own
+//! The window's thread only requests and takes finished pictures; a thread of its own
 //! renders them, on a device of its own. Whatever the GPU does, the window stays alive: long work
 //! never stands in the queue of its frames, and a driver that loses the one device keeps the other.
 
@@ -22,21 +22,21 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, ColorImage};
 
 pub(super) use self::facts::{Doing, Facts};
+use super::worker::mailbox::Frame;
 use super::worker::quality::QualityLevel;
-use super::worker::render_thread::{Frame, RenderThread};
-use super::worker::request::{FrameRequest, Scene};
+use super::worker::render_thread::RenderThread;
+use super::worker::request::{FrameRequest, Looks, Scene};
 pub(super) use super::worker::response::Response;
 use super::worker::response::Waiting;
 use crate::data::Dataset;
 pub(super) use crate::gpu::LightFigures;
 use crate::gpu::{Context, Distance, GpuError, Renderer, WindowPainter, WindowPicture};
-use crate::model::Settings;
 
 /// How long a frame of the window waits for a preview: what is left of 1/60 s.
-const PATIENCE: Duration = Duration::from_millis(12);
-/// The same where the window is drawn by the processors that make the preview, which would only
-/// delay it: what is left of the 50 ms that a window may be without answer.
-const SOFTWARE_PATIENCE: Duration = Duration::from_millis(40);
+const PREVIEW_WAIT: Duration = Duration::from_millis(12);
+/// How long a frame of the window waits for a preview where the window is drawn by the processors that make the
+/// preview, which would only delay it: what is left of the 50 ms that a window may be without answer.
+const SOFTWARE_PREVIEW_WAIT: Duration = Duration::from_millis(40);
 
 /// How long a preview takes to fade into the picture at full quality.
 const FADE_S: f64 = 0.12;
@@ -72,8 +72,8 @@ pub(super) struct Viewport {
     /// Draws pictures into the window.
     window: WindowPainter,
     thread: RenderThread,
-    /// What the render thread was last told.
-    wanted: Option<FrameRequest>,
+    /// What the render thread was asked for last.
+    frame_request: Option<FrameRequest>,
     waiting: Waiting<FrameRequest>,
     /// The last picture that was waited for was not there in time.
     waited_in_vain: bool,
@@ -87,7 +87,7 @@ pub(super) struct Viewport {
     /// How far the two are apart.
     differs: Option<Distance>,
     shown: Option<(FrameRequest, QualityLevel)>,
-    /// What could not be rendered; the render thread does not try it again.
+    /// The request that could not be rendered; the render thread does not try it again.
     failed: Option<FrameRequest>,
     lost: bool,
 }
@@ -102,7 +102,7 @@ impl Viewport {
             context,
             window,
             thread,
-            wanted: None,
+            frame_request: None,
             waiting: Waiting::default(),
             waited_in_vain: false,
             generation: 0,
@@ -122,7 +122,7 @@ impl Viewport {
         self.generation += 1;
         self.dataset = Some(dataset.clone());
         self.thread.set_scene(Scene { renderer, dataset });
-        (self.wanted, self.shown, self.failed, self.waited_in_vain) = (None, None, None, false);
+        (self.frame_request, self.shown, self.failed, self.waited_in_vain) = (None, None, None, false);
         self.waiting.clear();
     }
 
@@ -162,54 +162,54 @@ impl Viewport {
     }
 
     /// Whether the full-quality picture of these settings is on screen, and that of those they are compared with.
-    pub(super) fn is_idle(&self, looks: &(Settings, Option<Settings>)) -> bool {
+    pub(super) fn is_idle(&self, looks: &Looks) -> bool {
         let (Some(dataset), Some((shown, quality))) = (&self.dataset, &self.shown) else { return false };
         let request = FrameRequest::new(self.generation, dataset, looks.clone(), shown.size);
         *quality == QualityLevel::FULL
             && self.fading.is_none()
             && *shown == request
-            && self.wanted.as_ref().is_some_and(|wanted| wanted == shown)
+            && self.frame_request.as_ref().is_some_and(|requested| requested == shown)
     }
 
-    /// Tells the render thread what is wanted and takes what it has finished. To be called once per frame
+    /// Asks the render thread for looks and takes what it has finished. To be called once per frame
     /// before the picture is drawn. While something moves it waits a little for a preview: one that
     /// is quick enough is seen in the frame of the movement itself.
     pub(super) fn advance(
         &mut self,
-        looks: (Settings, Option<Settings>),
+        looks: Looks,
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<(), GpuError> {
         let Some(dataset) = self.dataset.as_ref().filter(|_| !self.lost) else { return Ok(()) };
-        let wanted = FrameRequest::new(self.generation, dataset, looks, size);
+        let frame_request = FrameRequest::new(self.generation, dataset, looks, size);
         self.now_s = ctx.input(|input| input.time);
         self.fading = self.fading.take().filter(|(_, since_s)| self.now_s - since_s < FADE_S);
         if self.fading.is_some() {
             ctx.request_repaint();
         }
         self.thread.set_frame_ms(self.frame_ms);
-        let mut patience = Duration::ZERO;
-        if self.wanted.as_ref() != Some(&wanted) {
-            patience = if self.context.is_software() { SOFTWARE_PATIENCE } else { PATIENCE };
-            self.thread.set_wanted(wanted.clone());
-            if self.wanted.is_some() {
-                self.waiting.ask(wanted.clone(), Instant::now());
+        let mut longest_wait = Duration::ZERO;
+        if self.frame_request.as_ref() != Some(&frame_request) {
+            longest_wait = if self.context.is_software() { SOFTWARE_PREVIEW_WAIT } else { PREVIEW_WAIT };
+            self.thread.set_request(frame_request.clone());
+            if self.frame_request.is_some() {
+                self.waiting.ask(frame_request.clone(), Instant::now());
             }
-            self.wanted = Some(wanted.clone());
+            self.frame_request = Some(frame_request.clone());
         }
         // What was too late for the last frame has been waited for long enough: it comes before what is newer.
-        let newest = (!self.waited_in_vain).then_some(&wanted);
-        let frame = self.thread.take_frame(newest, patience);
-        if patience > Duration::ZERO {
-            let is_late = |frame: &Frame| newest.is_some_and(|newest| frame.wanted != *newest);
+        let newest = (!self.waited_in_vain).then_some(&frame_request);
+        let frame = self.thread.take_frame(newest, longest_wait);
+        if longest_wait > Duration::ZERO {
+            let is_late = |frame: &Frame| newest.is_some_and(|newest| frame.frame_request != *newest);
             self.waited_in_vain = frame.as_ref().is_none_or(is_late);
         }
-        if let Some(frame) = frame.filter(|frame| frame.wanted.generation == self.generation) {
+        if let Some(frame) = frame.filter(|frame| frame.frame_request.generation == self.generation) {
             self.show(frame, ctx);
         }
         if let Some(err) = self.thread.take_error() {
             self.lost = matches!(err, GpuError::Lost(_));
-            self.failed.clone_from(&self.wanted);
+            self.failed.clone_from(&self.frame_request);
             return Err(err);
         }
         Ok(())
@@ -217,12 +217,12 @@ impl Viewport {
 
     /// Puts a finished picture on screen.
     fn show(&mut self, frame: Frame, ctx: &egui::Context) {
-        let Frame { wanted, quality, image, other } = frame;
+        let Frame { frame_request, quality, image, other } = frame;
         // Pixel for pixel where there are enough of them.
-        let exact = image.size == wanted.size.map(|n| n as usize);
+        let exact = image.size == frame_request.size.map(|n| n as usize);
         // A preview of the same fades away; anything else is replaced at once.
         let is_same =
-            self.shown.as_ref().is_some_and(|(shown, before)| *shown == wanted && *before != quality);
+            self.shown.as_ref().is_some_and(|(shown, before)| *shown == frame_request && *before != quality);
         self.fading =
             self.placed[0].take_if(|_| is_same && other.is_none()).map(|picture| (picture, self.now_s));
         if self.fading.is_some() {
@@ -237,8 +237,8 @@ impl Viewport {
             }
             None => self.differs = None,
         }
-        self.waiting.answer(&wanted, Instant::now());
-        self.shown = Some((wanted, quality));
+        self.waiting.answer(&frame_request, Instant::now());
+        self.shown = Some((frame_request, quality));
     }
 
     fn place(&mut self, at: usize, image: &ColorImage, is_exact: bool) {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Key, PointerButton, Response};
 
-use crate::app::shell::light_keys;
+use crate::app::common::light_keys;
 use crate::model::Settings;
 
 /// Degrees of orbit per point of drag.

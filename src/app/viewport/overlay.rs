@@ -8,7 +8,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::view_projection::ViewProjection;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};
@@ -18,10 +18,10 @@ const CUBE: f32 = 44.0;
 /// The scale bar is at most this share of the picture's width.
 const LONGEST_BAR: f64 = 0.25;
 
-/// Which marks are shown.
+/// Whether the overlay is shown.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Overlay {
-    /// Any of them.
+    /// All of it is shown, or nothing.
     pub on: bool,
 }
 
@@ -32,13 +32,14 @@ impl Default for Overlay {
 }
 
 impl Overlay {
-    /// Paints them. The side of the cube that was clicked, if one was.
+    /// Paints scale bar and cube. The side of the cube that was clicked, if one was.
     pub(crate) fn show(
         self,
         ui: &Ui,
         picture: Rect,
         camera: &Camera,
-        (scene, is_anatomical): (&SceneSpace, bool),
+        scene: &SceneSpace,
+        is_anatomical: bool,
     ) -> Option<StandardView> {
         if !self.on || picture.width() < 4.0 * CUBE || picture.height() < 4.0 * CUBE {
             return None;
@@ -54,12 +55,12 @@ impl Overlay {
             return;
         }
         let painter = ui.painter_at(picture);
-        let sight = ViewProjection { camera: camera.clone(), picture };
+        let view_projection = ViewProjection { camera: camera.clone(), picture };
         let dims = DVec3::from(scene.dims.map(|n| n as f64));
         let corner = |at: usize| {
             let side = |axis: usize| if at >> axis & 1 == 0 { -0.5 } else { dims[axis] - 0.5 };
             let point = scene.scene_from_index.transform_point3(DVec3::new(side(0), side(1), side(2)));
-            sight.point(point)
+            view_projection.point(point)
         };
         let stroke = Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.45 * strength));
         for from in 0..8_usize {
@@ -85,15 +86,15 @@ fn bar_length_mm(longest_mm: f64) -> Option<(f64, String)> {
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= longest_mm).unwrap_or(1.0);
     let length = step * power;
     let (value, unit) = match length {
-        length if length >= 1e6 => (length * 1e-6, text::marks::KILOMETRES),
-        length if length >= 1e3 => (length * 1e-3, text::marks::METRES),
-        length if length >= 10.0 => (length / 10.0, text::marks::CENTIMETRES),
-        length if length >= 1.0 => (length, text::marks::MILLIMETRES),
-        length if length >= 1e-3 => (length * 1e3, text::marks::MICROMETRES),
-        length => (length * 1e6, text::marks::NANOMETRES),
+        length if length >= 1e6 => (length * 1e-6, text::overlay::KILOMETRES),
+        length if length >= 1e3 => (length * 1e-3, text::overlay::METRES),
+        length if length >= 10.0 => (length / 10.0, text::overlay::CENTIMETRES),
+        length if length >= 1.0 => (length, text::overlay::MILLIMETRES),
+        length if length >= 1e-3 => (length * 1e3, text::overlay::MICROMETRES),
+        length => (length * 1e6, text::overlay::NANOMETRES),
     };
     // At most one digit that is not zero: no rounding shows.
-    Some((length, text::marks::length((value * 1e3).round() / 1e3, unit)))
+    Some((length, text::overlay::length((value * 1e3).round() / 1e3, unit)))
 }
 
 /// A bar at the bottom left whose length holds at the middle of the view.
@@ -189,18 +190,18 @@ fn cube(
 
 /// The sides of the cube, and what is written on them: signs, or for bodies what lies there.
 const SIDES: [(DVec3, [&str; 2]); 6] = [
-    (DVec3::X, text::marks::RIGHT),
-    (DVec3::NEG_X, text::marks::LEFT),
-    (DVec3::Y, text::marks::ANTERIOR),
-    (DVec3::NEG_Y, text::marks::POSTERIOR),
-    (DVec3::Z, text::marks::SUPERIOR),
-    (DVec3::NEG_Z, text::marks::INFERIOR),
+    (DVec3::X, text::overlay::RIGHT),
+    (DVec3::NEG_X, text::overlay::LEFT),
+    (DVec3::Y, text::overlay::ANTERIOR),
+    (DVec3::NEG_Y, text::overlay::POSTERIOR),
+    (DVec3::Z, text::overlay::SUPERIOR),
+    (DVec3::NEG_Z, text::overlay::INFERIOR),
 ];
 
 /// An opaque colour: one over another.
-fn over(ground: Color32, ink: Color32) -> Color32 {
+fn over(below: Color32, ink: Color32) -> Color32 {
     let blend = |a: u8, b: u8| (f32::from(a) * (1.0 - f32::from(ink.a()) / 255.0)).round() as u8 + b;
-    let [r, g, b, _] = ground.to_array();
+    let [r, g, b, _] = below.to_array();
     Color32::from_rgb(
         blend(r, 0).saturating_add(ink.r()),
         blend(g, 0).saturating_add(ink.g()),

@@ -38,10 +38,10 @@ impl ViewProjection {
     pub(crate) fn along(&self, at: Pos2, from: DVec3, along: DVec3) -> Option<f64> {
         let (origin, direction) = self.ray(at);
         let between = from - origin;
-        // The line's own part across the line of sight: with it goes how well the place can be told.
+        // The line's own part across the line of sight: with its length goes how well the place is known.
         let across = along - direction * along.dot(direction);
-        let told = across.dot(along);
-        (told > 1e-4 * along.length_squared()).then(|| -across.dot(between) / told)
+        let sharpness = across.dot(along);
+        (sharpness > 1e-4 * along.length_squared()).then(|| -across.dot(between) / sharpness)
     }
 }
 
@@ -55,15 +55,16 @@ mod tests {
     fn lines_are_followed_under_the_pointer() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
             let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(640.0, 480.0));
-            let sight = ViewProjection { camera: Camera { projection, ..Camera::default() }, picture };
+            let view_projection =
+                ViewProjection { camera: Camera { projection, ..Camera::default() }, picture };
             let (from, along) = (DVec3::new(0.2, -0.3, 0.1), DVec3::new(0.0, 0.4, 0.5));
             for share in [-0.7, 0.0, 1.2] {
-                let at = sight.point(from + along * share).unwrap();
-                let found = sight.along(at, from, along).unwrap();
-                assert!((found - share).abs() < 1e-4, "{projection:?}: {found}, wanted {share}");
+                let at = view_projection.point(from + along * share).unwrap();
+                let found = view_projection.along(at, from, along).unwrap();
+                assert!((found - share).abs() < 1e-4, "{projection:?}: {found}, expected {share}");
             }
-            let (_, direction) = sight.ray(pos2(330.0, 260.0));
-            assert_eq!(sight.along(pos2(330.0, 260.0), DVec3::ZERO, direction), None);
+            let (_, direction) = view_projection.ray(pos2(330.0, 260.0));
+            assert_eq!(view_projection.along(pos2(330.0, 260.0), DVec3::ZERO, direction), None);
         }
     }
 }

@@ -5,8 +5,8 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
 use glam::DVec3;
 
 use super::export::{Subject, Worker};
-use crate::app::shell::commands::Command;
-use crate::app::shell::theme;
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Shot};
@@ -15,9 +15,9 @@ use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Sh
 const SIZE: [u32; 2] = [176, 132];
 /// Pictures side by side.
 const COLUMNS: usize = 4;
-/// Places for the selected light: hours of a clock face …
+/// Places for the selected light, as hours of a clock face around the line of sight.
 const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
-/// … so far from the line of sight.
+/// Degrees from the line of sight to those places.
 const ASIDE_DEG: f64 = 55.0;
 
 /// What is tried.
@@ -42,7 +42,7 @@ struct Candidate {
 /// A look, and what it looks like.
 type Tried = (Candidate, ColorImage);
 
-/// The same for the window.
+/// A candidate and its small picture, on the GPU of the window.
 struct Print {
     name: String,
     command: Command,
@@ -97,7 +97,7 @@ pub(crate) struct ContactSheet {
     /// What it shows.
     sheet: Sheet,
     /// Whether pictures are to be made as soon as that is possible.
-    pub wanted: bool,
+    pub is_due: bool,
     work: Option<Work<Result<Vec<Tried>, String>>>,
     prints: Vec<Print>,
 }
@@ -147,12 +147,12 @@ impl ContactSheet {
         if self.sheet != sheet {
             self.prints.clear();
         }
-        (self.open, self.wanted, self.sheet) = (true, true, sheet);
+        (self.open, self.is_due, self.sheet) = (true, true, sheet);
     }
 
     /// Starts to make the pictures.
     pub(crate) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
-        self.wanted = false;
+        self.is_due = false;
         let sheet = self.sheet;
         let task = move || {
             let mut worker = Worker::new(&subject)?;
@@ -189,11 +189,11 @@ impl ContactSheet {
             egui::Window::new(self.sheet.title()).open(&mut open).resizable(false).collapsible(false);
         window.default_pos([60.0, 60.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
-                if self.work.is_some() || self.wanted {
+                if self.work.is_some() || self.is_due {
                     ui.spinner();
                     ui.label(text::contact_sheet::TRYING);
                 } else if ui.button(text::contact_sheet::AGAIN).clicked() {
-                    self.wanted = true;
+                    self.is_due = true;
                 }
                 ui.add_space(theme::HANDLE_RADIUS);
                 ui.weak(text::contact_sheet::QUALITY);

@@ -20,6 +20,17 @@ const EDGE: f32 = 360.0;
 /// What a worker brings back: of which light volume, and its values.
 type Filled = (LightKey, Attenuation);
 
+/// A slice that is shown.
+#[derive(Debug, Clone, PartialEq)]
+struct Drawn {
+    /// The light volume.
+    key: LightKey,
+    /// The axis across which it is cut.
+    axis: usize,
+    /// The voxel along that axis.
+    at: usize,
+}
+
 /// The window.
 #[derive(Default)]
 pub(crate) struct LightSlice {
@@ -34,8 +45,8 @@ pub(crate) struct LightSlice {
     /// The key that could not be filled: it is not tried again.
     failed: Option<LightKey>,
     texture: Option<TextureHandle>,
-    /// What the texture shows: which light volume, axis and slice.
-    drawn: Option<(LightKey, usize, usize)>,
+    /// What the texture shows.
+    drawn: Option<Drawn>,
 }
 
 impl std::fmt::Debug for LightSlice {
@@ -52,7 +63,7 @@ pub(crate) struct Scene<'a> {
     pub dataset: Option<Dataset>,
     /// A device beside which the worker may open its own.
     pub context: &'a Context,
-    /// Nothing moves: a light volume that is filled now will be wanted.
+    /// Nothing moves: a light volume that is filled now will be used.
     pub at_rest: bool,
 }
 
@@ -93,7 +104,7 @@ impl LightSlice {
             if ui.name_inputs(text::light_volume::SLICE, |ui| ui.add(slider)).changed() {
                 self.at[self.axis] = Some(at);
             }
-            self.picture(ui, &attenuation, (key, self.axis, at));
+            self.picture(ui, &attenuation, Drawn { key, axis: self.axis, at });
             scale(ui);
             let button = text::light_volume::EXPORT;
             export = ui.button(button.name).on_hover_text(button.tip).clicked();
@@ -118,7 +129,7 @@ impl LightSlice {
         written.map_err(|err| err.to_string())
     }
 
-    /// Takes in what the worker has filled, and sends it again when something else is wanted.
+    /// Takes in what the worker has filled, and sends it again when something else is to be shown.
     fn collect(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<(), String> {
         if let Some(result) = self.work.as_ref().and_then(Work::take) {
             self.work = None;
@@ -167,9 +178,9 @@ impl LightSlice {
         Ok(())
     }
 
-    fn picture(&mut self, ui: &mut egui::Ui, attenuation: &Attenuation, what: (LightKey, usize, usize)) {
+    fn picture(&mut self, ui: &mut egui::Ui, attenuation: &Attenuation, what: Drawn) {
         if self.drawn.as_ref() != Some(&what) {
-            let Some(slice) = attenuation.slice(what.1, what.2) else { return };
+            let Some(slice) = attenuation.slice(what.axis, what.at) else { return };
             let image = ColorImage::from_rgb(slice.size, &slice.colors());
             match &mut self.texture {
                 Some(texture) => texture.set(image, TextureOptions::NEAREST),

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align2, Key, Modifiers, TextEdit};
 
-use crate::app::shell::commands::{self, Command};
+use crate::app::common::commands::{self, Command};
 use crate::app::text;
 
 /// Lines that are shown at once.

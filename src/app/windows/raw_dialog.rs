@@ -18,7 +18,7 @@ pub(crate) struct Described {
     pub path: PathBuf,
     /// How it is stored.
     pub layout: RawLayout,
-    /// Where to write a header that says so, if that is wanted.
+    /// Where to write a header that says so, if the user asks for it.
     pub header: Option<PathBuf>,
     /// Whether the file is compressed.
     pub is_gzip: bool,

@@ -61,6 +61,17 @@ struct Running {
     work: Work<Outcome>,
 }
 
+/// How far a volume is that is being opened.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LoadProgress<'a> {
+    /// What is being opened.
+    pub source: &'a str,
+    /// What is being done, in words.
+    pub phase: &'static str,
+    /// The share of the phase that is done, where it is known.
+    pub fraction: Option<f32>,
+}
+
 /// Opens one volume at a time; a new request replaces the one before.
 #[derive(Debug)]
 pub(crate) struct Loader {
@@ -110,7 +121,7 @@ impl Drop for WarmUp {
     }
 }
 
-/// What the user is told, by phase.
+/// The words for each phase, in the status bar.
 const PHASES: [&str; 5] = [
     text::opening::READING,
     text::opening::FITTING,
@@ -135,12 +146,12 @@ impl Loader {
         Ok(Self { context, shaders, options, running: None, warm_up })
     }
 
-    /// Makes pipelines that may be wanted later, once; to be called when nothing else is to be done.
+    /// Makes pipelines that may be needed later, once; to be called when nothing else is to be done.
     pub(crate) fn prepare(&mut self) {
         if self.warm_up.threads.len() < 2
             && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_rest)
         {
-            log::warn!("pipelines will be made when they are wanted: {err}");
+            log::warn!("pipelines will be made when they are needed: {err}");
         }
     }
 
@@ -150,14 +161,21 @@ impl Loader {
         let control = Arc::new(LoadControl::new());
         let phase = Arc::new(AtomicU8::new(0));
         let task = {
-            let (context, shaders) = (self.context.clone(), self.shaders.clone());
             let mut options = self.options.clone();
             options.raw = reading.raw.unwrap_or(options.raw);
             let reduce = reading.reduce.unwrap_or(options.reduce);
             options.reduce = reduce;
             let reading = Reading { reduce: Some(reduce), ..reading };
-            let (control, phase, source) = (Arc::clone(&control), Arc::clone(&phase), source.to_owned());
-            move || open((source, reading), (&context, shaders), &options, &control, &phase)
+            let opening = Opening {
+                source: source.to_owned(),
+                reading,
+                options,
+                context: self.context.clone(),
+                shaders: self.shaders.clone(),
+                control: Arc::clone(&control),
+                phase: Arc::clone(&phase),
+            };
+            move || open(opening)
         };
         let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
         self.running = Some(Running { source: source.to_owned(), control, phase, work });
@@ -182,12 +200,16 @@ impl Loader {
         Some(outcome)
     }
 
-    /// What is being opened, what is being done, and how much of it is done where that is known.
-    pub(crate) fn progress(&self) -> Option<(&str, &'static str, Option<f32>)> {
+    /// How far the volume is that is being opened.
+    pub(crate) fn progress(&self) -> Option<LoadProgress<'_>> {
         let running = self.running.as_ref()?;
         let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
         let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
-        Some((&running.source, PHASES[phase], fraction.map(|fraction| fraction as f32)))
+        Some(LoadProgress {
+            source: &running.source,
+            phase: PHASES[phase],
+            fraction: fraction.map(|fraction| fraction as f32),
+        })
     }
 }
 
@@ -204,14 +226,21 @@ fn not_described(source: &str, err: &LoadError) -> Option<Outcome> {
     is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
 }
 
-fn open(
-    (source, reading): (String, Reading),
-    (context, shaders): (&Context, ShaderLibrary),
-    options: &LoadOptions,
-    control: &LoadControl,
-    phase: &AtomicU8,
-) -> Outcome {
-    let volume = match load::open(&source, options, control) {
+/// A volume to be opened, and what that takes.
+struct Opening {
+    source: String,
+    reading: Reading,
+    options: LoadOptions,
+    context: Context,
+    shaders: ShaderLibrary,
+    control: Arc<LoadControl>,
+    /// Index of what is being done, in [`PHASES`].
+    phase: Arc<AtomicU8>,
+}
+
+fn open(opening: Opening) -> Outcome {
+    let Opening { source, reading, options, context, shaders, control, phase } = opening;
+    let volume = match load::open(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
         Err(err) => {
@@ -229,7 +258,7 @@ fn open(
         details: err.to_string(),
     };
     let dims = volume.dims();
-    let volume = match fitted(context, volume) {
+    let volume = match fitted(&context, volume) {
         Ok(volume) => volume,
         Err(err) => return not_shown(&err),
     };
@@ -243,7 +272,7 @@ fn open(
         return Outcome::Cancelled;
     }
     phase.store(3, Ordering::Relaxed);
-    let look = Renderer::with_shaders(context, shaders).and_then(|mut renderer| {
+    let look = Renderer::with_shaders(&context, shaders).and_then(|mut renderer| {
         phase.store(4, Ordering::Relaxed);
         let settings = first_look(&mut renderer, &dataset)?;
         Ok((renderer, settings))

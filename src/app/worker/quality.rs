@@ -1,7 +1,7 @@
 //! The resolution controller: how coarse a preview must be to keep up with the user.
 //!
 //! Pure arithmetic. It predicts milliseconds from what earlier batches took and chooses the finest
-//! look that fits the frame budget; the viewport carries it out.
+//! level that fits the frame budget; the render worker carries it out.
 
 use crate::math::SceneSpace;
 use crate::model::{Engine, Kernel, Resolution, Settings};
@@ -9,12 +9,12 @@ use crate::plan::preview_slab;
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
 const BUDGET_MS: f64 = 33.0;
-/// The same on a software adapter …
+/// Milliseconds of a frame with a preview on a software adapter, which the window shares.
 const SOFTWARE_BUDGET_MS: f64 = 66.0;
-/// … where the window itself takes so much of each frame.
+/// Milliseconds that the window itself takes of each frame on a software adapter.
 const SOFTWARE_WINDOW_MS: f64 = 26.0;
 /// Bands into which a picture is cut on a software adapter, where one may take seconds: between
-/// them the render thread looks whether something else is wanted.
+/// them the render thread looks whether something else is requested.
 const SOFTWARE_BANDS: u32 = 16;
 /// Pixels of a band on a graphics card: far below what driver watchdogs allow.
 const BAND_PIXELS: u32 = 1 << 18;
@@ -41,9 +41,9 @@ impl QualityLevel {
         viewport.map(|n| n.div_ceil(self.scale).max(1))
     }
 
-    /// The settings to be rendered for the wanted ones.
-    pub(crate) fn settings(self, wanted: &Settings, scene: &SceneSpace, viewport: [u32; 2]) -> Settings {
-        let mut settings = wanted.clone();
+    /// The settings to be rendered for those of a look.
+    pub(crate) fn settings(self, look: &Settings, scene: &SceneSpace, viewport: [u32; 2]) -> Settings {
+        let mut settings = look.clone();
         if self != Self::FULL {
             // Nobody waits for every single splat while something moves.
             settings.sampling.engine = Engine::Gather;
@@ -135,6 +135,11 @@ impl QualityController {
         }
     }
 
+    /// Forgets what things cost, as with another volume.
+    pub(crate) fn forget(&mut self) {
+        *self = Self { frame_ms: self.frame_ms, ..Self::new(self.software) };
+    }
+
     /// Milliseconds per frame while something moves, instead of what suits the adapter.
     pub(crate) fn set_frame_ms(&mut self, frame_ms: Option<f64>) {
         self.frame_ms = frame_ms;
@@ -148,15 +153,15 @@ impl QualityController {
     }
 
     /// Pieces into which a chunk of the light pass is cut.
-    pub(crate) fn light_parts(&self, look: QualityLevel) -> u32 {
+    pub(crate) fn light_parts(&self, quality: QualityLevel) -> u32 {
         // Half a chunk of a 256³ volume takes a software adapter some 20 ms.
-        if look == QualityLevel::FULL && self.software { 2 } else { 1 }
+        if quality == QualityLevel::FULL && self.software { 2 } else { 1 }
     }
 
     /// Rows of a band of a picture of some size.
-    pub(crate) fn rows(&self, look: QualityLevel, [width, height]: [u32; 2]) -> u32 {
+    pub(crate) fn rows(&self, quality: QualityLevel, [width, height]: [u32; 2]) -> u32 {
         // A preview is finished whatever happens.
-        let whole = if self.software && look == QualityLevel::FULL {
+        let whole = if self.software && quality == QualityLevel::FULL {
             height.div_ceil(SOFTWARE_BANDS)
         } else {
             height
@@ -165,13 +170,13 @@ impl QualityController {
     }
 
     /// Learns what the eye pass of a whole picture took.
-    pub(crate) fn learn_picture(&mut self, look: QualityLevel, pixels: f64, ms: f64) {
-        let quick = usize::from(look.quick_eye);
+    pub(crate) fn learn_picture(&mut self, quality: QualityLevel, pixels: f64, ms: f64) {
+        let quick = usize::from(quality.quick_eye);
         let warm = std::mem::replace(&mut self.warm[quick], true);
         if !(warm && ms.is_finite() && pixels > 0.0) {
             return;
         }
-        let at = scale_index(look.scale);
+        let at = scale_index(quality.scale);
         let before = self.eye_pixel[quick][at].ms;
         self.eye_pixel[quick][at].observe(ms.max(0.05) / pixels);
         let factor = self.eye_pixel[quick][at].ms / before;
@@ -184,9 +189,9 @@ impl QualityController {
     }
 
     /// Learns what filling one light volume took in all.
-    pub(crate) fn learn_build(&mut self, look: QualityLevel, ms: f64) {
-        let quick = usize::from(look.quick_light);
-        let at = resolution_index(look.coarse);
+    pub(crate) fn learn_build(&mut self, quality: QualityLevel, ms: f64) {
+        let quick = usize::from(quality.quick_light);
+        let at = resolution_index(quality.coarse);
         self.light_build[at][quick].observe(ms.max(0.05));
         // A resolution that was never tried: eight times the voxels, a little less than the time.
         for finer in (0..at).rev() {
@@ -196,7 +201,7 @@ impl QualityController {
         }
     }
 
-    /// The look of a preview: the finest that keeps the frame budget.
+    /// The quality level of a preview: the finest that keeps the frame budget.
     pub(crate) fn preview(&self, viewport: [u32; 2], missing: Missing) -> QualityLevel {
         let budget = self.budget_ms();
         let pixels = f64::from(viewport[0]) * f64::from(viewport[1]);
@@ -241,10 +246,10 @@ mod tests {
 
     fn measured(software: bool, eye_ms_per_megapixel: f64, full_build_ms: f64) -> QualityController {
         let mut refine = QualityController::new(software);
-        for look in [QualityLevel::FULL, QualityLevel { quick_eye: true, ..QualityLevel::FULL }] {
-            let factor = if look.quick_eye { 0.3 } else { 1.0 };
+        for quality in [QualityLevel::FULL, QualityLevel { quick_eye: true, ..QualityLevel::FULL }] {
+            let factor = if quality.quick_eye { 0.3 } else { 1.0 };
             for _ in 0..8 {
-                refine.learn_picture(look, 1e6, eye_ms_per_megapixel * factor);
+                refine.learn_picture(quality, 1e6, eye_ms_per_megapixel * factor);
             }
         }
         for (coarse, share) in

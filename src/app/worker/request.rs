@@ -5,48 +5,54 @@ use crate::gpu::{RenderOptions, Renderer};
 use crate::model::Settings;
 use crate::plan::{FrameKeys, Request};
 
+/// One look, or two that are compared.
+#[derive(Debug, Clone)]
+pub(in crate::app) struct Looks {
+    /// The only look, or the one left of the divider.
+    pub left: Settings,
+    /// The look right of the divider.
+    pub right: Option<Settings>,
+}
+
 /// A picture for the window, or two that are compared. Requests are the same when they need the same products:
 /// names and saved views do not count.
 #[derive(Debug, Clone)]
 pub(in crate::app) struct FrameRequest {
     /// Counts the volumes, so that a picture of an earlier one is not taken for one of this.
     pub generation: u64,
-    /// The look.
-    pub settings: Settings,
-    /// A look to be compared with.
-    pub other: Option<Settings>,
+    /// What is to be seen.
+    pub looks: Looks,
     /// Window pixels.
     pub size: [u32; 2],
-    /// What both pictures need at full quality.
-    keys: (FrameKeys, Option<FrameKeys>),
+    /// What the picture, or the left one of two, needs at full quality.
+    left_keys: FrameKeys,
+    /// What the right picture needs at full quality.
+    right_keys: Option<FrameKeys>,
 }
 
 impl PartialEq for FrameRequest {
     fn eq(&self, other: &Self) -> bool {
-        self.generation == other.generation && self.keys == other.keys
+        self.generation == other.generation
+            && self.left_keys == other.left_keys
+            && self.right_keys == other.right_keys
     }
 }
 
 impl FrameRequest {
     /// A request for a volume.
-    pub(in crate::app) fn new(
-        generation: u64,
-        dataset: &Dataset,
-        (settings, other): (Settings, Option<Settings>),
-        size: [u32; 2],
-    ) -> Self {
+    pub(in crate::app) fn new(generation: u64, dataset: &Dataset, looks: Looks, size: [u32; 2]) -> Self {
         let volume = dataset.volume().content_id();
         let keys_of = |settings: &Settings| {
             let request = Request { volume, settings: settings.clone(), size, coarse: None };
             FrameKeys::of(&request, &RenderOptions::default())
         };
-        let keys = (keys_of(&settings), other.as_ref().map(keys_of));
-        Self { generation, settings, other, size, keys }
+        let (left_keys, right_keys) = (keys_of(&looks.left), looks.right.as_ref().map(keys_of));
+        Self { generation, looks, size, left_keys, right_keys }
     }
 
     /// What the picture, or the left one of two, needs at full quality.
     pub(in crate::app) fn keys(&self) -> &FrameKeys {
-        &self.keys.0
+        &self.left_keys
     }
 }
 

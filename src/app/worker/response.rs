@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
-/// What is wanted so often without an answer is forgotten: 64 frames are more than a second.
+/// Requests without an answer beyond so many are forgotten: 64 frames are more than a second.
 const MOST_OPEN: usize = 64;
 
 /// Figures about answers to input.
@@ -18,7 +18,7 @@ pub(in crate::app) struct Response {
     pub worst_ms: f64,
 }
 
-/// What was wanted and is not seen yet, the oldest first.
+/// What was requested and is not seen yet, the oldest first.
 #[derive(Debug)]
 pub(crate) struct Waiting<T> {
     open: VecDeque<(T, Instant)>,
@@ -32,15 +32,15 @@ impl<T> Default for Waiting<T> {
 }
 
 impl<T: PartialEq> Waiting<T> {
-    /// The user wants something else now.
-    pub(crate) fn ask(&mut self, wanted: T, now: Instant) {
+    /// The user requests something else now.
+    pub(crate) fn ask(&mut self, request: T, now: Instant) {
         self.open.truncate(MOST_OPEN - 1);
-        self.open.push_back((wanted, now));
+        self.open.push_back((request, now));
     }
 
-    /// It is on screen; and with it, what was wanted before.
+    /// A request is answered on screen; and with it, those before.
     pub(crate) fn answer(&mut self, shown: &T, now: Instant) {
-        let Some(at) = self.open.iter().position(|(wanted, _)| wanted == shown) else { return };
+        let Some(at) = self.open.iter().position(|(request, _)| request == shown) else { return };
         for (_, asked) in self.open.drain(..=at) {
             let took_ms = now.saturating_duration_since(asked).as_secs_f64() * 1000.0;
             let Response { count, mean_ms, worst_ms } = &mut self.answers;
@@ -71,8 +71,8 @@ mod tests {
         let start = Instant::now();
         let at = |ms: u64| start + Duration::from_millis(ms);
         let mut waiting = Waiting::default();
-        for (wanted, ms) in [(1, 0), (2, 10), (3, 30)] {
-            waiting.ask(wanted, at(ms));
+        for (request, ms) in [(1, 0), (2, 10), (3, 30)] {
+            waiting.ask(request, at(ms));
         }
         waiting.answer(&2, at(100));
         assert_eq!(waiting.answers(), Response { count: 2, mean_ms: 95.0, worst_ms: 100.0 });
@@ -81,8 +81,8 @@ mod tests {
         assert_eq!(waiting.answers().count, 2, "seen before, or never asked for");
         waiting.answer(&3, at(180));
         assert_eq!(waiting.answers(), Response { count: 3, mean_ms: 340.0 / 3.0, worst_ms: 150.0 });
-        for wanted in 0..200 {
-            waiting.ask(wanted, at(200));
+        for request in 0..200 {
+            waiting.ask(request, at(200));
         }
         assert!(waiting.open.len() <= MOST_OPEN);
     }

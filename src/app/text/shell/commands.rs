@@ -2,7 +2,7 @@
 
 pub(crate) const OPEN_DIALOG: &str = "Open…";
 pub(crate) const OPEN_PATH: &str = "Open path…";
-/// Also the menu of what can be opened.
+/// The name of a command, and of the menu of what can be opened.
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
 pub(crate) const CANCEL_OPENING: &str = "Cancel";
 pub(crate) const GO_ON: &str = "Go on where you left off";
@@ -23,7 +23,7 @@ pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
 pub(crate) const TOGGLE_HANDLES: &str = "Handles";
-pub(crate) const TOGGLE_MARKS: &str = "Overlay over the picture";
+pub(crate) const TOGGLE_OVERLAY: &str = "Overlay over the picture";
 pub(crate) const TOGGLE_PROBE: &str = "Why is this dark? (probe)";
 pub(crate) const TOGGLE_COMPARE: &str = "Compare two looks";
 pub(crate) const COMPARE_WITH_FILE: &str = "Compare with settings…";
@@ -32,7 +32,7 @@ pub(crate) const SHOW_SLICES: &str = "Slices of the data";
 pub(crate) const TOGGLE_CROP: &str = "Crop box";
 pub(crate) const TOGGLE_PLANE: &str = "Clip plane";
 pub(crate) const FACE_PLANE: &str = "Clip plane towards the eye";
-pub(crate) const TOGGLE_GROUND: &str = "Floor with shadows";
+pub(crate) const TOGGLE_FLOOR: &str = "Floor with shadows";
 
 pub(crate) const ADD_LIGHT: &str = "Add light";
 pub(crate) const USE_LIGHTS: &str = "Use lights";
@@ -85,22 +85,22 @@ pub(crate) fn use_colors(map: &str, reversed: bool) -> String {
     format!("Colours: {map}{}", if reversed { ", reversed" } else { "" })
 }
 
-/// To keep a view under a digit …
+/// Keeping a view under a digit.
 pub(crate) fn store_view(slot: u8) -> String {
     format!("Store view {slot}")
 }
 
-/// … and to look that way again.
+/// Looking from a saved view again.
 pub(crate) fn recall_view(slot: u8) -> String {
     format!("Recall view {slot}")
 }
 
-/// The keys that keep a view …
+/// The keys that keep a view.
 pub(crate) fn store_view_keys(slot: u8) -> String {
     format!("Ctrl+Shift+{slot}")
 }
 
-/// … and those that look that way again.
+/// The keys that look from a saved view again.
 pub(crate) fn recall_view_keys(slot: u8) -> String {
     format!("Ctrl+{slot}")
 }

@@ -52,12 +52,12 @@ pub(crate) fn no_view_kept(slot: u8) -> String {
     format!("No view is kept as {slot}: {} keeps one", store_view_keys(slot))
 }
 
-/// What became of the settings when the device was lost: they are in a file …
+/// Where the settings are that were saved when the device was lost.
 pub(crate) fn rescued(path: &Path) -> String {
     format!("the settings were saved to {}", path.display())
 }
 
-/// … or they are not.
+/// Why the settings could not be saved when the device was lost.
 pub(crate) fn not_rescued(why: &str) -> String {
     format!("the settings could not be saved: {why}")
 }

@@ -34,12 +34,12 @@ pub(crate) fn saved(file: &Path) -> String {
     format!("Saved {}", file.display())
 }
 
-/// A volume whose loader panicked …
+/// Which volume could not be opened, after its loader panicked.
 pub(crate) fn failed(source: &str) -> String {
     format!("Opening {source} failed")
 }
 
-/// … and what it said.
+/// What a loader said that panicked.
 pub(crate) fn stopped(panic: &str) -> String {
     format!("the loader stopped unexpectedly: {panic}")
 }

@@ -1,6 +1,5 @@
 //! The status bar.
 
-use crate::app::viewport::Facts;
 use crate::gpu::Stage;
 
 pub(crate) const NO_VOLUME: &str = "no volume";
@@ -29,22 +28,42 @@ pub(crate) fn refining(share: f32, stage: Stage) -> String {
     format!("refining {:.0} %, {}", share * 100.0, name_of(stage))
 }
 
+/// What the status bar says of the renderer.
+pub(crate) struct Figures<'a> {
+    /// Milliseconds of the last picture at full quality.
+    pub full_ms: Option<f64>,
+    /// Milliseconds of the last preview.
+    pub preview_ms: Option<f64>,
+    /// Footprints that were splatted.
+    pub splats: u64,
+    /// Light volumes that are kept.
+    pub cached_light_volumes: usize,
+    /// How often light volumes were filled.
+    pub light_rebuilds: u64,
+    /// Mebibytes of textures.
+    pub gpu_mebibytes: f64,
+    /// Name of the adapter.
+    pub adapter: &'a str,
+    /// Whether the adapter is the CPU.
+    pub is_software: bool,
+}
+
 /// How fast, with how much memory, and on what.
-pub(crate) fn figures(facts: &Facts) -> String {
+pub(crate) fn figures(figures: &Figures<'_>) -> String {
     let ms = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.0} ms"));
-    let software = if facts.software { " (software)" } else { "" };
-    let splats = if facts.splats > 0 {
-        format!("{:.1} million splats · ", facts.splats as f64 * 1e-6)
+    let software = if figures.is_software { " (software)" } else { "" };
+    let splats = if figures.splats > 0 {
+        format!("{:.1} million splats · ", figures.splats as f64 * 1e-6)
     } else {
         String::new()
     };
     format!(
         "{splats}full {} · preview {} · light volumes {} cached, {} filled · {:.0} MiB · {}{software}",
-        ms(facts.full_ms),
-        ms(facts.preview_ms),
-        facts.cached_light_volumes,
-        facts.light_rebuilds,
-        facts.gpu_mebibytes,
-        facts.adapter,
+        ms(figures.full_ms),
+        ms(figures.preview_ms),
+        figures.cached_light_volumes,
+        figures.light_rebuilds,
+        figures.gpu_mebibytes,
+        figures.adapter,
     )
 }

@@ -1,8 +1,8 @@
 //! The picture, and two looks in it.
 
-/// What screen readers call it …
+/// What screen readers call the picture.
 pub(crate) const PICTURE: &str = "Picture";
-/// … and the line between two looks.
+/// What screen readers call the line between two looks.
 pub(crate) const DIVIDER: &str = "Divider";
 
 /// What is shown where two looks are subtracted.

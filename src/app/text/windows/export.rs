@@ -45,10 +45,10 @@ pub(crate) const SAMPLES: Named = named(
     "More samples smooth edges and thin structures, and take as many times longer",
 );
 
-/// The length of a turn …
+/// The length of a turntable.
 pub(crate) const TURN_PICTURES: &str = "Pictures of a turn";
 pub(crate) const TURN_PICTURES_UNIT: &str = " pictures";
-/// … and how fast it goes by.
+/// How fast a turntable goes by.
 pub(crate) const RATE: &str = "Pictures per second";
 pub(crate) const RATE_UNIT: &str = " per second";
 
@@ -79,12 +79,12 @@ pub(crate) fn seconds(seconds: f64) -> String {
     format!("{seconds:.1} s")
 }
 
-/// How far a picture is …
+/// How far the export of a picture is.
 pub(crate) fn parts_done(done: u32, total: u32) -> String {
     format!("{done} of {total} parts")
 }
 
-/// … and a turn.
+/// How far the export of a turntable is.
 pub(crate) fn pictures_done(done: u32, total: u32) -> String {
     format!("{done} of {total} pictures")
 }

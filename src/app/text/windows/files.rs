@@ -10,7 +10,7 @@ pub(crate) struct Question {
     pub title: &'static str,
     /// What can be typed, in the empty field of that window.
     pub hint: &'static str,
-    /// Its button.
+    /// What the button of the window says.
     pub verb: &'static str,
 }
 
@@ -73,22 +73,22 @@ pub(crate) fn no_settings(picture: &Path) -> String {
     format!("the picture carries no settings ({}); export it from this program", picture.display())
 }
 
-/// A file of settings that cannot be read …
+/// Why a file of settings cannot be read.
 pub(crate) fn settings_not_read(file: &Path, err: impl Display) -> String {
     format!("could not read the settings: {err} ({})", file.display())
 }
 
-/// … or says what cannot be.
+/// Why the settings in a file, which can be read, cannot be used.
 pub(crate) fn settings_not_used(file: &Path, err: impl Display) -> String {
     format!("could not use the settings: {err} ({})", file.display())
 }
 
-/// A file of another program that cannot be read …
+/// Why another program's transfer function cannot be read.
 pub(crate) fn transfer_not_read(file: &Path, err: impl Display) -> String {
     format!("could not read the transfer function: {err} ({})", file.display())
 }
 
-/// … or says what cannot be.
+/// Why another program's transfer function, which can be read, cannot be used.
 pub(crate) fn transfer_not_used(file: &Path, err: impl Display) -> String {
     format!("could not use the transfer function: {err} ({})", file.display())
 }

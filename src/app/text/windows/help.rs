@@ -46,12 +46,12 @@ pub(crate) fn program(version: &str) -> String {
     format!("Chiaroscuro {version}")
 }
 
-/// What draws the pictures …
+/// The graphics adapter that draws the pictures.
 pub(crate) fn adapter(name: &str) -> String {
     format!("Graphics adapter {name}")
 }
 
-/// … and by which interface and driver.
+/// The interface and driver by which pictures are drawn.
 pub(crate) fn interface(driver: &str) -> String {
     format!("Interface {driver}")
 }

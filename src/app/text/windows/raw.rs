@@ -21,9 +21,9 @@ pub(crate) const SPACING: &str = "Spacing";
 pub(crate) const MILLIMETRES: &str = "mm";
 
 pub(crate) const HEADER: &str = "Header";
-/// What screen readers call the length of the header …
+/// What screen readers call the length of the header.
 pub(crate) const HEADER_BYTES: &str = "Bytes before the first voxel";
-/// … and what is behind it.
+/// What stands behind the field for the header's length.
 pub(crate) const HEADER_UNIT: &str = "bytes before the first voxel";
 pub(crate) const REMEMBER_TIP: &str =
     "A header as NRRD has it: that file then opens here and in other programs";

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::orbit::wheel_notches;
 use super::view_projection::ViewProjection;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::math::SceneSpace;
 use crate::model::{CropBox, MAX_PLANE_OFFSET, MIN_CROP, Settings};
@@ -55,16 +55,16 @@ impl CutHandles {
         if hidden {
             return;
         }
-        let sight = ViewProjection { camera: settings.camera.clone(), picture };
+        let view_projection = ViewProjection { camera: settings.camera.clone(), picture };
         let visible = ui.rect_contains_pointer(picture) || self.drag.is_some();
         let opacity = ui.ctx().animate_bool_with_time(Id::unique("cut handles"), visible, theme::FADE_S);
         let mut painter = ui.painter_at(picture);
         painter.multiply_opacity(opacity);
         if settings.cuts.crop.on {
-            self.crop(ui, &painter, &sight, &mut settings.cuts.crop, scene);
+            self.crop(ui, &painter, &view_projection, &mut settings.cuts.crop, scene);
         }
         if settings.cuts.plane.on {
-            self.plane(ui, &painter, &sight, settings, scene);
+            self.plane(ui, &painter, &view_projection, settings, scene);
         }
     }
 
@@ -72,25 +72,25 @@ impl CutHandles {
         &mut self,
         ui: &Ui,
         painter: &Painter,
-        sight: &ViewProjection,
+        view_projection: &ViewProjection,
         crop: &mut CropBox,
         scene: &SceneSpace,
     ) {
         let stroke = Stroke::new(1.2, theme::ACCENT.gamma_multiply(0.75));
         for [a, b] in outline::edges(crop, scene) {
-            if let (Some(a), Some(b)) = (sight.point(a), sight.point(b)) {
+            if let (Some(a), Some(b)) = (view_projection.point(a), view_projection.point(b)) {
                 painter.line_segment([a, b], stroke);
             }
         }
         for axis in 0..3 {
             for is_high in [false, true] {
                 let (at, along) = outline::side(crop, scene, axis, is_high);
-                let Some(position) = sight.point(at) else { continue };
+                let Some(position) = view_projection.point(at) else { continue };
                 let name = text::cut_handles::crop_side(axis, is_high);
                 let id = Id::unique("crop side").with((axis, is_high));
                 let (response, to) = self.interact(ui, id, &name, position, DVec3::ZERO, false);
                 if let Some(to) = to
-                    && let Some(share) = sight.along(to, at, along)
+                    && let Some(share) = view_projection.along(to, at, along)
                 {
                     let (low, high) = (crop.low[axis], crop.high[axis]);
                     if is_high {
@@ -99,7 +99,8 @@ impl CutHandles {
                         crop.low[axis] = (low + share).clamp(0.0, high - MIN_CROP);
                     }
                 }
-                let now = sight.point(outline::side(crop, scene, axis, is_high).0).unwrap_or(position);
+                let now =
+                    view_projection.point(outline::side(crop, scene, axis, is_high).0).unwrap_or(position);
                 square(painter, now, &response);
             }
         }
@@ -109,12 +110,12 @@ impl CutHandles {
         &mut self,
         ui: &Ui,
         painter: &Painter,
-        sight: &ViewProjection,
+        view_projection: &ViewProjection,
         settings: &mut Settings,
         scene: &SceneSpace,
     ) {
         let section = outline::section(&settings.cuts.plane, scene);
-        let border: Vec<Pos2> = section.iter().filter_map(|&corner| sight.point(corner)).collect();
+        let border: Vec<Pos2> = section.iter().filter_map(|&corner| view_projection.point(corner)).collect();
         if border.len() == section.len() {
             let stroke = Stroke::new(1.2, theme::ACCENT.gamma_multiply(0.75));
             painter.add(Shape::closed_line(border, stroke));
@@ -123,15 +124,17 @@ impl CutHandles {
         let normal = plane.unit_normal();
         let middle = outline::middle(&section, plane);
         let tip = middle + normal * ARROW;
-        let (Some(at), Some(end)) = (sight.point(middle), sight.point(tip)) else { return };
-        let to_eye = sight.camera.scene_from_view().z_axis;
+        let (Some(at), Some(end)) = (view_projection.point(middle), view_projection.point(tip)) else {
+            return;
+        };
+        let to_eye = view_projection.camera.scene_from_view().z_axis;
         let behind = normal.dot(to_eye) < 0.0;
 
         // The tip first, so that where both lie on each other the plane is moved.
         let id = Id::unique("plane tip");
         let (turned, to) = self.interact(ui, id, text::cut_handles::PLANE_DIRECTION, end, middle, behind);
         if let (Some(to), Some(drag)) = (to, self.drag) {
-            let (origin, direction) = sight.ray(to);
+            let (origin, direction) = view_projection.ray(to);
             let normal = towards_sphere(origin - drag.pivot, direction, ARROW, drag.behind);
             plane.normal = normal.into();
             plane.offset = normal.dot(drag.pivot);
@@ -139,7 +142,7 @@ impl CutHandles {
         let id = Id::unique("plane middle");
         let (moved, to) = self.interact(ui, id, text::cut_handles::PLANE_PLACE, at, middle, behind);
         if let Some(to) = to
-            && let Some(distance) = sight.along(to, middle, normal)
+            && let Some(distance) = view_projection.along(to, middle, normal)
         {
             plane.offset += distance;
         }
@@ -151,7 +154,7 @@ impl CutHandles {
         plane.offset = plane.offset.clamp(-MAX_PLANE_OFFSET, MAX_PLANE_OFFSET);
         let middle = outline::middle(&outline::section(plane, scene), plane);
         let tip = middle + plane.unit_normal() * ARROW;
-        if let (Some(at), Some(end)) = (sight.point(middle), sight.point(tip)) {
+        if let (Some(at), Some(end)) = (view_projection.point(middle), view_projection.point(tip)) {
             arrow(painter, at, end);
             square(painter, at, &moved);
             knob(painter, end, &turned, behind);

@@ -9,9 +9,9 @@ use super::theme;
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::model::{Camera, LightKind, Projection, SceneLight};
 
-/// The sphere of parallel lights is a little larger than the volume …
+/// The radius of the sphere on which parallel lights are shown, per radius of the volume: a little larger.
 const SPHERE_PER_SUPPORT: f64 = 1.15;
-/// … but fits in the picture: share of the way to the border.
+/// The largest radius of that sphere, as a share of the way to the border of the picture: it fits in there.
 const SPHERE_PER_VIEW: f64 = 0.9;
 /// A panned volume must not shrink its sphere to nothing: share of half the picture's shorter side.
 const LEAST_ROOM: f64 = 0.5;
@@ -32,7 +32,7 @@ pub(crate) struct Handle {
 /// The camera over the picture's rectangle.
 #[derive(Debug, Clone)]
 pub(crate) struct View {
-    sight: ViewProjection,
+    view_projection: ViewProjection,
     radius: f64,
 }
 
@@ -52,24 +52,24 @@ impl View {
             Projection::Orthographic => camera.distance * tan,
         };
         Self {
-            sight: ViewProjection { camera, picture },
+            view_projection: ViewProjection { camera, picture },
             radius: (SPHERE_PER_SUPPORT * support_radius).min(fits),
         }
     }
 
     /// Where a scene point is seen, in points; `None` behind the eye.
     pub(crate) fn point(&self, scene: DVec3) -> Option<Pos2> {
-        self.sight.point(scene)
+        self.view_projection.point(scene)
     }
 
     /// Whether a place of the window is well within the picture.
     pub(crate) fn shows(&self, at: Pos2) -> bool {
-        self.sight.picture.shrink(theme::HANDLE_RADIUS).contains(at)
+        self.view_projection.picture.shrink(theme::HANDLE_RADIUS).contains(at)
     }
 
     /// From the eye to a point along the axis of view.
     fn depth(&self, scene: DVec3) -> f64 {
-        (self.sight.camera.eye() - scene).dot(self.sight.camera.scene_from_view().z_axis)
+        (self.view_projection.camera.eye() - scene).dot(self.view_projection.camera.scene_from_view().z_axis)
     }
 
     /// The handle of a light; `None` for one behind the eye.
@@ -79,7 +79,7 @@ impl View {
             LightKind::Perspective => DVec3::from(light.position),
         };
         let position = self.point(scene)?;
-        let inner = self.sight.picture.shrink(theme::HANDLE_INSET);
+        let inner = self.view_projection.picture.shrink(theme::HANDLE_INSET);
         let position = pos2(
             position.x.clamp(inner.min.x, inner.max.x.max(inner.min.x)),
             position.y.clamp(inner.min.y, inner.max.y.max(inner.min.y)),
@@ -89,20 +89,20 @@ impl View {
 
     /// To the right of the picture, in scene space.
     pub(crate) fn right(&self) -> DVec3 {
-        self.sight.camera.scene_from_view().x_axis
+        self.view_projection.camera.scene_from_view().x_axis
     }
 
     /// The scene point that is seen at a place of the window, on the plane through `through` that faces the eye.
     pub(crate) fn facing(&self, through: DVec3, at: Pos2) -> Option<DVec3> {
-        let (origin, direction) = self.sight.ray(at);
-        let normal = self.sight.camera.scene_from_view().z_axis;
+        let (origin, direction) = self.view_projection.ray(at);
+        let normal = self.view_projection.camera.scene_from_view().z_axis;
         let along = (through - origin).dot(normal) / direction.dot(normal);
         along.is_finite().then(|| origin + direction * along)
     }
 
     /// Moves a light so that its handle comes to lie at a point of the window.
     pub(crate) fn move_light(&self, light: &mut SceneLight, to: Pos2, behind: bool) {
-        let (origin, direction) = self.sight.ray(to);
+        let (origin, direction) = self.view_projection.ray(to);
         let position = DVec3::from(light.position);
         light.position = match light.kind {
             LightKind::Parallel => {
@@ -134,13 +134,13 @@ impl View {
         }
         let position = DVec3::from(light.position);
         let factor = SIGHT_PER_NOTCH.powf(notches);
-        light.position = match self.sight.camera.projection {
-            Projection::Perspective => {
-                (self.sight.camera.eye() + (position - self.sight.camera.eye()) * factor).into()
-            }
+        light.position = match self.view_projection.camera.projection {
+            Projection::Perspective => (self.view_projection.camera.eye()
+                + (position - self.view_projection.camera.eye()) * factor)
+                .into(),
             Projection::Orthographic => {
                 let step = self.depth(position) * (factor - 1.0);
-                (position - self.sight.camera.scene_from_view().z_axis * step).into()
+                (position - self.view_projection.camera.scene_from_view().z_axis * step).into()
             }
         };
     }
@@ -152,13 +152,13 @@ impl View {
 
     /// The circle of the sphere that faces the eye.
     pub(crate) fn silhouette(&self) -> Vec<Pos2> {
-        let view = self.sight.camera.scene_from_view();
+        let view = self.view_projection.camera.scene_from_view();
         self.circle(view.x_axis, view.y_axis)
     }
 
     /// The great circle through a direction and the line of sight.
     pub(crate) fn meridian(&self, direction: DVec3) -> Vec<Pos2> {
-        let view = self.sight.camera.scene_from_view();
+        let view = self.view_projection.camera.scene_from_view();
         let across = direction.reject_from(view.z_axis).normalize_or(view.x_axis);
         self.circle(across, view.z_axis)
     }
@@ -198,7 +198,7 @@ mod tests {
                 let after = view.handle(&light).unwrap();
                 assert!(
                     after.position.distance(to) < 0.1,
-                    "{projection:?} {kind:?}: {after:?}, wanted {to:?}"
+                    "{projection:?} {kind:?}: {after:?}, expected {to:?}"
                 );
                 assert_eq!(after.behind, before.behind);
                 if kind == LightKind::Parallel {
@@ -221,12 +221,13 @@ mod tests {
         view.move_light(&mut light, pos2(5000.0, 4000.0), false);
         let handle = view.handle(&light).unwrap();
         assert!(
-            view.sight.picture.contains(handle.position) && handle.position.x > view.sight.picture.center().x
+            view.view_projection.picture.contains(handle.position)
+                && handle.position.x > view.view_projection.picture.center().x
         );
         let far =
             SceneLight { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..SceneLight::default() };
         if let Some(handle) = view.handle(&far) {
-            assert!(view.sight.picture.contains(handle.position));
+            assert!(view.view_projection.picture.contains(handle.position));
         }
     }
 

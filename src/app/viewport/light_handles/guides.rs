@@ -1,4 +1,4 @@
-//! Lines that help while a light is moved: where it stands over the ground, its sphere, the cone of its hood.
+//! Lines that help while a light is moved: where it stands over the floor, its sphere, the cone of its hood.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use eframe::egui::{Painter, Pos2, Shape, Stroke};
 use glam::DVec3;
 
 use super::geometry::View;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::model::{LightKind, SceneLight};
 
 /// Corners of a circle.
@@ -14,8 +14,8 @@ const CORNERS: usize = 72;
 /// Lines from a hood's light to the rim of its cone.
 const RIBS: usize = 6;
 
-/// Paints all that help with a light, whose position refers to the scene, over a ground at that height.
-pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, ground: f64) {
+/// Paints all that help with a light, whose position refers to the scene, over a floor at that height.
+pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, floor: f64) {
     let line = |points: &[DVec3], strength: f32| {
         let seen: Option<Vec<Pos2>> = points.iter().map(|&point| view.point(point)).collect();
         if let Some(seen) = seen {
@@ -31,7 +31,7 @@ pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, ground: 
         LightKind::Parallel => light.direction() * view.radius(),
         LightKind::Perspective => light.position.into(),
     };
-    let Stand { ring, foot, middle } = Stand::of(place, ground);
+    let Stand { ring, foot, middle } = Stand::of(place, floor);
     line(&ring, 0.3);
     line(&[middle, foot], 0.3);
     line(&[place, foot], 0.6);
@@ -44,7 +44,7 @@ pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, ground: 
     }
 }
 
-/// Where a place stands over the ground.
+/// Where a place stands over the floor.
 struct Stand {
     /// All places as far from the middle.
     ring: Vec<DVec3>,
@@ -55,14 +55,14 @@ struct Stand {
 }
 
 impl Stand {
-    fn of(place: DVec3, ground: f64) -> Self {
-        let middle = DVec3::Z * ground;
+    fn of(place: DVec3, floor: f64) -> Self {
+        let middle = DVec3::Z * floor;
         let radius = place.truncate().length();
         let at = |corner: usize| {
             let (sin, cos) = (corner as f64 / CORNERS as f64 * TAU).sin_cos();
             middle + DVec3::new(cos, sin, 0.0) * radius
         };
-        Self { ring: (0..=CORNERS).map(at).collect(), foot: place.with_z(ground), middle }
+        Self { ring: (0..=CORNERS).map(at).collect(), foot: place.with_z(floor), middle }
     }
 }
 
@@ -92,7 +92,7 @@ mod tests {
     use crate::model::Hood;
 
     #[test]
-    fn lights_stand_over_the_ground() {
+    fn lights_stand_over_the_floor() {
         let stand = Stand::of(DVec3::new(3.0, -4.0, 2.0), -1.0);
         assert_eq!((stand.foot, stand.middle), (DVec3::new(3.0, -4.0, -1.0), DVec3::new(0.0, 0.0, -1.0)));
         assert!(stand.ring.iter().all(|point| ((*point - stand.middle).length() - 5.0).abs() < 1e-9));

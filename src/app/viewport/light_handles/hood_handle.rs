@@ -7,7 +7,7 @@ use eframe::egui::{self, Id, Painter, Rect, Role, Sense, Stroke, StrokeKind, Ui,
 use glam::DVec3;
 
 use super::geometry::View;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Hood, LightKind, SceneLight};
 

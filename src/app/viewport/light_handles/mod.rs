@@ -13,7 +13,7 @@ use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke,
 use self::geometry::View;
 use self::hood_handle::HoodHandle;
 use super::orbit::wheel_notches;
-use crate::app::shell::theme;
+use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{LightKind, Settings};
 
@@ -33,7 +33,7 @@ pub(crate) struct LightHandles {
     /// The user does not want them.
     pub hidden: bool,
     drag: Option<Drag>,
-    /// That of the selected light.
+    /// The handle of the hood of the selected light.
     hood: HoodHandle,
     /// The pointer is on a handle for which the wheel means distance.
     pub takes_wheel: bool,

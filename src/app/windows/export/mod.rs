@@ -18,16 +18,16 @@ use crate::export::{AnimationFormat, Reel};
 use crate::model::Shot;
 
 /// How long a window that closes waits for an export to end: a part of a picture takes seconds on slow adapters.
-const PATIENCE: Duration = Duration::from_secs(10);
+const LONGEST_WAIT: Duration = Duration::from_secs(10);
 
 /// What is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// One picture.
     Still,
-    /// A turn of the camera …
+    /// A turntable of the camera.
     Turntable,
-    /// … or of the selected light.
+    /// A turntable of the selected light.
     LightTurn,
 }
 
@@ -98,7 +98,7 @@ impl Export {
     pub(crate) fn abandon(&mut self) {
         self.progress.cancelled.store(true, Ordering::Relaxed);
         let begin = Instant::now();
-        while self.is_busy() && self.take().is_none() && begin.elapsed() < PATIENCE {
+        while self.is_busy() && self.take().is_none() && begin.elapsed() < LONGEST_WAIT {
             std::thread::sleep(Duration::from_millis(20));
         }
     }

@@ -37,12 +37,12 @@ pub(in crate::app) enum Exported {
     Cancelled,
 }
 
-/// What the window and its worker tell each other.
+/// How far an export is, shared by the window and its worker.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
-    /// Pictures or parts of one that are done …
+    /// Pictures or parts of one that are done.
     pub done: AtomicU32,
-    /// … of how many; 0 while nobody knows.
+    /// Pictures or parts of one that are to be made; 0 while nobody knows.
     pub total: AtomicU32,
     /// Nobody wants the rest.
     pub cancelled: AtomicBool,
@@ -68,8 +68,8 @@ impl From<GpuError> for Ended {
 }
 
 impl Ended {
-    /// What the window is told.
-    fn told(self) -> Result<Exported, String> {
+    /// The result for the window: a cancelled export is no error.
+    fn result(self) -> Result<Exported, String> {
         match self {
             Self::Cancelled => Ok(Exported::Cancelled),
             Self::Failed(why) => Err(why),
@@ -136,7 +136,7 @@ pub(crate) fn still(
         Ok(bands.next_rows()?)
     };
     write_picture(&path, shot, Some(&record), &mut rows)
-        .map_or_else(Ended::told, |()| Ok(Exported::File(path)))
+        .map_or_else(Ended::result, |()| Ok(Exported::File(path)))
 }
 
 /// Renders and writes one turn, of a light or else of the camera.
@@ -161,7 +161,7 @@ pub(crate) fn turn(
         file.finish()?;
         Ok(())
     };
-    write().map_or_else(Ended::told, |()| Ok(Exported::File(path)))
+    write().map_or_else(Ended::result, |()| Ok(Exported::File(path)))
 }
 
 /// Renders for the clipboard.

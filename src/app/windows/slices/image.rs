@@ -19,7 +19,7 @@ pub(crate) struct Grey {
 }
 
 impl Grey {
-    /// The same with black below white, both among the values that there are, or nearly.
+    /// This scale of greys with black below white, both among the values that there are, or nearly.
     pub(crate) fn within(self, (low, high): (f64, f64)) -> Self {
         let span = (high - low).max(f64::MIN_POSITIVE);
         let black = self.black.clamp(low - span, high + span);

@@ -12,8 +12,8 @@ use eframe::egui::{
 use glam::DVec3;
 
 use self::image::{Grey, across, lookup, slice};
-use crate::app::shell::theme;
-use crate::app::shell::volume_facts::VolumeFacts;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::app::viewport::orbit::wheel_notches;
 use crate::app::viewport::view_projection::ViewProjection;
@@ -202,7 +202,7 @@ impl Slices {
     }
 
     /// The cursor in the picture: a line along each axis of the grid.
-    pub(crate) fn mark(&self, painter: &Painter, sight: &ViewProjection, scene: &SceneSpace) {
+    pub(crate) fn mark(&self, painter: &Painter, view_projection: &ViewProjection, scene: &SceneSpace) {
         if !self.open || self.of.is_none() {
             return;
         }
@@ -211,7 +211,7 @@ impl Slices {
             let end = |at: f64| {
                 let mut index = cursor;
                 index[axis] = at;
-                sight.point(scene.scene_from_index.transform_point3(index))
+                view_projection.point(scene.scene_from_index.transform_point3(index))
             };
             if let (Some(a), Some(b)) = (end(-0.5), end(scene.dims[axis] as f64 - 0.5)) {
                 painter.line_segment([a, b], Stroke::new(1.0, theme::AXES[axis].gamma_multiply(0.8)));

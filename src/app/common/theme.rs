@@ -46,7 +46,7 @@ pub(crate) const OUTLINE: Color32 = Color32::from_rgb(0x0c, 0x0d, 0x10);
 /// Lines that help while a light is moved.
 pub(crate) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
 /// Behind the picture while there is none.
-pub(crate) const STAGE: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
+pub(crate) const EMPTY_CANVAS: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
 
 /// The frame of a panel, through which the background of the window is seen: that is filled at once and cheaply.
 pub(crate) fn panel(ui: &egui::Ui) -> egui::Frame {

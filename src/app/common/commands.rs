@@ -46,14 +46,14 @@ pub(crate) enum Command {
     LookFrom(StandardView),
     /// Perspective or orthographic.
     ToggleProjection,
-    /// Keep the view under a digit …
+    /// Keep the view under a digit.
     StoreView(u8),
-    /// … and look that way again.
+    /// Look from the view that is kept under a digit.
     RecallView(u8),
     /// The window fills the screen, or not.
     ToggleFullScreen,
     /// Show or hide the chips of the lights, box, scale bar and cube.
-    ToggleMarks,
+    ToggleOverlay,
     /// Say what is under the pointer, and what light gets there.
     ToggleProbe,
     /// Find a command by its name.
@@ -68,17 +68,17 @@ pub(crate) enum Command {
     TryLights,
     /// Show the contact sheet of presets.
     TryPresets,
-    /// The light after the selected one …
+    /// Select the light after the selected one.
     NextLight,
-    /// … or before it.
+    /// Select the light before the selected one.
     PreviousLight,
     /// Only the selected light shines, or all.
     Solo,
     /// The selected light shines or not.
     Mute,
-    /// The selected light is brighter …
+    /// Make the selected light brighter.
     Brighter,
-    /// … or dimmer.
+    /// Make the selected light dimmer.
     Dimmer,
     /// The automatic transfer function.
     AutomaticTransfer,
@@ -86,9 +86,9 @@ pub(crate) enum Command {
     UsePreset(Preset),
     /// Other colours for the visible values: the index of a colour map, and whether it is reversed.
     UseColors(usize, bool),
-    /// Ask for a transfer function of another program …
+    /// Ask for a transfer function of another program.
     ImportTransfer,
-    /// … or where to write one.
+    /// Ask where to write the transfer function for other programs.
     ExportTransfer,
     /// Opacities the other way round.
     InvertTransfer,
@@ -163,7 +163,7 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 39] = [
     plain(Key::K, Command::ToggleCrop),
     plain(Key::I, Command::ToggleProbe),
     (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleFloor),
-    plain(Key::G, Command::ToggleMarks),
+    plain(Key::G, Command::ToggleOverlay),
     plain(Key::H, Command::ToggleHandles),
     plain(Key::C, Command::ToggleCompare),
     plain(Key::D, Command::ShowSlices),
@@ -195,7 +195,7 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::FrameAll,
         Command::ToggleProjection,
         Command::ToggleFullScreen,
-        Command::ToggleMarks,
+        Command::ToggleOverlay,
         Command::ToggleProbe,
         Command::ToggleCrop,
         Command::TogglePlane,
@@ -257,12 +257,12 @@ impl Command {
             Self::FrameAll => text::commands::FRAME_ALL,
             Self::ToggleProjection => text::commands::TOGGLE_PROJECTION,
             Self::ToggleFullScreen => text::commands::TOGGLE_FULL_SCREEN,
-            Self::ToggleMarks => text::commands::TOGGLE_MARKS,
+            Self::ToggleOverlay => text::commands::TOGGLE_OVERLAY,
             Self::ToggleProbe => text::commands::TOGGLE_PROBE,
             Self::ToggleCrop => text::commands::TOGGLE_CROP,
             Self::TogglePlane => text::commands::TOGGLE_PLANE,
             Self::FacePlane => text::commands::FACE_PLANE,
-            Self::ToggleFloor => text::commands::TOGGLE_GROUND,
+            Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
             Self::ShowPalette => text::commands::SHOW_PALETTE,
             Self::UseLights(_) => text::commands::USE_LIGHTS,
             Self::TryLights => text::commands::TRY_LIGHTS,
@@ -302,7 +302,7 @@ impl Command {
         label.into()
     }
 
-    /// Its key, for menus.
+    /// The command's key, for menus.
     pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
         match self {
             Self::StoreView(slot) => return text::commands::store_view_keys(*slot),

@@ -6,9 +6,9 @@ use glam::{DQuat, DVec3};
 use super::commands::is_typing;
 use crate::model::{Camera, Light, Settings};
 
-/// Degrees per press of an arrow key …
+/// Degrees per press of an arrow key.
 const NUDGE_DEG: f64 = 1.0;
-/// … and with Shift.
+/// Degrees per press of an arrow key with Shift.
 const BIG_NUDGE_DEG: f64 = 10.0;
 /// Factor of the intensity per press.
 const INTENSITY_STEP: f64 = 1.1;

@@ -1,4 +1,4 @@
-//! The marks over the picture: scale bar and cube.
+//! The overlay over the picture: scale bar and cube.
 
 /// What is written on the sides of the cube: signs of axes, or for bodies what lies there (right, left, anterior,
 /// posterior, superior, inferior).

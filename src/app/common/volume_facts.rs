@@ -11,17 +11,17 @@ use crate::math::SceneSpace;
 pub(crate) struct VolumeFacts {
     /// What the user calls it.
     pub name: String,
-    /// What was opened …
+    /// What was opened: a path or the name of a built-in volume.
     pub source: String,
-    /// … and how it was read.
+    /// How the volume was read.
     pub reading: Reading,
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
-    /// The same before voxels were averaged, if they were.
+    /// Voxels along x, y, z in the file, before any were averaged.
     pub file_dims: [usize; 3],
-    /// `uint8` …
+    /// The type of the voxels, such as `uint8`.
     pub voxel_type: &'static str,
-    /// Between voxel centres.
+    /// Millimetres between voxel centres along x, y, z.
     pub spacing_mm: [f64; 3],
     /// Smallest and largest value.
     pub range: (f64, f64),
@@ -40,7 +40,7 @@ pub(crate) struct VolumeFacts {
 }
 
 impl VolumeFacts {
-    /// Collects them.
+    /// Collects the facts.
     pub(crate) fn of(source: String, reading: Reading, dataset: &Dataset) -> Self {
         let volume = dataset.volume();
         let voxel_type = volume.samples().voxel_type();

@@ -1,0 +1,129 @@
+//! The middle of the window: the picture, pixel for pixel, and the mouse on it.
+
+use eframe::egui::{self, Role, Sense, Shape, WidgetInfo};
+
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text;
+use crate::app::viewport::canvas::Canvas;
+use crate::app::viewport::compare::Compare;
+use crate::app::viewport::cut_handles::CutHandles;
+use crate::app::viewport::hints::Hints;
+use crate::app::viewport::light_handles::LightHandles;
+use crate::app::viewport::light_probe::LightProbe;
+use crate::app::viewport::overlay::Overlay;
+use crate::app::viewport::view_projection::ViewProjection;
+use crate::app::viewport::{Facts, Viewport, light_chips, light_probe, orbit};
+use crate::app::windows::slices::Slices;
+use crate::gpu::GpuError;
+use crate::model::Settings;
+
+/// What the picture is shown with.
+pub(crate) struct PictureInputs<'a> {
+    /// The look; camera and lights may be changed by the mouse.
+    pub settings: &'a mut Settings,
+    /// The renderer's side.
+    pub viewport: &'a mut Viewport,
+    /// The handles of the lights.
+    pub handles: &'a mut LightHandles,
+    /// The handles of the crop box and the clip plane.
+    pub cut_handles: &'a mut CutHandles,
+    /// The light whose handle is marked.
+    pub selected_light: &'a mut usize,
+    /// Two looks in one picture.
+    pub compare: &'a mut Compare,
+    /// Chips of the lights, box, scale bar and cube.
+    pub overlay: Overlay,
+    /// What is under the pointer.
+    pub probe: &'a mut LightProbe,
+    /// Cuts through the data, and their cursor.
+    pub slices: &'a mut Slices,
+    /// What the first picture says.
+    pub hints: &'a mut Hints,
+    /// The open volume.
+    pub volume: Option<&'a VolumeFacts>,
+    /// What is known of the renderer's work.
+    pub facts: &'a Facts,
+    /// What the user asks for.
+    pub commands: &'a mut Vec<Command>,
+}
+
+/// Shows the picture and everything that is done with the mouse on it.
+pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Result<(), GpuError>) {
+    let PictureInputs {
+        settings,
+        viewport,
+        handles,
+        cut_handles,
+        selected_light,
+        compare,
+        overlay,
+        probe,
+        slices,
+        hints,
+        volume,
+        facts,
+        commands,
+    } = inputs;
+    let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
+    let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
+    let Some(&VolumeFacts { scene, is_anatomical, .. }) = volume else {
+        ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
+        return (canvas, Ok(()));
+    };
+    orbit::navigate(
+        ui,
+        &response,
+        settings,
+        *selected_light,
+        !(handles.takes_wheel || cut_handles.takes_wheel),
+        viewport.dataset().map(|dataset| dataset.volume().value_range()),
+    );
+    if response.double_clicked()
+        && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
+        && let Some(found) = light_probe::seen_at(dataset.volume(), settings, canvas.rect, at)
+    {
+        settings.camera.turn_about(found.point);
+    }
+    if slices.open
+        && response.clicked()
+        && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
+        && let Some(found) = light_probe::seen_at(dataset.volume(), settings, canvas.rect, at)
+    {
+        slices.point_at(found.index, dataset.volume().dims());
+    }
+    // Painted first, filled in when the lights have been moved: no frame of delay.
+    let places = [(); 2].map(|()| ui.painter().add(Shape::Noop));
+    let moving =
+        ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
+    overlay.outline(ui, canvas.rect, &settings.camera, &scene, moving);
+    let view_projection = ViewProjection { camera: settings.camera.clone(), picture: canvas.rect };
+    slices.mark(&ui.painter_at(canvas.rect), &view_projection, &scene);
+    cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
+    handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
+    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, &scene, is_anatomical) {
+        commands.push(Command::LookFrom(view));
+    }
+    if overlay.on {
+        light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
+    }
+    if let Some(dataset) = viewport.dataset().filter(|_| probe.on) {
+        let pointer = response.hover_pos().filter(|_| !response.dragged());
+        probe.show(ui, canvas.rect, settings, dataset.volume(), pointer);
+    }
+    settings.sanitise();
+    let result = if canvas.size.contains(&0) {
+        Ok(())
+    } else {
+        viewport.advance(compare.looks(settings), canvas.size, ui.ctx())
+    };
+    hints.show(ui, canvas.rect, &response);
+    let pictures = viewport.pictures();
+    compare.ui(ui, canvas.rect, &pictures);
+    for (place, (part, shape)) in places.into_iter().zip(compare.shapes(canvas.rect, &pictures)) {
+        ui.painter_at(part).set(place, shape);
+    }
+    (canvas, result)
+}

@@ -1,0 +1,144 @@
+//! Measures how bright pictures are, and exposes previews so that they are as bright as those at full quality.
+
+use std::time::{Duration, Instant};
+
+use super::exposure::{Exposures, Kind};
+use super::quality::QualityLevel;
+use super::request::{FrameRequest, Scene};
+use crate::gpu::{GpuError, RenderOptions, Report, dark_share, mean_luminance};
+use crate::model::Settings;
+use crate::plan::Request;
+
+/// Largest previews whose brightness is measured: two milliseconds for a software adapter.
+const EXPOSED_PIXELS: u64 = 1 << 18;
+
+/// How often darkness is measured while something moves on an adapter that previews at full quality:
+/// it reads back sixteen bytes per pixel.
+const MEASURING_INTERVAL: Duration = Duration::from_millis(250);
+
+/// What is known of the brightness of pictures of one volume.
+#[derive(Debug)]
+pub(super) struct Brightness {
+    exposures: Exposures,
+    /// When darkness was measured.
+    measured: Instant,
+    /// The last preview that was measured.
+    last_preview: Option<FrameRequest>,
+}
+
+impl Brightness {
+    /// Nothing is known.
+    pub(super) fn new() -> Self {
+        Self { exposures: Exposures::default(), measured: Instant::now(), last_preview: None }
+    }
+
+    /// Forgets everything, as with another volume.
+    pub(super) fn forget(&mut self) {
+        (self.exposures, self.last_preview) = (Exposures::default(), None);
+    }
+
+    /// How long to expose a picture; `None` where that is not compensated.
+    pub(super) fn exposure(
+        &self,
+        frame_request: &FrameRequest,
+        quality: QualityLevel,
+        report: &Report,
+    ) -> Option<f32> {
+        is_compensated(frame_request, quality)
+            .then(|| self.exposures.of(kind_of(quality, report)).unwrap_or(1.0) as f32)
+    }
+
+    /// The share of a picture at full quality that is nearly black; `None` if it was not measured. Every picture is
+    /// measured that is at rest (`is_at_rest`), others now and then.
+    pub(super) fn measure_full(
+        &mut self,
+        scene: &mut Scene,
+        frame_request: &FrameRequest,
+        is_at_rest: bool,
+    ) -> Result<Option<f64>, GpuError> {
+        if !is_at_rest && self.measured.elapsed() < MEASURING_INTERVAL {
+            return Ok(None);
+        }
+        self.measured = Instant::now();
+        let light = scene.renderer.read_light()?;
+        if frame_request.looks.right.is_none() {
+            let is_of_last_preview = self.last_preview.as_ref() == Some(frame_request);
+            self.exposures.settle(mean_luminance(&light), is_of_last_preview);
+        }
+        Ok(Some(dark_share(&light)))
+    }
+
+    /// Learns from a preview, and shows it again with the exposure that makes it as bright as the last picture at full
+    /// quality (`settled`).
+    pub(super) fn measure_preview(
+        &mut self,
+        scene: &mut Scene,
+        frame_request: &FrameRequest,
+        quality: QualityLevel,
+        request: &Request,
+        options: &RenderOptions,
+        settled: Option<&Settings>,
+    ) -> Result<(), GpuError> {
+        let [width, height] = request.size;
+        let is_small = u64::from(width) * u64::from(height) <= EXPOSED_PIXELS;
+        // What changes more than a movement may change the brightness, and should be seen to.
+        let moves = settled.is_some_and(|settled| is_movement(settled, &frame_request.looks.left));
+        if !(is_compensated(frame_request, quality) && moves && is_small) {
+            return Ok(());
+        }
+        let mean = mean_luminance(&scene.renderer.read_light()?);
+        self.last_preview = Some(frame_request.clone());
+        let kind = kind_of(quality, scene.renderer.report());
+        if let Some(exposure) = self.exposures.preview(kind, mean) {
+            expose(scene, request, &RenderOptions { exposure: exposure as f32, ..options.clone() })?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether it is a preview whose brightness is compensated: not of two looks, whose difference counts.
+fn is_compensated(frame_request: &FrameRequest, quality: QualityLevel) -> bool {
+    quality != QualityLevel::FULL && frame_request.looks.right.is_none()
+}
+
+/// Whether only the camera and the places of lights differ.
+fn is_movement(from: &Settings, to: &Settings) -> bool {
+    let mut moved = from.clone();
+    moved.camera = to.camera.clone();
+    for (light, target) in moved.lights.iter_mut().zip(&to.lights) {
+        light.position = target.position;
+    }
+    moved == *to
+}
+
+/// What decides how far the brightness of a preview is off.
+fn kind_of(quality: QualityLevel, report: &Report) -> Kind {
+    Kind { scale: quality.scale, quick_eye: quality.quick_eye, light_divisor: report.light_divisor }
+}
+
+/// Shows a picture again with another exposure: a display pass.
+fn expose(scene: &mut Scene, request: &Request, options: &RenderOptions) -> Result<(), GpuError> {
+    let mut job = scene.renderer.begin(&scene.dataset, request.clone(), options)?;
+    while job.step()? {}
+    scene.renderer.context().wait()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_camera_and_lights_move() {
+        let home = Settings::default();
+        let changed = |change: fn(&mut Settings)| {
+            let mut settings = home.clone();
+            change(&mut settings);
+            is_movement(&home, &settings)
+        };
+        assert!(changed(|settings| settings.camera.orbit(20.0, 5.0)));
+        assert!(changed(|settings| settings.lights[0].position = [1.0, 2.0, 3.0]));
+        assert!(!changed(|settings| settings.lights[0].intensity = 0.1));
+        assert!(!changed(|settings| settings.shadows.gain = 2.0));
+        assert!(!changed(|settings| settings.lights.clear()));
+    }
+}
