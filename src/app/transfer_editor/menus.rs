@@ -6,6 +6,7 @@ use super::super::text::{self, Named};
 use crate::app::shell::commands::Command;
 use crate::app::shell::theme;
 use crate::app::shell::volume_facts::VolumeFacts;
+use crate::data::ValueRange;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
 /// Size of the strip that shows a colour map.
@@ -90,9 +91,9 @@ fn strip(ui: &mut Ui, map: &ColorMap) {
 }
 
 /// Moves the whole curve, or spreads it. The limits keep every point near the volume's values.
-pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (f64, f64)) {
+pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: ValueRange) {
     let (Some(&first), Some(&last)) = (function.points.first(), function.points.last()) else { return };
-    let span = (range.1 - range.0).max(1e-12);
+    let span = range.span().max(1e-12);
     let (middle, width) = (f64::midpoint(first.value, last.value), last.value - first.value);
     let (mut to, mut wide) = (middle, width);
     let most = function.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
@@ -110,7 +111,7 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
     let label = ui.label(text::transfer::LEVEL.name);
     let level = DragValue::new(&mut to)
         .speed(span / 400.0)
-        .range(range.0 - span..=range.1 + span)
+        .range(range.low - span..=range.high + span)
         .clamp_existing_to_range(false);
     ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tip);
     let label = ui.label(text::transfer::WINDOW.name);
@@ -126,12 +127,7 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
 }
 
 /// What changes the shape of the curve. `shown`: the values that the plot shows.
-pub(super) fn shapes(
-    ui: &mut Ui,
-    function: &mut TransferFunction,
-    volume: &VolumeFacts,
-    shown: ((f64, f64), bool),
-) {
+pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &VolumeFacts, shown: ValueRange) {
     ui.menu_button(text::transfer::SHAPE, |ui| {
         let clicked = |ui: &mut Ui, named: Named| ui.button(named.name).on_hover_text(named.tip).clicked();
         if clicked(ui, text::transfer::FIT) {
@@ -149,8 +145,7 @@ pub(super) fn shapes(
 /// Spreads the points over the values that occur: all but two hundredths of the voxels at either end, since most
 /// volumes have much that is empty.
 fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
-    let value =
-        |share: f64| volume.range.0 + volume.histogram.percentile(share) * (volume.range.1 - volume.range.0);
+    let value = |share: f64| volume.range.low + volume.histogram.percentile(share) * volume.range.span();
     let (low, high) = (value(0.02), value(0.998));
     let (Some(first), Some(last)) = (function.points.first(), function.points.last()) else { return };
     let (from, to) = (first.value, last.value);
@@ -163,7 +158,7 @@ fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
 }
 
 /// A smooth bump of opacity around the middle of the window that is shown.
-fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
+fn add_bump(function: &mut TransferFunction, ValueRange { low, high }: ValueRange) {
     let (middle, width) = (f64::midpoint(low, high), (high - low) / 10.0);
     let (first, last) = (middle - 1.25 * width, middle + 1.25 * width);
     cut_out(function, first, last);
@@ -179,7 +174,7 @@ fn add_bump(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool
 }
 
 /// A band of opacity with sharp ends around the middle of the window that is shown.
-fn add_box(function: &mut TransferFunction, ((low, high), _): ((f64, f64), bool)) {
+fn add_box(function: &mut TransferFunction, ValueRange { low, high }: ValueRange) {
     let (middle, half) = (f64::midpoint(low, high), (high - low) / 20.0);
     let first = cut_out(function, middle - half, middle + half);
     let begin = function.points[first];
@@ -210,7 +205,7 @@ mod tests {
             ..TransferFunction::default()
         };
         let before = function.clone();
-        add_box(&mut function, ((0.0, 100.0), true));
+        add_box(&mut function, ValueRange::new(0.0, 100.0));
         assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
         for value in [45.001, 50.0, 54.999] {
             assert!((function.opacity_at(value) - 0.7).abs() < 1e-9, "{value}");
@@ -228,7 +223,7 @@ mod tests {
             points: vec![point(0.0, 0.0), point(100.0, 0.2)],
             ..TransferFunction::default()
         };
-        add_bump(&mut function, ((0.0, 100.0), true));
+        add_bump(&mut function, ValueRange::new(0.0, 100.0));
         assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
         assert!((function.opacity_at(50.0) - 0.7).abs() < 1e-9);
         for value in [20.0, 37.0, 63.0, 80.0] {

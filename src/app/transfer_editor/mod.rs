@@ -20,6 +20,7 @@ use super::shell::commands::Command;
 use super::shell::theme;
 use super::shell::volume_facts::VolumeFacts;
 use super::text;
+use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
 use crate::model::{Settings, TransferFunction};
 
@@ -132,7 +133,7 @@ impl TransferEditor {
         let selected = self.selection.within(function.points.len());
         if selected.is_empty() {
             menus::whole_curve(ui, function, volume.range);
-            menus::shapes(ui, function, volume, self.zoom.shown(volume.range));
+            menus::shapes(ui, function, volume, self.zoom.shown(volume.range).range);
             if is_wide {
                 ui.add(egui::Label::new(egui::RichText::new(text::transfer::HINT).weak()).truncate());
             }
@@ -206,7 +207,7 @@ impl TransferEditor {
         ui: &Ui,
         axes: &Axes,
         function: &mut TransferFunction,
-        (name, range): (&str, (f64, f64)),
+        (name, range): (&str, ValueRange),
         hovered: bool,
     ) {
         let painter = ui.painter_at(axes.area.expand(theme::POINT_RADIUS + 2.0));
@@ -280,7 +281,7 @@ impl TransferEditor {
         id: egui::Id,
         axes: &Axes,
         function: &mut TransferFunction,
-        range: (f64, f64),
+        range: ValueRange,
     ) {
         let arrows =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
@@ -290,7 +291,7 @@ impl TransferEditor {
         };
         let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
         if right != 0.0 || up != 0.0 {
-            let span = axes.range.1 - axes.range.0;
+            let span = axes.range.span();
             self.selection.shift(function, range, (right * NUDGE[0] * span, up * NUDGE[1]));
         }
     }

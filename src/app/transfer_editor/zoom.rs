@@ -4,6 +4,7 @@ use eframe::egui::{PointerButton, Rect, Response, Ui};
 
 use super::super::text;
 use crate::app::viewport::orbit::wheel_notches;
+use crate::data::ValueRange;
 
 /// A notch of the wheel shows this much less.
 const ZOOM_PER_NOTCH: f64 = 1.2;
@@ -13,27 +14,36 @@ const LEAST_SHARE: f64 = 0.02;
 /// A part of the values; nothing is all of them.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Zoom {
-    part: Option<(f64, f64)>,
+    part: Option<ValueRange>,
+}
+
+/// What the plot shows of a volume's values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shown {
+    /// From the left border to the right one.
+    pub range: ValueRange,
+    /// Whether these are all.
+    pub is_whole: bool,
 }
 
 impl Zoom {
-    /// The values that are shown of a range, and whether these are all.
-    pub(super) fn shown(&self, range: (f64, f64)) -> ((f64, f64), bool) {
+    /// What is shown of a range.
+    pub(super) fn shown(&self, range: ValueRange) -> Shown {
         // Another volume has other values.
-        match self.part.filter(|part| part.0 >= range.0 && part.1 <= range.1) {
-            Some(part) => (part, false),
-            None => (range, true),
+        match self.part.filter(|part| part.low >= range.low && part.high <= range.high) {
+            Some(part) => Shown { range: part, is_whole: false },
+            None => Shown { range, is_whole: true },
         }
     }
 
     /// How much wider the plot of all values would be.
-    pub(super) fn factor(&self, range: (f64, f64)) -> f32 {
-        let ((low, high), _) = self.shown(range);
-        ((range.1 - range.0) / (high - low).max(1e-300)).clamp(1.0, 1.0 / LEAST_SHARE) as f32
+    pub(super) fn factor(&self, range: ValueRange) -> f32 {
+        let shown = self.shown(range).range;
+        (range.span() / shown.span().max(1e-300)).clamp(1.0, 1.0 / LEAST_SHARE) as f32
     }
 
     /// Takes what the mouse does on the plot.
-    pub(super) fn ui(&mut self, ui: &Ui, response: &Response, area: Rect, range: (f64, f64)) {
+    pub(super) fn ui(&mut self, ui: &Ui, response: &Response, area: Rect, range: ValueRange) {
         let Some(pointer) = ui.ctx().pointer_hover_pos().filter(|at| area.contains(*at)) else { return };
         let share = f64::from(((pointer.x - area.min.x) / area.width().max(1.0)).clamp(0.0, 1.0));
         let notches = wheel_notches(ui);
@@ -55,26 +65,26 @@ impl Zoom {
     }
 
     /// Shows a share of what is shown now, with the value at `share` where it is.
-    fn by(&mut self, range: (f64, f64), share: f64, factor: f64) {
-        let ((low, high), _) = self.shown(range);
-        let all = range.1 - range.0;
+    fn by(&mut self, range: ValueRange, share: f64, factor: f64) {
+        let ValueRange { low, high } = self.shown(range).range;
+        let all = range.span();
         let width = ((high - low) * factor).clamp(LEAST_SHARE * all, all);
         let low = low + share * (high - low - width);
         self.show(range, low, width);
     }
 
     /// Moves by a share of what is shown.
-    fn along(&mut self, range: (f64, f64), share: f64) {
-        let ((low, high), is_whole) = self.shown(range);
+    fn along(&mut self, range: ValueRange, share: f64) {
+        let Shown { range: part, is_whole } = self.shown(range);
         if !is_whole {
-            self.show(range, low + share * (high - low), high - low);
+            self.show(range, part.low + share * part.span(), part.span());
         }
     }
 
-    fn show(&mut self, range: (f64, f64), low: f64, width: f64) {
-        let low = low.clamp(range.0, (range.1 - width).max(range.0));
-        let whole = width >= (range.1 - range.0) * (1.0 - 1e-9);
-        self.part = (!whole).then_some((low, (low + width).min(range.1)));
+    fn show(&mut self, range: ValueRange, low: f64, width: f64) {
+        let low = low.clamp(range.low, (range.high - width).max(range.low));
+        let whole = width >= range.span() * (1.0 - 1e-9);
+        self.part = (!whole).then_some(ValueRange::new(low, (low + width).min(range.high)));
     }
 }
 
@@ -84,13 +94,13 @@ mod tests {
 
     #[test]
     fn the_value_under_the_pointer_stays() {
-        let (mut zoom, range) = (Zoom::default(), (-1000.0, 3000.0));
+        let (mut zoom, range) = (Zoom::default(), ValueRange::new(-1000.0, 3000.0));
         zoom.by(range, 0.25, 0.5);
-        let ((low, high), is_whole) = zoom.shown(range);
+        let Shown { range: ValueRange { low, high }, is_whole } = zoom.shown(range);
         assert!(!is_whole && (low + 0.25 * (high - low) - 0.0).abs() < 1e-9 && high - low == 2000.0);
         assert_eq!(zoom.factor(range), 2.0);
         zoom.along(range, -9.0);
-        assert_eq!(zoom.shown(range).0, (-1000.0, 1000.0), "no further than the values");
+        assert_eq!(zoom.shown(range).range, ValueRange::new(-1000.0, 1000.0), "no further than the values");
         for _ in 0..60 {
             zoom.by(range, 0.5, 0.7);
         }
@@ -101,6 +111,6 @@ mod tests {
         assert_eq!(zoom, Zoom::default());
         // Another volume.
         zoom.by(range, 0.0, 0.1);
-        assert!(zoom.shown((0.0, 1.0)).1);
+        assert!(zoom.shown(ValueRange::UNIT).is_whole);
     }
 }

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Key, PointerButton, Response};
 
 use crate::app::shell::light_keys;
+use crate::data::ValueRange;
 use crate::model::Settings;
 
 /// Degrees of orbit per point of drag.
@@ -25,7 +26,7 @@ pub(crate) fn navigate(
     settings: &mut Settings,
     selected: usize,
     zooms: bool,
-    range: Option<(f64, f64)>,
+    range: Option<ValueRange>,
 ) {
     let Settings { camera, lights, transfer, .. } = settings;
     let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));
@@ -39,7 +40,7 @@ pub(crate) fn navigate(
         light_keys::turn(light, camera, dx * DEGREES_PER_POINT, -dy * DEGREES_PER_POINT);
     } else if let Some(range) = range.filter(|_| response.dragged_by(PointerButton::Secondary)) {
         // As in the slices: down means higher values.
-        let shift = dy / height.max(1.0) * (range.1 - range.0);
+        let shift = dy / height.max(1.0) * range.span();
         transfer.shift_and_stretch(shift, (WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
     } else if pans {
         camera.pan(dx, dy, height);
