@@ -1,6 +1,7 @@
 //! The mouse on the picture: orbit, pan, zoom.
 
 use eframe::egui::{self, Key, PointerButton, Response};
+use glam::DVec2;
 
 use crate::app::shell::light_keys;
 use crate::data::ValueRange;
@@ -53,7 +54,7 @@ pub(crate) fn navigate(
         if notches != 0.0 || pinch != 1.0 {
             let factor = ZOOM_PER_NOTCH.powf(-notches) / f64::from(pinch);
             let at = response.hover_pos().unwrap_or(response.rect.center()) - response.rect.min;
-            camera.zoom_at(factor, (f64::from(at.x), f64::from(at.y)), (width, height));
+            camera.zoom_at(factor, DVec2::new(f64::from(at.x), f64::from(at.y)), DVec2::new(width, height));
         }
     }
 }
