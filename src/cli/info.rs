@@ -5,8 +5,8 @@ use serde_json::json;
 
 use super::scene::LoadArgs;
 use super::{CliError, print_line};
-use crate::data::Dataset;
 use crate::data::load::{LoadControl, open};
+use crate::data::{Dataset, ValueRange};
 
 /// Percentiles that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
@@ -27,7 +27,7 @@ pub(super) struct InfoArgs {
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let loaded = Dataset::new(open(&args.file, &args.load.load_options()?, &LoadControl::new())?);
     let volume = loaded.volume();
-    let (min, max) = volume.value_range();
+    let ValueRange { low, high } = volume.value_range();
     let percentile = |p: u32| volume.value_of(loaded.histogram().percentile(f64::from(p) / 100.0));
     let percentiles: serde_json::Map<_, _> =
         PERCENTILES.iter().map(|&p| (format!("p{p}"), json!(percentile(p)))).collect();
@@ -40,7 +40,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "dims": volume.dims(),
         "type": volume.samples().voxel_type().name(),
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
-        "range": [min, max],
+        "range": [low, high],
         "non_finite_voxels": volume.non_finite_voxels(),
         "percentiles": percentiles,
         "cpu_bytes": voxels * volume.samples().voxel_type().bytes() as u64,
@@ -54,7 +54,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(volume.name());
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()));
     print_line(&format!("  spacing      {} × {} × {} mm", spacing.x, spacing.y, spacing.z));
-    print_line(&format!("  values       {min} … {max}"));
+    print_line(&format!("  values       {low} … {high}"));
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
     print_line(&format!("  percentiles  {}", listed.join(", ")));
     if volume.non_finite_voxels() > 0 {

@@ -21,19 +21,29 @@ pub(super) struct LightVolumeArgs {
     output: PathBuf,
     /// One slice of it, for instance z:40 (counted in voxels of the light volume)
     #[arg(long, value_name = "AXIS:INDEX", value_parser = parse_slice)]
-    slice: Option<(usize, usize)>,
+    slice: Option<Slice>,
     /// Which light, counted from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     light: usize,
+}
+
+/// A slice across an axis of the light volume.
+#[derive(Debug, Clone, Copy)]
+struct Slice {
+    /// 0, 1 or 2 for x, y or z.
+    axis: usize,
+    /// Where along it, in voxels.
+    index: usize,
 }
 
 /// Index axes, as users name them.
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// `z:40`
-fn parse_slice(text: &str) -> Result<(usize, usize), String> {
+fn parse_slice(text: &str) -> Result<Slice, String> {
     let parsed = text.split_once(':').and_then(|(axis, index)| {
-        Some((AXES.iter().position(|name| axis == name.to_string())?, index.parse().ok()?))
+        let axis = AXES.iter().position(|name| axis == name.to_string())?;
+        Some(Slice { axis, index: index.parse().ok()? })
     });
     parsed.ok_or_else(|| format!("expected x, y or z and a number, as in z:40, found {text:?}"))
 }
@@ -59,7 +69,7 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     })?;
     match args.slice {
         None => write_atomically(&args.output, &light_volume_nrrd(loaded.volume(), &attenuation))?,
-        Some((axis, index)) => {
+        Some(Slice { axis, index }) => {
             let slice = attenuation.slice(axis, index).ok_or_else(|| {
                 CliError::Usage(format!(
                     "--slice: there is no slice {index}: the light volume has {} along {} (command line, --slice)",

@@ -6,6 +6,8 @@
 //! on every side, and the 0 of the outside where that leaves the grid: skipping a brick whose range
 //! is transparent can then not change any pixel.
 
+use std::ops::RangeInclusive;
+
 use rayon::prelude::*;
 
 use super::Volume;
@@ -67,17 +69,17 @@ fn union(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
 
 /// First and last voxel that brick `b` looks at along an axis of `n` voxels, if any, and whether it looks
 /// outside.
-fn reach(b: usize, n: usize) -> (Option<(usize, usize)>, bool) {
+fn reach(b: usize, n: usize) -> (Option<RangeInclusive<usize>>, bool) {
     let (low, high) = (b * BRICK_EDGE, (b + 1) * BRICK_EDGE - 1 + REACH);
     let first = low.saturating_sub(REACH);
-    ((first < n).then_some((first, high.min(n - 1))), low < REACH || high > n - 1)
+    ((first < n).then(|| first..=high.min(n - 1)), low < REACH || high > n - 1)
 }
 
 /// The union of what lies in reach of brick `b`, and of nothing where it looks outside.
 fn gather(b: usize, n: usize, at: impl Fn(usize) -> [f32; 2]) -> [f32; 2] {
     let (inside, outside) = reach(b, n);
     let start = if outside { [0.0, 0.0] } else { EMPTY };
-    inside.map_or(start, |(first, last)| (first..=last).fold(start, |range, i| union(range, at(i))))
+    inside.map_or(start, |voxels| voxels.fold(start, |range, i| union(range, at(i))))
 }
 
 /// The range of every brick: slices reduced in x and y, then layers of slices in z.
@@ -89,7 +91,7 @@ fn ranges(volume: &Volume, dims: [usize; 3]) -> Vec<[f32; 2]> {
             .map(|at| {
                 let (row, (inside, outside)) = (&densities[at / dims[0] * nx..], reach(at % dims[0], nx));
                 let start = if outside { [0.0, 0.0] } else { EMPTY };
-                let seen = inside.map_or(&row[..0], |(first, last)| &row[first..=last]);
+                let seen = inside.map_or(&row[..0], |voxels| &row[voxels]);
                 seen.iter().fold(start, |[low, high], &d| [low.min(d), high.max(d)])
             })
             .collect();

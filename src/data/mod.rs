@@ -10,6 +10,7 @@ pub mod load;
 mod reduce;
 mod small_file;
 pub mod synthetic;
+mod value_range;
 mod volume;
 
 pub use bricks::{BRICK_EDGE, Bricks};
@@ -18,4 +19,5 @@ pub use dataset::Dataset;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use reduce::reduced_dims;
 pub use small_file::read_small;
+pub use value_range::ValueRange;
 pub use volume::{Samples, Volume, VolumeError, VoxelType};

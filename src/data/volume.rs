@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::ValueRange;
 use crate::math::SceneSpace;
 
 /// The number types that a voxel can have.
@@ -113,21 +114,21 @@ impl Samples {
         with_samples!(self, values => values[voxel] as f64)
     }
 
-    /// Smallest and largest finite value and the number of voxels that are not finite.
-    fn finite_range(&self) -> Option<(f64, f64, usize)> {
+    /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
+    fn finite_range(&self) -> Option<(ValueRange, usize)> {
         #[expect(
             trivial_numeric_casts,
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let (min, max, odd) = with_samples!(self, values => values.iter().fold(
+        let (low, high, non_finite) = with_samples!(self, values => values.iter().fold(
             (f64::INFINITY, f64::NEG_INFINITY, 0),
-            |(min, max, odd), &value| {
+            |(low, high, non_finite), &value| {
                 let value = value as f64;
-                if value.is_finite() { (min.min(value), max.max(value), odd) } else { (min, max, odd + 1) }
+                if value.is_finite() { (low.min(value), high.max(value), non_finite) } else { (low, high, non_finite + 1) }
             },
         ));
-        (min <= max).then_some((min, max, odd))
+        (low <= high).then_some((ValueRange::new(low, high), non_finite))
     }
 
     /// A 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
@@ -167,8 +168,7 @@ pub struct Volume {
     file_dims: [usize; 3],
     world_from_index: DAffine3,
     samples: Samples,
-    min_value: f64,
-    max_value: f64,
+    value_range: ValueRange,
     non_finite_voxels: usize,
     unit_mm: Option<f64>,
     is_anatomical: bool,
@@ -201,8 +201,7 @@ impl Volume {
         if !(world_from_index.is_finite() && lengths.min_element() > 0.0 && flatness > 1e-6) {
             return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
         }
-        let (min_value, max_value, non_finite_voxels) =
-            samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+        let (value_range, non_finite_voxels) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
@@ -214,8 +213,7 @@ impl Volume {
             file_dims: dims,
             world_from_index,
             samples,
-            min_value,
-            max_value,
+            value_range,
             non_finite_voxels,
             unit_mm: None,
             is_anatomical: false,
@@ -313,8 +311,8 @@ impl Volume {
     }
 
     /// The smallest and the largest finite value, in data units.
-    pub fn value_range(&self) -> (f64, f64) {
-        (self.min_value, self.max_value)
+    pub fn value_range(&self) -> ValueRange {
+        self.value_range
     }
 
     /// How many voxels hold NaN or an infinity; they count as the smallest value.
@@ -335,13 +333,14 @@ impl Volume {
     /// A value in data units as a density in [0, 1]: 0 at the smallest value of the volume, 1 at
     /// the largest. What lies outside the grid has density 0; so do values that are not finite.
     pub fn density_of(&self, value: f64) -> f64 {
-        let span = self.max_value - self.min_value;
-        if value.is_finite() && span > 0.0 { ((value - self.min_value) / span).clamp(0.0, 1.0) } else { 0.0 }
+        let ValueRange { low, .. } = self.value_range;
+        let span = self.value_range.span();
+        if value.is_finite() && span > 0.0 { ((value - low) / span).clamp(0.0, 1.0) } else { 0.0 }
     }
 
     /// The inverse of [`Self::density_of`].
     pub fn value_of(&self, density: f64) -> f64 {
-        self.min_value + density * (self.max_value - self.min_value)
+        self.value_range.at(density)
     }
 
     /// Densities in [0, 1] of the voxels of one z-slice, x fastest.
@@ -368,7 +367,7 @@ mod tests {
     fn density_spans_the_finite_range() {
         let samples = Samples::F32(vec![f32::NAN, -1000.0, 0.0, 1000.0]);
         let volume = Volume::with_spacing("t", [4, 1, 1], DVec3::ONE, samples).unwrap();
-        assert_eq!(volume.value_range(), (-1000.0, 1000.0));
+        assert_eq!(volume.value_range(), ValueRange::new(-1000.0, 1000.0));
         assert_eq!(volume.non_finite_voxels(), 1);
         assert_eq!(volume.slice_densities(0), [0.0, 0.0, 0.5, 1.0]);
         assert_eq!(volume.value_of(0.5), 0.0);

@@ -72,7 +72,7 @@ impl Reference<'_> {
     fn eye_stack<'r>(&'r self, frame: &'r SheetFrame) -> Stack<'r> {
         let sampling = &self.settings.sampling;
         let table = self.settings.baked_eye(self.range, &self.scene);
-        Stack::new(self, frame, (sampling.kernel, sampling.quadrature), table, Cutting::Seen(self.seen()))
+        Stack::new(self, frame, sampling.kernel, sampling.quadrature, table, Cutting::Seen(self.seen()))
     }
 }
 

@@ -12,13 +12,16 @@ impl Reference<'_> {
     /// The floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
     pub fn floor(&self, size: [u32; 2]) -> Vec<[f64; 4]> {
         let settings = self.settings;
-        let kernel = (settings.shadows.kernel, settings.shadows.quadrature);
+        let shadows = &settings.shadows;
         let attenuates = settings.shadows.algorithm != ShadowAlgorithm::Off;
         let lamps: Vec<_> = (0..settings.lights.len())
             .filter(|&index| settings.lights[index].on)
             .map(|index| {
                 let rays = attenuates && settings.lights[index].needs_volume();
-                (self.light(index), rays.then(|| ShadowRays::new(self, index, kernel)))
+                (
+                    self.light(index),
+                    rays.then(|| ShadowRays::new(self, index, shadows.kernel, shadows.quadrature)),
+                )
             })
             .collect();
         let [width, height] = size.map(f64::from);

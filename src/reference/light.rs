@@ -40,7 +40,8 @@ impl Reference<'_> {
         let stack = Stack::new(
             self,
             &view.frame,
-            (shadows.kernel, shadows.quadrature),
+            shadows.kernel,
+            shadows.quadrature,
             table,
             Cutting::Shading(self.shading()),
         );

@@ -41,7 +41,7 @@ pub use pyramid::Pyramid;
 
 use glam::DVec3;
 
-use crate::data::Volume;
+use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
 use crate::model::{Kernel, SceneLight, Settings};
 use kernel::Profile;
@@ -101,7 +101,7 @@ pub struct Reference<'a> {
     settings: &'a Settings,
     options: Options,
     scene: SceneSpace,
-    range: (f64, f64),
+    range: ValueRange,
     field: Field,
     pyramid: Pyramid,
 }

@@ -58,8 +58,13 @@ impl<'r> Shader<'r> {
             attenuated: match attenuations.get(index) {
                 // The picture's own reconstruction: once for all rays (P §3.3).
                 _ if algorithm == ShadowAlgorithm::Direct && light.needs_volume() => {
-                    let sampling = (settings.sampling.kernel, settings.sampling.quadrature);
-                    Attenuated::Rays(Box::new(ShadowRays::new(reference, index, sampling)))
+                    let sampling = &settings.sampling;
+                    Attenuated::Rays(Box::new(ShadowRays::new(
+                        reference,
+                        index,
+                        sampling.kernel,
+                        sampling.quadrature,
+                    )))
                 }
                 Some(Some(volume)) if shadows_on && light.casts_shadows => Attenuated::Volume(volume),
                 _ => Attenuated::Not,

@@ -25,7 +25,8 @@ impl<'r> ShadowRays<'r> {
     pub(super) fn new(
         reference: &'r Reference<'r>,
         index: usize,
-        (kernel, quadrature): (Kernel, Quadrature),
+        kernel: Kernel,
+        quadrature: Quadrature,
     ) -> Self {
         Self {
             reference,
@@ -87,7 +88,7 @@ impl Reference<'_> {
     pub(super) fn raycast(&self, index: usize) -> Attenuation {
         let shadows = &self.settings.shadows;
         let mut volume = Attenuation::unlit(self.scene.dims, shadows.resolution.divisor());
-        let rays = ShadowRays::new(self, index, (shadows.kernel, shadows.quadrature));
+        let rays = ShadowRays::new(self, index, shadows.kernel, shadows.quadrature);
         volume.values = (0..volume.values.len())
             .into_par_iter()
             .map(|voxel| rays.attenuation(volume.point_of(voxel)))

@@ -45,7 +45,8 @@ impl<'r> Stack<'r> {
     pub(super) fn new(
         reference: &'r Reference<'r>,
         frame: &'r SheetFrame,
-        (kernel, quadrature): (Kernel, Quadrature),
+        kernel: Kernel,
+        quadrature: Quadrature,
         table: BakedTransfer,
         remaining: Cutting,
     ) -> Self {

@@ -160,9 +160,13 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     let wanted = harness.state().settings().clone();
     while !std::fs::read_to_string(&kept).is_ok_and(|text| {
         let read = chiaroscuro::model::Record::read(&text).expect("a record");
-        read.apply(&wanted, (0.0, 1.0)).expect("settings").0 == wanted
+        read.apply(&wanted, chiaroscuro::data::ValueRange::UNIT).expect("settings").0 == wanted
             && text.contains("builtin:chair")
-            && read.apply(&chiaroscuro::model::Settings::default(), (0.0, 1.0)).expect("settings").0 == wanted
+            && read
+                .apply(&chiaroscuro::model::Settings::default(), chiaroscuro::data::ValueRange::UNIT)
+                .expect("settings")
+                .0
+                == wanted
     }) {
         assert!(begin.elapsed() < PATIENCE, "the look was not kept");
         harness.step();

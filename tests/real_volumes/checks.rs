@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use chiaroscuro::data::load::{LoadControl, LoadError, LoadOptions, RawFormat, load};
 use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::data::{Histogram, Samples, Volume};
+use chiaroscuro::data::{Histogram, Samples, ValueRange, Volume};
 use chiaroscuro::model::auto;
 
 use crate::manifest::{Facts, manifest};
@@ -43,7 +43,7 @@ fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
     if facts.spacing_mm.is_some_and(differs) {
         found.push(format!("spacing {spacing_mm:?}, {:?} expected", facts.spacing_mm));
     }
-    let (low, high) = volume.value_range();
+    let ValueRange { low, high } = volume.value_range();
     if low >= high {
         found.push(format!("values from {low} to {high}"));
     }

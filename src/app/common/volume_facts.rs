@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::worker::loader::Reading;
-use crate::data::{Dataset, Histogram, VoxelType};
+use crate::data::{Dataset, Histogram, ValueRange, VoxelType};
 use crate::math::SceneSpace;
 
 /// Facts about a volume; all of them fixed.
@@ -24,7 +24,7 @@ pub(crate) struct VolumeFacts {
     /// Millimetres between voxel centres along x, y, z.
     pub spacing_mm: [f64; 3],
     /// Smallest and largest value.
-    pub range: (f64, f64),
+    pub range: ValueRange,
     /// How many different values there can be, for integers.
     pub levels: Option<usize>,
     /// Voxels that are not finite.
@@ -44,7 +44,7 @@ impl VolumeFacts {
     pub(crate) fn of(source: String, reading: Reading, dataset: &Dataset) -> Self {
         let volume = dataset.volume();
         let voxel_type = volume.samples().voxel_type();
-        let (low, high) = volume.value_range();
+        let range = volume.value_range();
         let whole = !matches!(voxel_type, VoxelType::F32 | VoxelType::F64);
         Self {
             name: volume.name().to_owned(),
@@ -54,8 +54,8 @@ impl VolumeFacts {
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
             spacing_mm: volume.spacing_mm().into(),
-            range: volume.value_range(),
-            levels: whole.then_some((high - low) as usize + 1),
+            range,
+            levels: whole.then_some(range.span() as usize + 1),
             non_finite_voxels: volume.non_finite_voxels(),
             bytes: (volume.voxel_count() * voxel_type.bytes()) as u64,
             scene: volume.scene(),

@@ -7,6 +7,7 @@ use super::Panels;
 use super::controls::{choice, row};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::data::ValueRange;
 use crate::model::{Length, Settings};
 
 /// Shows the section.
@@ -21,7 +22,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
 }
 
 fn facts(ui: &mut Ui, volume: &VolumeFacts) {
-    let (low, high) = volume.range;
+    let ValueRange { low, high } = volume.range;
     let mut rows = vec![
         (text::data::NAME, volume.name.clone()),
         (text::data::SOURCE, volume.source.clone()),

@@ -11,6 +11,7 @@ use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
 use crate::app::{App, text};
+use crate::data::ValueRange;
 use crate::model::{Length, Record, Settings, VolumeRecord};
 
 /// What is opened when nothing is named.
@@ -136,12 +137,12 @@ impl App {
     }
 
     /// Smallest and largest value of the open volume.
-    pub(crate) fn value_range(&self) -> (f64, f64) {
-        self.volume.as_ref().map_or((0.0, 1.0), |volume| volume.range)
+    pub(crate) fn value_range(&self) -> ValueRange {
+        self.volume.as_ref().map_or(ValueRange::UNIT, |volume| volume.range)
     }
 
     /// The settings with a record laid over them, for a volume with these values.
-    pub(crate) fn with_record(&mut self, record: &Record, range: (f64, f64)) -> Result<Settings, String> {
+    pub(crate) fn with_record(&mut self, record: &Record, range: ValueRange) -> Result<Settings, String> {
         let (settings, warnings) = record.apply(&self.settings, range).map_err(|err| err.to_string())?;
         if !warnings.is_empty() {
             self.messages.note(warnings.join("; "));
@@ -149,7 +150,7 @@ impl App {
         Ok(settings)
     }
 
-    fn apply_record(&mut self, record: &Record, range: (f64, f64)) {
+    fn apply_record(&mut self, record: &Record, range: ValueRange) {
         match self.with_record(record, range) {
             Ok(settings) => self.settings = settings,
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),

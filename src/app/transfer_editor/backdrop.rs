@@ -9,6 +9,7 @@ use super::plot::Axes;
 use super::theme;
 use crate::app::viewport::canvas::Canvas;
 use crate::app::viewport::paint_callback;
+use crate::data::ValueRange;
 use crate::gpu::{WindowPainter, WindowPicture};
 use crate::model::TransferFunction;
 
@@ -19,7 +20,7 @@ const LEAST_FILL: f32 = 0.25;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Bars {
     /// The values that they share evenly.
-    pub range: (f64, f64),
+    pub range: ValueRange,
     /// Voxels in each.
     pub counts: Vec<u64>,
     /// Rare values are raised so that they can be seen.
@@ -41,8 +42,8 @@ impl Bars {
 
     /// The bar of a value.
     fn at(&self, value: f64) -> Option<usize> {
-        let span = if self.range.1 > self.range.0 { self.range.1 - self.range.0 } else { 1.0 };
-        let place = ((value - self.range.0) / span * self.counts.len() as f64).floor();
+        let span = if self.range.high > self.range.low { self.range.high - self.range.low } else { 1.0 };
+        let place = ((value - self.range.low) / span * self.counts.len() as f64).floor();
         (place >= 0.0 && place < self.counts.len() as f64).then_some(place as usize)
     }
 }
@@ -100,8 +101,8 @@ fn compose(key: &Key, pixels_per_point: f32) -> Vec<u8> {
     let heights = bars.heights();
     // Middles of pixels, in points.
     let point = |pixel: usize| (pixel as f32 + 0.5) / pixels_per_point;
-    let floor = axes.position(axes.range.0, 0.0).y;
-    let tall = floor - axes.position(axes.range.0, 1.0).y;
+    let floor = axes.position(axes.range.low, 0.0).y;
+    let tall = floor - axes.position(axes.range.low, 1.0).y;
     let mut pixels = vec![Color32::BLACK; width * height];
     for column in 0..width {
         let x = canvas.rect.min.x + point(column);
@@ -142,7 +143,11 @@ mod tests {
     fn bars_and_colours_stand_on_the_floor() {
         let area = Rect::from_min_size(pos2(3.0, 400.0), vec2(116.0, 64.0));
         let axes = Axes::new(area, ShownValues { low: 0.0, high: 10.0, is_whole: true });
-        let bars = Bars { range: (0.0, 10.0), counts: vec![0, 8, 4, 0, 0, 0, 0, 0, 0, 0], log: false };
+        let bars = Bars {
+            range: ValueRange::new(0.0, 10.0),
+            counts: vec![0, 8, 4, 0, 0, 0, 0, 0, 0, 0],
+            log: false,
+        };
         // Opaque white from 6 on, nothing before.
         let points = [(0.0, 0.0), (6.0, 0.0), (6.0, 1.0), (10.0, 1.0)];
         let points = points.map(|(value, opacity)| ControlPoint::new(value, [1.0; 3], opacity)).to_vec();

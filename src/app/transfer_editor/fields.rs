@@ -5,6 +5,7 @@ use eframe::egui::{self, DragValue, Slider, Ui};
 use super::super::panels::controls::color;
 use super::super::text;
 use super::super::text::common::DEGREES;
+use crate::data::ValueRange;
 use crate::model::{
     ControlPoint, Easing, TransferFunction, lab_from_lch, lch_from_lab, linear_from_oklab, linear_from_srgb,
     oklab_from_linear, srgb_from_linear,
@@ -25,7 +26,7 @@ pub(super) fn points(
     ui: &mut Ui,
     function: &mut TransferFunction,
     selected: &[usize],
-    range: (f64, f64),
+    range: ValueRange,
     light: bool,
 ) -> bool {
     let Some(&first) = selected.first() else { return false };
@@ -34,7 +35,7 @@ pub(super) fn points(
     if selected.len() == 1 {
         let (low, high) = neighbours(function, first, range);
         let label = ui.label(text::transfer::POINT_VALUE);
-        let speed = (range.1 - range.0).max(1e-12) / 500.0;
+        let speed = range.span().max(1e-12) / 500.0;
         ui.add(DragValue::new(&mut point.value).range(low..=high).speed(speed)).labelled_by(label.id);
     } else {
         ui.label(text::transfer::several(selected.len()));
@@ -106,10 +107,10 @@ fn way(ui: &mut Ui, easing: &mut Easing) {
 }
 
 /// The values between which a point can be moved.
-fn neighbours(function: &TransferFunction, index: usize, range: (f64, f64)) -> (f64, f64) {
+fn neighbours(function: &TransferFunction, index: usize, range: ValueRange) -> (f64, f64) {
     let points: &[ControlPoint] = &function.points;
-    let low = index.checked_sub(1).map_or(range.0, |before| points[before].value);
-    let high = points.get(index + 1).map_or(range.1, |after| after.value);
+    let low = index.checked_sub(1).map_or(range.low, |before| points[before].value);
+    let high = points.get(index + 1).map_or(range.high, |after| after.value);
     // Points from a preset may lie beyond this volume's values.
     let value = points[index].value;
     (low.min(value), high.max(value))

@@ -7,6 +7,7 @@ use super::zoom::ShownValues;
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::data::ValueRange;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
 /// Size of the strip that shows a colour map.
@@ -91,9 +92,9 @@ fn strip(ui: &mut Ui, map: &ColorMap) {
 }
 
 /// Moves the whole curve, or spreads it. The limits keep every point near the volume's values.
-pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (f64, f64)) {
+pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: ValueRange) {
     let (Some(&first), Some(&last)) = (function.points.first(), function.points.last()) else { return };
-    let span = (range.1 - range.0).max(1e-12);
+    let span = (range.high - range.low).max(1e-12);
     let (middle, width) = (f64::midpoint(first.value, last.value), last.value - first.value);
     let (mut to, mut wide) = (middle, width);
     let most = function.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
@@ -111,7 +112,7 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: (
     let label = ui.label(text::transfer::LEVEL.name);
     let level = DragValue::new(&mut to)
         .speed(span / 400.0)
-        .range(range.0 - span..=range.1 + span)
+        .range(range.low - span..=range.high + span)
         .clamp_existing_to_range(false);
     ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tip);
     let label = ui.label(text::transfer::WINDOW.name);
@@ -145,8 +146,9 @@ pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &Volu
 /// Spreads the points over the values that occur: all but two hundredths of the voxels at either end, since most
 /// volumes have much that is empty.
 fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
-    let value =
-        |share: f64| volume.range.0 + volume.histogram.percentile(share) * (volume.range.1 - volume.range.0);
+    let value = |share: f64| {
+        volume.range.low + volume.histogram.percentile(share) * (volume.range.high - volume.range.low)
+    };
     let (low, high) = (value(0.02), value(0.998));
     let (Some(first), Some(last)) = (function.points.first(), function.points.last()) else { return };
     let (from, to) = (first.value, last.value);

@@ -20,6 +20,7 @@ use super::common::commands::Command;
 use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
+use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
 use crate::model::{Settings, TransferFunction};
 
@@ -207,7 +208,7 @@ impl TransferEditor {
         axes: &Axes,
         function: &mut TransferFunction,
         name: &str,
-        range: (f64, f64),
+        range: ValueRange,
         hovered: bool,
     ) {
         let painter = ui.painter_at(axes.area.expand(theme::POINT_RADIUS + 2.0));
@@ -281,7 +282,7 @@ impl TransferEditor {
         id: egui::Id,
         axes: &Axes,
         function: &mut TransferFunction,
-        range: (f64, f64),
+        range: ValueRange,
     ) {
         let arrows =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
@@ -291,7 +292,7 @@ impl TransferEditor {
         };
         let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
         if right != 0.0 || up != 0.0 {
-            let span = axes.range.1 - axes.range.0;
+            let span = axes.range.high - axes.range.low;
             let by = Shift { value: right * NUDGE[0] * span, opacity: up * NUDGE[1] };
             self.selection.shift(function, range, by);
         }

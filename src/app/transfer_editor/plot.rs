@@ -8,6 +8,7 @@ use super::text;
 use super::theme;
 use super::zoom::ShownValues;
 use crate::data::Histogram;
+use crate::data::ValueRange;
 use crate::model::{Settings, TransferFunction};
 
 /// Points between two samples of a curve.
@@ -21,7 +22,7 @@ pub(super) struct Axes {
     /// The whole area, with its margin.
     pub area: Rect,
     /// The smallest and the largest value.
-    pub range: (f64, f64),
+    pub range: ValueRange,
     /// Whether all of the volume's values are shown.
     is_whole: bool,
     plot: Rect,
@@ -32,13 +33,13 @@ impl Axes {
     pub(super) fn new(area: Rect, shown: ShownValues) -> Self {
         let ShownValues { low, high, is_whole } = shown;
         // A volume with a single value still needs an axis.
-        let range = if high > low { (low, high) } else { (low, low + 1.0) };
+        let range = ValueRange::new(low, if high > low { high } else { low + 1.0 });
         Self { area, range, is_whole, plot: area.shrink2(MARGIN) }
     }
 
     /// Where a value and an opacity are.
     pub(super) fn position(&self, value: f64, opacity: f64) -> Pos2 {
-        let x = ((value - self.range.0) / (self.range.1 - self.range.0)).clamp(0.0, 1.0) as f32;
+        let x = ((value - self.range.low) / (self.range.high - self.range.low)).clamp(0.0, 1.0) as f32;
         pos2(
             self.plot.min.x + x * self.plot.width(),
             self.plot.max.y - opacity.clamp(0.0, 1.0) as f32 * self.plot.height(),
@@ -49,14 +50,14 @@ impl Axes {
     pub(super) fn values(&self, at: Pos2) -> (f64, f64) {
         let x = f64::from(((at.x - self.plot.min.x) / self.plot.width()).clamp(0.0, 1.0));
         let y = f64::from(((self.plot.max.y - at.y) / self.plot.height()).clamp(0.0, 1.0));
-        (self.range.0 + x * (self.range.1 - self.range.0), y)
+        (self.range.low + x * (self.range.high - self.range.low), y)
     }
 
     /// Whether a value lies within what is shown.
     pub(super) fn shows(&self, value: f64) -> bool {
         // A volume's outermost points may lie beyond it, at the border.
-        let slack = 1e-9 * (self.range.1 - self.range.0);
-        (self.range.0 - slack..=self.range.1 + slack).contains(&value) || self.is_whole
+        let slack = 1e-9 * (self.range.high - self.range.low);
+        (self.range.low - slack..=self.range.high + slack).contains(&value) || self.is_whole
     }
 
     /// Whether a place across the window is over the plot.
@@ -66,7 +67,8 @@ impl Axes {
 
     /// Where a value is along the plot, also beyond it.
     fn x(&self, value: f64) -> f32 {
-        self.plot.min.x + ((value - self.range.0) / (self.range.1 - self.range.0)) as f32 * self.plot.width()
+        self.plot.min.x
+            + ((value - self.range.low) / (self.range.high - self.range.low)) as f32 * self.plot.width()
     }
 
     /// Places along the value axis at which curves are sampled.
@@ -75,7 +77,7 @@ impl Axes {
         let count = (plot.width() / SAMPLE_STEP).ceil().max(1.0) as usize;
         (0..=count).map(move |i| {
             let share = i as f64 / count as f64;
-            (plot.min.x + share as f32 * plot.width(), range.0 + share * (range.1 - range.0))
+            (plot.min.x + share as f32 * plot.width(), range.low + share * (range.high - range.low))
         })
     }
 
@@ -134,14 +136,14 @@ pub(super) fn labels(painter: &Painter, axes: &Axes) {
         painter.text(at + Vec2::splat(1.0), align, &text, font.clone(), shadow);
         painter.text(at, align, text, font.clone(), ink);
     };
-    write(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.0, axes.range));
-    write(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.1, axes.range));
+    write(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.low, axes.range));
+    write(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.high, axes.range));
     write(plot.left_top(), Align2::LEFT_TOP, text::transfer::OPACITY_ONE.to_owned());
 }
 
 /// A value with as many digits as the range deserves.
-fn number(value: f64, range: (f64, f64)) -> String {
-    let span = (range.1 - range.0).abs().max(1e-300);
+fn number(value: f64, range: ValueRange) -> String {
+    let span = (range.high - range.low).abs().max(1e-300);
     let decimals = (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.decimals$}")
 }
@@ -220,8 +222,8 @@ mod tests {
 
     #[test]
     fn numbers_have_sensible_digits() {
-        assert_eq!(number(1024.0, (0.0, 4095.0)), "1024");
-        assert_eq!(number(0.5, (0.0, 1.0)), "0.50");
-        assert_eq!(number(0.00125, (0.0, 0.004)), "0.00125");
+        assert_eq!(number(1024.0, ValueRange::new(0.0, 4095.0)), "1024");
+        assert_eq!(number(0.5, ValueRange::new(0.0, 1.0)), "0.50");
+        assert_eq!(number(0.00125, ValueRange::new(0.0, 0.004)), "0.00125");
     }
 }

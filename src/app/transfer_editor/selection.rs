@@ -6,6 +6,7 @@ use eframe::egui::{Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
 
 use super::plot::Axes;
 use super::theme;
+use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
 /// Indices of points, and a frame that is being drawn around more of them.
@@ -100,7 +101,7 @@ impl Selection {
 
     /// Moves its points by as much as none of them passes another that stays, leaves the values, or becomes more
     /// than opaque or less than clear.
-    pub(super) fn shift(&mut self, function: &mut TransferFunction, range: (f64, f64), by: Shift) {
+    pub(super) fn shift(&mut self, function: &mut TransferFunction, range: ValueRange, by: Shift) {
         let Shift { value, opacity } = by;
         let selected = self.within(function.points.len());
         let points = &function.points;
@@ -110,7 +111,7 @@ impl Selection {
         for &index in &selected {
             let point = points[index];
             // Points from a preset may lie beyond this volume's values, and stay where they are.
-            let (mut low, mut high) = (range.0.min(point.value), range.1.max(point.value));
+            let (mut low, mut high) = (range.low.min(point.value), range.high.max(point.value));
             if let Some(before) = index.checked_sub(1).filter(|&before| !self.has(before)) {
                 low = points[before].value;
             }
@@ -153,7 +154,7 @@ mod tests {
         for &index in selected {
             selection.toggle(index);
         }
-        selection.shift(&mut function, (0.0, 100.0), Shift { value, opacity });
+        selection.shift(&mut function, ValueRange::new(0.0, 100.0), Shift { value, opacity });
         function.points.iter().map(|point| (point.value, (point.opacity * 1e6).round() / 1e6)).collect()
     }
 
@@ -176,7 +177,7 @@ mod tests {
             let low = 12.3 + f64::from(i) * 0.001_7;
             function.points[0].value = low;
             function.points[1].value = 20.0 + f64::from(i) * 0.009;
-            selection.shift(&mut function, (0.0, 100.0), Shift { value: -1e3, opacity: 0.0 });
+            selection.shift(&mut function, ValueRange::new(0.0, 100.0), Shift { value: -1e3, opacity: 0.0 });
             let found = function.points[1].value;
             assert!(found >= low && found - low < 1e-9, "{found} at {low}");
         }

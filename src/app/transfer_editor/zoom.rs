@@ -4,6 +4,7 @@ use eframe::egui::{PointerButton, Rect, Response, Ui};
 
 use super::super::text;
 use crate::app::viewport::orbit::wheel_notches;
+use crate::data::ValueRange;
 
 /// A notch of the wheel shows this much less.
 const ZOOM_PER_NOTCH: f64 = 1.2;
@@ -13,7 +14,7 @@ const LEAST_SHARE: f64 = 0.02;
 /// A part of the values; nothing is all of them.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Zoom {
-    part: Option<(f64, f64)>,
+    part: Option<ValueRange>,
 }
 
 /// The values that the plot shows.
@@ -29,22 +30,22 @@ pub(super) struct ShownValues {
 
 impl Zoom {
     /// The values that are shown of a range.
-    pub(super) fn shown(&self, range: (f64, f64)) -> ShownValues {
+    pub(super) fn shown(&self, range: ValueRange) -> ShownValues {
         // Another volume has other values.
-        match self.part.filter(|part| part.0 >= range.0 && part.1 <= range.1) {
-            Some((low, high)) => ShownValues { low, high, is_whole: false },
-            None => ShownValues { low: range.0, high: range.1, is_whole: true },
+        match self.part.filter(|part| part.low >= range.low && part.high <= range.high) {
+            Some(ValueRange { low, high }) => ShownValues { low, high, is_whole: false },
+            None => ShownValues { low: range.low, high: range.high, is_whole: true },
         }
     }
 
     /// How much wider the plot of all values would be.
-    pub(super) fn factor(&self, range: (f64, f64)) -> f32 {
+    pub(super) fn factor(&self, range: ValueRange) -> f32 {
         let ShownValues { low, high, .. } = self.shown(range);
-        ((range.1 - range.0) / (high - low).max(1e-300)).clamp(1.0, 1.0 / LEAST_SHARE) as f32
+        ((range.high - range.low) / (high - low).max(1e-300)).clamp(1.0, 1.0 / LEAST_SHARE) as f32
     }
 
     /// Takes what the mouse does on the plot.
-    pub(super) fn ui(&mut self, ui: &Ui, response: &Response, area: Rect, range: (f64, f64)) {
+    pub(super) fn ui(&mut self, ui: &Ui, response: &Response, area: Rect, range: ValueRange) {
         let Some(pointer) = ui.ctx().pointer_hover_pos().filter(|at| area.contains(*at)) else { return };
         let share = f64::from(((pointer.x - area.min.x) / area.width().max(1.0)).clamp(0.0, 1.0));
         let notches = wheel_notches(ui);
@@ -66,26 +67,26 @@ impl Zoom {
     }
 
     /// Shows a share of what is shown now, with the value at `share` where it is.
-    fn by(&mut self, range: (f64, f64), share: f64, factor: f64) {
+    fn by(&mut self, range: ValueRange, share: f64, factor: f64) {
         let ShownValues { low, high, .. } = self.shown(range);
-        let all = range.1 - range.0;
+        let all = range.high - range.low;
         let width = ((high - low) * factor).clamp(LEAST_SHARE * all, all);
         let low = low + share * (high - low - width);
         self.show(range, low, width);
     }
 
     /// Moves by a share of what is shown.
-    fn along(&mut self, range: (f64, f64), share: f64) {
+    fn along(&mut self, range: ValueRange, share: f64) {
         let ShownValues { low, high, is_whole } = self.shown(range);
         if !is_whole {
             self.show(range, low + share * (high - low), high - low);
         }
     }
 
-    fn show(&mut self, range: (f64, f64), low: f64, width: f64) {
-        let low = low.clamp(range.0, (range.1 - width).max(range.0));
-        let whole = width >= (range.1 - range.0) * (1.0 - 1e-9);
-        self.part = (!whole).then_some((low, (low + width).min(range.1)));
+    fn show(&mut self, range: ValueRange, low: f64, width: f64) {
+        let low = low.clamp(range.low, (range.high - width).max(range.low));
+        let whole = width >= (range.high - range.low) * (1.0 - 1e-9);
+        self.part = (!whole).then_some(ValueRange::new(low, (low + width).min(range.high)));
     }
 }
 
@@ -95,7 +96,7 @@ mod tests {
 
     #[test]
     fn the_value_under_the_pointer_stays() {
-        let (mut zoom, range) = (Zoom::default(), (-1000.0, 3000.0));
+        let (mut zoom, range) = (Zoom::default(), ValueRange::new(-1000.0, 3000.0));
         zoom.by(range, 0.25, 0.5);
         let ShownValues { low, high, is_whole } = zoom.shown(range);
         assert!(!is_whole && (low + 0.25 * (high - low) - 0.0).abs() < 1e-9 && high - low == 2000.0);
@@ -113,6 +114,6 @@ mod tests {
         assert_eq!(zoom, Zoom::default());
         // Another volume.
         zoom.by(range, 0.0, 0.1);
-        assert!(zoom.shown((0.0, 1.0)).is_whole);
+        assert!(zoom.shown(ValueRange::new(0.0, 1.0)).is_whole);
     }
 }

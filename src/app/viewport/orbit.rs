@@ -1,8 +1,10 @@
 //! The mouse on the picture: orbit, pan, zoom.
 
 use eframe::egui::{self, Key, PointerButton, Response};
+use glam::dvec2;
 
 use crate::app::common::light_keys;
+use crate::data::ValueRange;
 use crate::model::Settings;
 
 /// Degrees of orbit per point of drag.
@@ -25,7 +27,7 @@ pub(crate) fn navigate(
     settings: &mut Settings,
     selected: usize,
     zooms: bool,
-    range: Option<(f64, f64)>,
+    range: Option<ValueRange>,
 ) {
     let Settings { camera, lights, transfer, .. } = settings;
     let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));
@@ -39,7 +41,7 @@ pub(crate) fn navigate(
         light_keys::turn(light, camera, dx * DEGREES_PER_POINT, -dy * DEGREES_PER_POINT);
     } else if let Some(range) = range.filter(|_| response.dragged_by(PointerButton::Secondary)) {
         // As in the slices: down means higher values.
-        let shift = dy / height.max(1.0) * (range.1 - range.0);
+        let shift = dy / height.max(1.0) * (range.high - range.low);
         transfer.shift_and_stretch(shift, (WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
     } else if pans {
         camera.pan(dx, dy, height);
@@ -52,7 +54,7 @@ pub(crate) fn navigate(
         if notches != 0.0 || pinch != 1.0 {
             let factor = ZOOM_PER_NOTCH.powf(-notches) / f64::from(pinch);
             let at = response.hover_pos().unwrap_or(response.rect.center()) - response.rect.min;
-            camera.zoom_at(factor, (f64::from(at.x), f64::from(at.y)), (width, height));
+            camera.zoom_at(factor, dvec2(f64::from(at.x), f64::from(at.y)), dvec2(width, height));
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
+use crate::data::ValueRange;
 use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Shot};
 
 /// Pixels of a picture.
@@ -66,7 +67,7 @@ impl Sheet {
 }
 
 /// The look with each preset laid over it, but for that of the benchmarks.
-fn with_presets(settings: &Settings, range: (f64, f64)) -> Vec<Candidate> {
+fn with_presets(settings: &Settings, range: ValueRange) -> Vec<Candidate> {
     let presets = PRESETS.into_iter().filter(|preset| preset.domain() != "bench");
     presets
         .filter_map(|preset| {
@@ -258,7 +259,7 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
         assert_eq!(lights_to_try(&Settings::default(), 9).len(), Rig::ALL.len(), "no light is selected");
-        let presets = with_presets(&Settings::default(), (0.0, 255.0));
+        let presets = with_presets(&Settings::default(), ValueRange::new(0.0, 255.0));
         assert_eq!(presets.len(), PRESETS.len() - 1);
         assert!(presets.iter().all(|look| look.settings.transfer != Settings::default().transfer));
     }

@@ -8,7 +8,7 @@ use eframe::egui;
 use crate::app::text;
 use crate::app::text::files::Question;
 use crate::app::worker::task::Work;
-use crate::data::read_small;
+use crate::data::{ValueRange, read_small};
 use crate::export::PictureFormat;
 use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, VolumeRecord, export, import};
 
@@ -210,7 +210,7 @@ pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
 }
 
 /// Reads a transfer function of another program.
-pub(crate) fn import_transfer(path: &Path, range: (f64, f64)) -> Result<TransferFunction, String> {
+pub(crate) fn import_transfer(path: &Path, range: ValueRange) -> Result<TransferFunction, String> {
     let bytes = read_small(path).map_err(|err| text::files::transfer_not_read(path, err))?;
     import(path, &bytes, range).map_err(|err| text::files::transfer_not_used(path, err))
 }
@@ -219,7 +219,7 @@ pub(crate) fn import_transfer(path: &Path, range: (f64, f64)) -> Result<Transfer
 pub(crate) fn export_transfer(
     path: &Path,
     function: &TransferFunction,
-    range: (f64, f64),
+    range: ValueRange,
 ) -> Result<(), String> {
     let bytes = export(path, function, range).map_err(|err| err.to_string())?;
     crate::export::write_atomically(path, &bytes).map_err(|err| err.to_string())
@@ -240,12 +240,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.json");
         std::fs::write(&path, "{\"shadows\": {\"gain\": 2.0}}").unwrap();
-        let settings = load_record(&path).unwrap().apply(&Settings::default(), (0.0, 1.0)).unwrap().0;
+        let settings = load_record(&path).unwrap().apply(&Settings::default(), ValueRange::UNIT).unwrap().0;
         assert_eq!(settings.shadows.gain, 2.0);
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(load_record(&path).unwrap_err().contains("no text"));
         assert!(load_record(folder.path()).unwrap_err().contains("regular"));
-        assert!(import_transfer(&folder.path().join("none.json"), (0.0, 1.0)).is_err());
+        assert!(import_transfer(&folder.path().join("none.json"), ValueRange::UNIT).is_err());
     }
 
     #[test]

@@ -15,13 +15,13 @@ impl Bench<'_> {
     /// All control points move a little, to and fro: tables, visible cells, light and picture are made anew.
     pub(super) fn transfer_edit(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let mut samples = Samples::default();
-        let (low, high) = self.loaded.volume().value_range();
+        let span = self.loaded.volume().value_range().span();
         let before: u64 = self.renderer.light_rebuilds().iter().sum();
         for frame in 0..WARM_UP + usize::from(self.args.frames) {
             let mut settings = self.settings.clone();
             let step = (frame % 7) as f64 - 3.0;
             for point in &mut settings.transfer.points {
-                point.value += step * EDIT_SHARE * (high - low);
+                point.value += step * EDIT_SHARE * span;
             }
             self.frame(&settings, (frame >= WARM_UP).then_some(&mut samples))?;
         }

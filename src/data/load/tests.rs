@@ -105,7 +105,7 @@ fn names_and_options_describe_the_volume() {
     let dims_and_type =
         RawFormat { dims: Some([3, 2, 1]), voxel_type: Some(VoxelType::I8), ..Default::default() };
     let path = write(&folder, "anything.bin", &[0, 1, 2, 3, 4, 255]);
-    assert_eq!(load_as(&path, dims_and_type).unwrap().value_range(), (-1.0, 4.0));
+    assert_eq!(load_as(&path, dims_and_type).unwrap().value_range(), (-1.0, 4.0).into());
     assert_refused(
         &path,
         RawFormat { voxel_type: None, ..dims_and_type },

@@ -115,6 +115,6 @@ mod tests {
         assert!(at([0.0, 0.0, -0.4]) < 1.0, "air below the seat");
         assert!(at([0.0, 0.46, 0.5]) > 150.0, "the top rail");
         assert!(at([0.0, 0.0, 0.8]) < 1.0, "air above");
-        assert_eq!(volume.value_range(), (0.0, f64::from(WOOD)));
+        assert_eq!(volume.value_range(), (0.0, f64::from(WOOD)).into());
     }
 }

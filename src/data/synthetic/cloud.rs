@@ -62,14 +62,15 @@ fn smooth_step(low: f64, high: f64, x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use crate::data::ValueRange;
     use crate::data::synthetic::builtin;
 
     #[test]
     fn the_cloud_is_soft_and_dense_inside() {
         let n = 128;
         let volume = builtin("cloud", Some(n)).unwrap();
-        let (min, max) = volume.value_range();
-        assert!(min == 0.0 && max > 200.0 && max <= 220.0, "{max}");
+        let ValueRange { low, high } = volume.value_range();
+        assert!(low == 0.0 && high > 200.0 && high <= 220.0, "{high}");
         let mut steepest: f64 = 0.0;
         for z in 0..n {
             for y in 0..n {

@@ -41,8 +41,8 @@ fn density(z: f64, ripple: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::VoxelType;
     use crate::data::synthetic::builtin;
+    use crate::data::{ValueRange, VoxelType};
 
     #[test]
     fn known_values() {
@@ -53,7 +53,7 @@ mod tests {
         let volume = builtin("marschner-lobb", Some(9)).unwrap();
         assert_eq!(volume.samples().voxel_type(), VoxelType::F32);
         assert!((volume.value(4, 4, 4) - 0.6).abs() < 1e-6);
-        let (min, max) = volume.value_range();
-        assert!(min >= 0.0 && max <= 1.0);
+        let ValueRange { low, high } = volume.value_range();
+        assert!(low >= 0.0 && high <= 1.0);
     }
 }

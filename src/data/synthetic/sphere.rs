@@ -27,7 +27,7 @@ mod tests {
         let expected = 4.0 / 3.0 * std::f64::consts::PI / 27.0;
         let found = sum / 200.0 * (2.0 / 64.0f64).powi(3);
         assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
-        assert_eq!(volume.value_range(), (0.0, 200.0));
+        assert_eq!(volume.value_range(), (0.0, 200.0).into());
         assert_eq!(volume.value(32, 32, 11), 90.0);
     }
 }

@@ -20,7 +20,7 @@ use super::{
     BakedTransfer, Camera, Classification, Cuts, Engine, Floor, Gradients, Kernel, Length, Light,
     LightStorage, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
 };
-use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE};
+use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
 
 /// Version of the JSON form. Files of every version are read as far as possible: what they lack keeps its
@@ -208,12 +208,12 @@ impl Settings {
     }
 
     /// The eye's transfer function as a table for a volume of that value range.
-    pub fn baked_eye(&self, range: (f64, f64), scene: &SceneSpace) -> BakedTransfer {
+    pub fn baked_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         self.transfer.bake(range, unit_in_scene(self.opacity_unit, scene), 1.0)
     }
 
     /// The lighting transfer function as a table for a volume of that value range.
-    pub fn baked_lighting(&self, range: (f64, f64), scene: &SceneSpace) -> BakedTransfer {
+    pub fn baked_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
         function.bake(range, unit_in_scene(self.opacity_unit, scene), self.lighting.scale)
     }

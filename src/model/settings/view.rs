@@ -1,6 +1,6 @@
 //! Ways to look that everybody expects: from the six sides, from a corner, all of it, nearer to the pointer.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::model::{Camera, Projection};
 
@@ -94,12 +94,13 @@ impl Camera {
     }
 
     /// Brings the eye nearer (`factor` below 1) or further, so that what is seen at a pixel of the target's
-    /// plane stays there.
-    pub fn zoom_at(&mut self, factor: f64, (x, y): (f64, f64), (width, height): (f64, f64)) {
+    /// plane stays there, in a picture of `size` pixels.
+    pub fn zoom_at(&mut self, factor: f64, pixel: DVec2, size: DVec2) {
         let before = self.distance;
-        let unit = 2.0 * self.half_height_at_target() / height.max(1.0);
+        let unit = 2.0 * self.half_height_at_target() / size.y.max(1.0);
         let view = self.scene_from_view();
-        let aside = view.x_axis * ((x - width / 2.0) * unit) + view.y_axis * ((height / 2.0 - y) * unit);
+        let aside =
+            view.x_axis * ((pixel.x - size.x / 2.0) * unit) + view.y_axis * ((size.y / 2.0 - pixel.y) * unit);
         self.zoom(factor);
         let share = 1.0 - self.distance / before;
         self.target = (DVec3::from(self.target) + aside * share).into();
@@ -153,7 +154,7 @@ mod tests {
             // In the plane through the target.
             let point = DVec3::from(camera.target) + 0.4 * view.x_axis - 0.3 * view.y_axis;
             let (x, y, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
-            camera.zoom_at(0.6, (x, y), (640.0, 480.0));
+            camera.zoom_at(0.6, DVec2::new(x, y), DVec2::new(640.0, 480.0));
             let (x1, y1, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
             assert!((x1 - x).abs() < 1e-9 && (y1 - y).abs() < 1e-9, "{projection:?}: {x} {y} → {x1} {y1}");
         }

@@ -5,6 +5,7 @@
 
 use serde_json::Value;
 
+use crate::data::ValueRange;
 use crate::model::{PresetError, Settings, apply_json};
 
 /// A preset of the library.
@@ -85,7 +86,7 @@ impl Preset {
     ///
     /// # Errors
     /// As [`apply_json`]; a test proves that it does not happen.
-    pub fn apply(&self, settings: &Settings, range: (f64, f64)) -> Result<Settings, PresetError> {
+    pub fn apply(&self, settings: &Settings, range: ValueRange) -> Result<Settings, PresetError> {
         let overlay: Value = serde_json::from_str(self.text).map_err(PresetError::Syntax)?;
         apply_relative(settings, &overlay, range).map(|(settings, _)| settings)
     }
@@ -98,7 +99,7 @@ impl Preset {
 pub fn apply_relative(
     settings: &Settings,
     overlay: &Value,
-    range: (f64, f64),
+    range: ValueRange,
 ) -> Result<(Settings, Vec<String>), PresetError> {
     let (mut applied, warnings) = apply_json(settings, overlay)?;
     if overlay.get("_values").and_then(Value::as_str) == Some("relative") {
@@ -109,7 +110,7 @@ pub fn apply_relative(
         ];
         for (_, function) in curves.into_iter().filter(|(given, _)| *given) {
             for point in &mut function.points {
-                point.value = range.0 + point.value * (range.1 - range.0);
+                point.value = range.at(point.value);
             }
         }
     }
@@ -124,7 +125,7 @@ mod tests {
     fn presets_are_valid_understood_and_show_something() {
         for preset in PRESETS {
             let overlay: Value = serde_json::from_str(preset.text).unwrap();
-            let range = (-1000.0, 3000.0);
+            let range = ValueRange::new(-1000.0, 3000.0);
             let (settings, warnings) = apply_relative(&Settings::default(), &overlay, range).unwrap();
             assert!(warnings.is_empty(), "{}: {warnings:?}", preset.name);
             assert_eq!(preset.apply(&Settings::default(), range).unwrap(), settings);
@@ -154,10 +155,10 @@ mod tests {
 
     #[test]
     fn relative_values_follow_the_range_and_others_do_not() {
-        let over = Settings::default();
-        let head = Preset::find("mr/head").unwrap().apply(&over, (100.0, 300.0)).unwrap();
+        let (over, range) = (Settings::default(), ValueRange::new(100.0, 300.0));
+        let head = Preset::find("mr/head").unwrap().apply(&over, range).unwrap();
         assert!((head.transfer.points[0].value - 112.0).abs() < 1e-9);
-        let bone = Preset::find("ct/bone").unwrap().apply(&over, (100.0, 300.0)).unwrap();
+        let bone = Preset::find("ct/bone").unwrap().apply(&over, range).unwrap();
         assert_eq!(bone.transfer.points[0].value, 150.0);
         assert_eq!((&bone.lights, &bone.camera, &bone.shadows), (&over.lights, &over.camera, &over.shadows));
     }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::data::ValueRange;
 use crate::model::{PresetError, Settings, Shot, apply_relative};
 
 /// The volume of a look.
@@ -115,7 +116,7 @@ impl Record {
     ///
     /// # Errors
     /// As [`apply_relative`].
-    pub fn apply(&self, over: &Settings, range: (f64, f64)) -> Result<(Settings, Vec<String>), PresetError> {
+    pub fn apply(&self, over: &Settings, range: ValueRange) -> Result<(Settings, Vec<String>), PresetError> {
         apply_relative(over, &self.overlay, range)
     }
 }
@@ -144,7 +145,7 @@ mod tests {
         let text = Record::text(&settings, Some(&volume), Some(&picture));
         let record = Record::read(&text).unwrap();
         assert_eq!((record.volume.as_ref(), record.picture.as_ref()), (Some(&volume), Some(&picture)));
-        let (read, warnings) = record.apply(&Settings::default(), (0.0, 1.0)).unwrap();
+        let (read, warnings) = record.apply(&Settings::default(), ValueRange::UNIT).unwrap();
         assert_eq!((read, warnings), (settings, vec![]));
         assert!(volume.is_of(0x1234) && !volume.is_of(0x1235));
     }
@@ -161,7 +162,7 @@ mod tests {
     fn presets_are_records_of_nothing_and_nonsense_is_refused() {
         let record = Record::read(r#"{"shadows": {"gain": 2.0}}"#).unwrap();
         assert_eq!((&record.volume, &record.picture), (&None, &None));
-        assert_eq!(record.apply(&Settings::default(), (0.0, 1.0)).unwrap().0.shadows.gain, 2.0);
+        assert_eq!(record.apply(&Settings::default(), ValueRange::UNIT).unwrap().0.shadows.gain, 2.0);
         assert!(Record::read("[1]").is_err() && Record::read("{").is_err());
         assert!(Record::read(r#"{"_volume": {"source": 3}}"#).is_err());
     }

@@ -10,6 +10,7 @@ pub(super) mod oklab;
 use serde::{Deserialize, Serialize};
 
 use super::{linear_from_oklab, oklab_from_linear};
+use crate::data::ValueRange;
 use crate::math::SceneSpace;
 
 /// Entries of a baked table; values between are interpolated.
@@ -220,10 +221,10 @@ impl TransferFunction {
 
     /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene
     /// units, `scale` multiplies the extinction.
-    pub fn bake(&self, range: (f64, f64), unit: f64, scale: f64) -> BakedTransfer {
+    pub fn bake(&self, range: ValueRange, unit: f64, scale: f64) -> BakedTransfer {
         let entries = (0..LUT_SIZE)
             .map(|i| {
-                let value = range.0 + (range.1 - range.0) * i as f64 / (LUT_SIZE - 1) as f64;
+                let value = range.low + range.span() * i as f64 / (LUT_SIZE - 1) as f64;
                 let (rgb, depth) = self.at(value);
                 [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, (depth * scale / unit) as f32]
             })
@@ -379,7 +380,7 @@ mod tests {
 
     #[test]
     fn visibility_never_hides_what_can_be_seen() {
-        let baked = ramp(Interpolation::Opacity).bake((0.0, 100.0), 1.0, 1.0);
+        let baked = ramp(Interpolation::Opacity).bake(ValueRange::new(0.0, 100.0), 1.0, 1.0);
         let visible = baked.visibility();
         assert!(!visible(0.0, 0.09));
         for i in 0..=1000 {
@@ -395,6 +396,6 @@ mod tests {
             interpolation: Interpolation::Opacity,
             ..TransferFunction::default()
         };
-        assert!(solid.bake((0.0, 1.0), 0.01, 1.0).entries.iter().all(|entry| entry[3].is_finite()));
+        assert!(solid.bake(ValueRange::UNIT, 0.01, 1.0).entries.iter().all(|entry| entry[3].is_finite()));
     }
 }

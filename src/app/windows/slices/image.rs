@@ -3,7 +3,7 @@
 use eframe::egui::ecolor::gamma_u8_from_linear_f32;
 use eframe::egui::{Color32, ColorImage, Vec2};
 
-use crate::data::Volume;
+use crate::data::{ValueRange, Volume};
 use crate::model::TransferFunction;
 
 /// Steps of the table from densities to colours: as many greys as anyone can tell apart, four times over.
@@ -20,15 +20,15 @@ pub(crate) struct Grey {
 
 impl Grey {
     /// This scale of greys with black below white, both among the values that there are, or nearly.
-    pub(crate) fn within(self, (low, high): (f64, f64)) -> Self {
+    pub(crate) fn within(self, ValueRange { low, high }: ValueRange) -> Self {
         let span = (high - low).max(f64::MIN_POSITIVE);
         let black = self.black.clamp(low - span, high + span);
         Self { black, white: self.white.clamp(black + span * 1e-3, high + 3.0 * span) }
     }
 
     /// As radiologists drag: to the right for less contrast, up for a brighter slice. By shares of a slice.
-    pub(crate) fn drag(&mut self, by: Vec2, range: (f64, f64)) {
-        let middle = f64::midpoint(self.black, self.white) + f64::from(by.y) * (range.1 - range.0);
+    pub(crate) fn drag(&mut self, by: Vec2, range: ValueRange) {
+        let middle = f64::midpoint(self.black, self.white) + f64::from(by.y) * (range.high - range.low);
         let width = (self.white - self.black) * f64::from(by.x * 2.0).exp();
         *self = Self { black: middle - width / 2.0, white: middle + width / 2.0 }.within(range);
     }
@@ -105,15 +105,15 @@ mod tests {
     #[test]
     fn grey_levels_are_dragged_and_stay_in_order() {
         let mut grey = Grey { black: 20.0, white: 60.0 };
-        grey.drag(vec2(0.0, 0.1), (0.0, 100.0));
+        grey.drag(vec2(0.0, 0.1), ValueRange::new(0.0, 100.0));
         assert!((grey.black - 30.0).abs() < 1e-4 && (grey.white - 70.0).abs() < 1e-4, "{grey:?}");
-        grey.drag(vec2(0.2, 0.0), (0.0, 100.0));
+        grey.drag(vec2(0.2, 0.0), ValueRange::new(0.0, 100.0));
         assert!(grey.black < 30.0 && grey.white > 70.0);
         for _ in 0..50 {
-            grey.drag(vec2(-0.9, 0.9), (0.0, 100.0));
+            grey.drag(vec2(-0.9, 0.9), ValueRange::new(0.0, 100.0));
         }
         assert!(grey.white > grey.black && grey.black <= 200.0);
-        let turned = Grey { black: 9.0, white: 1.0 }.within((0.0, 10.0));
+        let turned = Grey { black: 9.0, white: 1.0 }.within(ValueRange::new(0.0, 10.0));
         assert!(turned.white > turned.black);
     }
 

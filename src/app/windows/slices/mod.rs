@@ -127,7 +127,7 @@ impl Slices {
             line(text::slices::VALUE, digits);
             line(text::slices::OPACITY, format!("{:.2}", transfer.opacity_at(value)));
         });
-        let speed = (facts.range.1 - facts.range.0) / 500.0;
+        let speed = facts.range.span() / 500.0;
         for (name, level) in [(text::slices::BLACK, &mut grey.black), (text::slices::WHITE, &mut grey.white)]
         {
             ui.horizontal(|ui| {

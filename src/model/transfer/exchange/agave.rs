@@ -4,10 +4,11 @@
 use serde_json::Value;
 
 use super::{ExchangeError, form, numbers, rgb};
+use crate::data::ValueRange;
 use crate::model::{ControlPoint, Easing, TransferFunction};
 
 /// Reads the curve and the colour of a channel.
-pub(crate) fn from_agave(tree: &Value, (low, high): (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub(crate) fn from_agave(tree: &Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let channels = tree.get("channels").and_then(Value::as_array);
     let channels = channels.filter(|all| !all.is_empty()).ok_or_else(|| form("there are no channels"))?;
     let is_on = |channel: &&Value| channel.get("enabled").and_then(Value::as_bool).unwrap_or(true);
@@ -23,7 +24,7 @@ pub(crate) fn from_agave(tree: &Value, (low, high): (f64, f64)) -> Result<Transf
         let found = curve.get(key).and_then(Value::as_f64).filter(|n| n.is_finite());
         found.ok_or_else(|| form(&format!("lutParams has no number {key}")))
     };
-    let point = |at: f64, a: f64| ControlPoint::new(low + (high - low) * at, color, a * opacity);
+    let point = |at: f64, a: f64| ControlPoint::new(range.at(at), color, a * opacity);
     let points = match curve.get("mode").and_then(Value::as_u64) {
         Some(0) => {
             let (level, half) = (share("level")?, share("window")?.abs().max(1e-6) / 2.0);

@@ -6,10 +6,11 @@ use std::fmt::Write as _;
 use roxmltree::{Document, Node};
 
 use super::{ExchangeError, form, rgb};
+use crate::data::ValueRange;
 use crate::model::{ControlPoint, TransferFunction};
 
 /// Reads points of either kind.
-pub(crate) fn from_itf(text: &str, (low, high): (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub(crate) fn from_itf(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let document = Document::parse(text)?;
     let mut points = Vec::new();
     for point in document.descendants().filter(|node| node.tag_name().name().eq_ignore_ascii_case("point")) {
@@ -20,7 +21,7 @@ pub(crate) fn from_itf(text: &str, (low, high): (f64, f64)) -> Result<TransferFu
         let (pos, rgba) = (child("pos")?, child("rgba")?);
         let share = number(pos, "content").or_else(|_| number(pos, "x"))?;
         let color = [number(rgba, "x")?, number(rgba, "y")?, number(rgba, "z")?];
-        let value = low + (high - low) * share;
+        let value = range.at(share);
         points.push(ControlPoint::new(value, rgb(&color), number(rgba, "w")?.clamp(0.0, 1.0)));
     }
     if points.is_empty() {
@@ -30,13 +31,13 @@ pub(crate) fn from_itf(text: &str, (low, high): (f64, f64)) -> Result<TransferFu
 }
 
 /// The newer kind (version 3).
-pub(crate) fn to_itf(function: &TransferFunction, (low, high): (f64, f64)) -> String {
+pub(crate) fn to_itf(function: &TransferFunction, range: ValueRange) -> String {
     let mut text =
         "<?xml version=\"1.0\" ?>\n<InviwoWorkspace version=\"3\">\n    <maskMin content=\"0\" />\n    \
                     <maskMax content=\"1\" />\n    <type content=\"0\" />\n    <Points>\n"
             .to_owned();
     for ControlPoint { value, color: [r, g, b], opacity, easing: _ } in &function.points {
-        let share = (value - low) / (high - low).max(1e-300);
+        let share = range.share_of(*value);
         // Writing to a text cannot fail.
         writeln!(text, "        <Point>\n            <pos content=\"{share}\" />").ok();
         writeln!(

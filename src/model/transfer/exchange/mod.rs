@@ -17,6 +17,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::data::ValueRange;
 use crate::model::{ControlPoint, Easing, Interpolation, Mixing, STEPS, TransferFunction};
 
 /// Endings of the files that [`import`] reads.
@@ -60,7 +61,7 @@ pub enum ExchangeError {
 ///
 /// # Errors
 /// When the file is not what its name says.
-pub fn import(path: &Path, bytes: &[u8], range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub fn import(path: &Path, bytes: &[u8], range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let ending = ending(path);
     if ending == "lut" && !bytes.is_ascii() {
         return tables::from_bytes(bytes, range);
@@ -90,7 +91,7 @@ fn within(text: &str, most: usize) -> Result<&str, ExchangeError> {
 }
 
 /// A JSON file of whichever program writes what it holds.
-fn from_json(text: &str, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+fn from_json(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     // ParaView itself ships a file with a comma too many.
     let tree: Value = serde_json::from_str(text).or_else(|err| {
         let trimmed = text.trim_end().strip_suffix(']').map(str::trim_end);
@@ -112,7 +113,7 @@ fn from_json(text: &str, range: (f64, f64)) -> Result<TransferFunction, Exchange
 ///
 /// # Errors
 /// When the name has no ending that says which program it is for.
-pub fn export(path: &Path, function: &TransferFunction, range: (f64, f64)) -> Result<Vec<u8>, ExchangeError> {
+pub fn export(path: &Path, function: &TransferFunction, range: ValueRange) -> Result<Vec<u8>, ExchangeError> {
     let stem = path.file_stem().map_or_else(|| "Chiaroscuro".into(), |stem| stem.to_string_lossy());
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let straight = straightened(function);

@@ -3,10 +3,11 @@
 use serde_json::{Value, json};
 
 use super::{ExchangeError, form};
+use crate::data::ValueRange;
 use crate::model::{Settings, TransferFunction, apply_relative};
 
 /// Reads the transfer function of a preset or a session.
-pub(crate) fn from_own(tree: &Value, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub(crate) fn from_own(tree: &Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let overlay = json!({ "transfer": tree["transfer"], "_values": tree.get("_values") });
     let applied = apply_relative(&Settings::default(), &overlay, range);
     let (settings, _) = applied.map_err(|err| form(&err.to_string()))?;

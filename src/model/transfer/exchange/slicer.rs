@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::{ExchangeError, form, merged, numbers, rgb};
+use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
 /// Numbers of the shading, then opacities by value, opacities by gradient, and colours by value, each list
@@ -81,7 +82,7 @@ pub(crate) fn from_vp_json(tree: &Value) -> Result<TransferFunction, ExchangeErr
 }
 
 /// The same.
-pub(crate) fn to_vp_json(function: &TransferFunction, (low, high): (f64, f64)) -> String {
+pub(crate) fn to_vp_json(function: &TransferFunction, range: ValueRange) -> String {
     let points = &function.points;
     let opacities: Vec<Value> = points
         .iter()
@@ -94,7 +95,7 @@ pub(crate) fn to_vp_json(function: &TransferFunction, (low, high): (f64, f64)) -
     let tree = json!({
         "@schema": "https://raw.githubusercontent.com/slicer/slicer/main/Modules/Loadable/VolumeRendering/Resources/Schema/volume-property-schema-v1.0.0.json#",
         "volumeProperties": [{
-            "effectiveRange": [low, high],
+            "effectiveRange": [range.low, range.high],
             "isoSurfaceValues": [],
             "interpolationType": "linear",
             "useClippedVoxelIntensity": false,

@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use super::{ExchangeError, form, rgb};
+use crate::data::ValueRange;
 use crate::model::{ControlPoint, TransferFunction, srgb_from_linear};
 
 /// Entries of a table of bytes.
@@ -13,7 +14,7 @@ const TABLE: usize = 256;
 const EVERY: usize = 16;
 
 /// `MRIcroGL`'s colour table: nodes with a place from 0 to 255 and red, green, blue and opacity as bytes.
-pub(crate) fn from_clut(text: &str, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub(crate) fn from_clut(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let entry = |key: &str| {
         text.lines().find_map(|line| {
             let (name, value) = line.split_once('=')?;
@@ -24,10 +25,8 @@ pub(crate) fn from_clut(text: &str, range: (f64, f64)) -> Result<TransferFunctio
     let count = number("numnodes").filter(|count| (2.0..=TABLE as f64).contains(count));
     let count = count.ok_or_else(|| form("numnodes must be a number from 2 to 256"))? as usize;
     // Zeros stand for the range of the volume.
-    let (low, high) = match (number("min"), number("max")) {
-        (Some(low), Some(high)) if low < high => (low, high),
-        _ => range,
-    };
+    let ends = number("min").zip(number("max")).and_then(|(low, high)| ValueRange::spread(low, high));
+    let range = ends.unwrap_or(range);
     let mut points = Vec::with_capacity(count);
     for node in 0..count {
         let place = number(&format!("nodeintensity{node}"));
@@ -38,25 +37,21 @@ pub(crate) fn from_clut(text: &str, range: (f64, f64)) -> Result<TransferFunctio
             return Err(form(&format!("nodergba{node} must be four numbers with | between")));
         };
         let share = |byte: f64| (byte / 255.0).clamp(0.0, 1.0);
-        points.push(ControlPoint::new(
-            low + (high - low) * share(place),
-            rgb(&[r, g, b].map(share)),
-            share(a),
-        ));
+        points.push(ControlPoint::new(range.at(share(place)), rgb(&[r, g, b].map(share)), share(a)));
     }
     Ok(TransferFunction { points, ..TransferFunction::default() })
 }
 
 /// The same: places are bytes, so that points closer than that fall together.
-pub(crate) fn to_clut(function: &TransferFunction, range: (f64, f64)) -> String {
-    let ends = function.points.first().zip(function.points.last()).map(|(a, b)| (a.value, b.value));
-    let (low, high) = ends.filter(|ends| ends.0 < ends.1).unwrap_or(range);
+pub(crate) fn to_clut(function: &TransferFunction, range: ValueRange) -> String {
+    let ends = function.points.first().zip(function.points.last());
+    let range = ends.and_then(|(a, b)| ValueRange::spread(a.value, b.value)).unwrap_or(range);
     let byte = |share: f64| (share * 255.0).round().clamp(0.0, 255.0) as u8;
     let mut nodes: Vec<(u8, [u8; 4])> = Vec::new();
     for ControlPoint { value, color, opacity, easing: _ } in &function.points {
         let [r, g, b] = color.map(|c| byte(f64::from(c)));
         // Places ascend: what jumps does so between two of them, at the end between the last two.
-        let mut place = byte((value - low) / (high - low).max(1e-300));
+        let mut place = byte(range.share_of(*value));
         if let Some(last) = nodes.last().map(|last| last.0).filter(|last| place <= *last) {
             place = last.saturating_add(1);
             if last == u8::MAX {
@@ -70,7 +65,8 @@ pub(crate) fn to_clut(function: &TransferFunction, range: (f64, f64)) -> String 
     if let [(0..=254, color)] = nodes[..] {
         nodes.push((u8::MAX, color));
     }
-    let mut text = format!("[FLT]\nmin={low}\nmax={high}\n[INT]\nnumnodes={}\n[BYT]\n", nodes.len());
+    let mut text =
+        format!("[FLT]\nmin={}\nmax={}\n[INT]\nnumnodes={}\n[BYT]\n", range.low, range.high, nodes.len());
     for (at, (place, _)) in nodes.iter().enumerate() {
         // Writing to a text cannot fail.
         writeln!(text, "nodeintensity{at}={place}").ok();
@@ -83,7 +79,7 @@ pub(crate) fn to_clut(function: &TransferFunction, range: (f64, f64)) -> String 
 }
 
 /// `ImageJ`'s colour table: 256 reds, as many greens, and as many blues, perhaps behind a header.
-pub(crate) fn from_bytes(bytes: &[u8], range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub(crate) fn from_bytes(bytes: &[u8], range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let first = bytes.len().checked_sub(3 * TABLE).ok_or_else(|| form("a table has 768 bytes"))?;
     let table = &bytes[first..];
     let colors: Vec<_> = (0..TABLE).map(|at| [table[at], table[at + TABLE], table[at + 2 * TABLE]]).collect();
@@ -91,7 +87,7 @@ pub(crate) fn from_bytes(bytes: &[u8], range: (f64, f64)) -> Result<TransferFunc
 }
 
 /// The same as text: rows of red, green and blue, perhaps behind the entry's number.
-pub(crate) fn from_rows(text: &str, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub(crate) fn from_rows(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let row = |line: &str| {
         let numbers: Option<Vec<u8>> = line
             .split([' ', '\t', ','])
@@ -111,22 +107,22 @@ pub(crate) fn from_rows(text: &str, range: (f64, f64)) -> Result<TransferFunctio
 }
 
 /// The colours of a table over a range, more and more opaque.
-fn ramp(colors: &[[u8; 3]], (low, high): (f64, f64)) -> TransferFunction {
+fn ramp(colors: &[[u8; 3]], range: ValueRange) -> TransferFunction {
     let last = colors.len() - 1;
     let point = |at: usize| {
         let share = at as f64 / last as f64;
         let color = colors[at].map(|byte| f32::from(byte) / 255.0);
-        ControlPoint::new(low + (high - low) * share, color, share)
+        ControlPoint::new(range.at(share), color, share)
     };
     let places = (0..last).step_by(EVERY).chain([last]);
     TransferFunction { points: places.map(point).collect(), ..TransferFunction::default() }
 }
 
 /// 256 colours as bytes: reds, greens, blues. Opacities have no place in it.
-pub(crate) fn to_lut(function: &TransferFunction, (low, high): (f64, f64)) -> Vec<u8> {
+pub(crate) fn to_lut(function: &TransferFunction, range: ValueRange) -> Vec<u8> {
     let last = (TABLE - 1) as f64;
     let colors: Vec<[f64; 3]> =
-        (0..TABLE).map(|at| function.at(low + (high - low) * at as f64 / last).0).collect();
+        (0..TABLE).map(|at| function.at(range.low + range.span() * at as f64 / last).0).collect();
     let byte = |linear: f64| (srgb_from_linear(linear) * 255.0).round().clamp(0.0, 255.0) as u8;
     (0..3).flat_map(|channel| colors.iter().map(move |color| byte(color[channel]))).collect()
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::*;
 use crate::model::{Interpolation, Preset, Settings};
 
-const RANGE: (f64, f64) = (-1000.0, 1000.0);
+const RANGE: ValueRange = ValueRange::new(-1000.0, 1000.0);
 
 fn read(name: &str, bytes: &[u8]) -> Result<TransferFunction, String> {
     import(Path::new(name), bytes, RANGE).map_err(|err| err.to_string())
@@ -209,7 +209,7 @@ fn other_xml_and_json_are_refused_in_words() {
 fn maps_of_paraview_are_read_back() {
     for name in ["ct/bone", "mr/head", "simulation/signed"] {
         let preset = Preset::find(name).unwrap();
-        let before = preset.apply(&Settings::default(), (0.0, 1.0)).unwrap().transfer;
+        let before = preset.apply(&Settings::default(), ValueRange::UNIT).unwrap().transfer;
         let after = read("a.json", &export(Path::new("a.json"), &before, RANGE).unwrap()).unwrap();
         assert_eq!(after.points.len(), before.points.len());
         for (a, b) in after.points.iter().zip(&before.points) {

@@ -5,24 +5,24 @@ use roxmltree::{Document, Node};
 
 use super::inviwo::number;
 use super::{ExchangeError, form, rgb};
+use crate::data::ValueRange;
 use crate::model::{ControlPoint, TransferFunction};
 
 /// Reads the keys between the thresholds.
-pub(crate) fn from_tfi(text: &str, range: (f64, f64)) -> Result<TransferFunction, ExchangeError> {
+pub(crate) fn from_tfi(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let document = Document::parse(text)?;
     let function = document.descendants().find(|node| node.tag_name().name().starts_with("TransFunc"));
     let function = function.ok_or_else(|| form("there is no TransFuncIntensity in the file"))?;
     let child = |parent: Node<'_, '_>, name: &str| {
         parent.children().find(|node| node.has_tag_name(name)).map(|node| node.id())
     };
-    let pair = |name: &str| {
+    let pair = |name: &str| -> Option<ValueRange> {
         let node = document.get_node(child(function, name)?)?;
-        Some((number(node, "x").ok()?, number(node, "y").ok()?))
+        ValueRange::spread(number(node, "x").ok()?, number(node, "y").ok()?)
     };
     // Without a domain of its own it goes with the data; 0 … 1 stands for that, too.
-    let domain = pair("domain").filter(|domain| domain.0 < domain.1 && *domain != (0.0, 1.0));
-    let (low, high) = domain.unwrap_or(range);
-    let (from, to) = pair("threshold").filter(|pair| pair.0 < pair.1).unwrap_or((0.0, 1.0));
+    let domain = pair("domain").filter(|domain| *domain != ValueRange::UNIT).unwrap_or(range);
+    let threshold = pair("threshold").unwrap_or(ValueRange::UNIT);
     let mut points = Vec::new();
     for key in function.descendants().filter(|node| node.has_tag_name("key")) {
         let part = |name: &str| {
@@ -34,7 +34,7 @@ pub(crate) fn from_tfi(text: &str, range: (f64, f64)) -> Result<TransferFunction
             let node = part(name)?;
             let byte = |channel: &str| number(node, channel).map(|byte| (byte / 255.0).clamp(0.0, 1.0));
             let color = rgb(&[byte("r")?, byte("g")?, byte("b")?]);
-            Ok(ControlPoint::new(low + (high - low) * share, color, byte("a")?))
+            Ok(ControlPoint::new(domain.at(share), color, byte("a")?))
         };
         points.push(side("colorL")?);
         if part("split").is_ok_and(|node| node.attribute("value") == Some("true")) {
@@ -46,15 +46,16 @@ pub(crate) fn from_tfi(text: &str, range: (f64, f64)) -> Result<TransferFunction
     }
     let mut function = TransferFunction { points, ..TransferFunction::default() };
     function.sort();
-    Ok(between(&function, low + (high - low) * from, low + (high - low) * to))
+    Ok(between(&function, ValueRange::new(domain.at(threshold.low), domain.at(threshold.high))))
 }
 
 /// What is left of a function between thresholds.
-fn between(function: &TransferFunction, from: f64, to: f64) -> TransferFunction {
+fn between(function: &TransferFunction, kept: ValueRange) -> TransferFunction {
+    let ValueRange { low: from, high: to } = kept;
     let begins = function.points.first().is_some_and(|first| first.value < from);
     let goes_on = function.points.last().is_some_and(|last| last.value > to);
     let mut points: Vec<_> =
-        function.points.iter().copied().filter(|point| (from..=to).contains(&point.value)).collect();
+        function.points.iter().copied().filter(|point| kept.contains(point.value)).collect();
     if begins {
         let point = function.point_at(from);
         points.splice(..0, [ControlPoint { opacity: 0.0, ..point }, point]);
