@@ -1,5 +1,23 @@
 //! Chiaroscuro: see the shape of volume data.
 //!
+//! ```
+//! use chiaroscuro::data::{Dataset, load};
+//! use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
+//!
+//! // A built-in volume of 24³ voxels; the name of a RAW or NRRD file does as well.
+//! let volume = load::open("builtin:chair:24", &load::LoadOptions::default(), &load::LoadControl::new())?;
+//! let dataset = Dataset::new(volume);
+//! let mut renderer = Renderer::new(&Context::headless()?)?;
+//! let settings = first_look(&mut renderer, &dataset)?;
+//! let bytes = renderer.render_shown(&dataset, &settings, [64, 48], &RenderOptions::default())?;
+//! let middle = &bytes[4 * (24 * 64 + 32)..][..3];
+//! assert!(bytes.len() == 64 * 48 * 4 && middle != &bytes[..3], "the chair stands before the background");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! `examples/` writes such a picture to a file and shows a light volume as an array, a turntable, and the renderer
+//! inside another wgpu program. [`gpu::Renderer`] is the way to everything else.
+//!
 //! True volumetric shadows after *Splatting With Shadows* (Nulkar & Mueller, 2001), below cited as
 //! P: light is attenuated on its way to the material and again on its way to the eye, and both
 //! passes are image-aligned sheet-buffer splatting.
@@ -13,7 +31,7 @@
 //! | [`model`] | `Settings`, the one value that is the whole look |
 //! | [`plan`] | what a change makes stale; the geometry of the passes |
 //! | [`export`] | files that go out: pictures, pictures that move |
-//! | [`mod@reference`] | the paper in f64, literal and slow |
+//! | `reference` | the paper in f64, literal and slow; with the feature `testing` |
 //! | [`gpu`] | the renderer |
 //! | `app` | the window; with the feature `window` |
 //! | `cli` | the command line; with the feature `cli` |
@@ -31,4 +49,5 @@ pub mod gpu;
 pub mod math;
 pub mod model;
 pub mod plan;
+#[cfg(feature = "testing")]
 pub mod reference;

@@ -15,6 +15,7 @@ mod volume;
 pub use crate::plan::RenderOptions;
 pub use context::error::GpuError;
 pub use context::shader::ShaderLibrary;
+#[cfg(feature = "testing")]
 pub use context::shader_files::SHADERS;
 pub use context::{Context, device_descriptor};
 pub use frame::first_look::{balance, dark_share, first_look, mean_luminance};
@@ -26,11 +27,15 @@ pub use frame::step::Stage;
 pub use frame::tiled::Bands;
 pub use output::distance::Distance;
 pub use output::light_slice::{LightSlice, export_slice, light_volume_nrrd};
+pub use output::painter::PicturePainter;
 pub use output::window::{WindowPainter, WindowPicture};
-#[doc(hidden)]
+#[cfg(feature = "testing")]
 pub use resources::layouts::{ShaderBindings, shader_bindings};
+#[cfg(feature = "testing")]
 pub use resources::listed_bricks::LISTED_PER_ROW;
 pub use resources::readback::Attenuation;
+#[cfg(feature = "testing")]
 pub use resources::uniforms;
 pub use volume::fit::fitted;
+#[cfg(feature = "testing")]
 pub use volume::stored_density;

@@ -15,6 +15,9 @@ use super::GpuError;
 const ADAPTER_HELP: &str =
     "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)";
 
+/// Said when a device has fewer features than its adapter, and too few.
+const OPENING_HELP: &str = "open the device with the features of chiaroscuro::gpu::device_descriptor";
+
 /// A device with its queue and what we need to know about it. Cheap to clone.
 #[derive(Debug, Clone)]
 pub struct Context {
@@ -82,10 +85,12 @@ impl Context {
         Self::new(&adapter, device, queue)
     }
 
-    /// Takes over a device that somebody else opened with [`device_descriptor`].
+    /// A context on a device that somebody else opened with [`device_descriptor`], or with more features. What the
+    /// device complains about without being asked, also in the work of others, goes to [`Self::check`] from now on:
+    /// programs with a handler of their own set it afterwards.
     ///
     /// # Errors
-    /// When the adapter cannot store the textures that we need.
+    /// When the adapter cannot store the textures that we need, or the device was opened without that feature.
     pub fn new(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         let features = device.features();
         let usable = |format: wgpu::TextureFormat| {
@@ -106,7 +111,12 @@ impl Context {
                     "{} can neither store 16-bit nor filter 32-bit float volumes",
                     adapter.get_info().name
                 ),
-                help: ADAPTER_HELP,
+                // The adapter may well be able to.
+                help: if features.contains(adapter.features() & WANTED) {
+                    ADAPTER_HELP
+                } else {
+                    OPENING_HELP
+                },
             })?;
         let byte_volumes = usable(wgpu::TextureFormat::R8Unorm);
         let complaint = Arc::new(Mutex::new(None));
@@ -137,6 +147,7 @@ impl Context {
 
     /// The same device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
     /// checks that must not see the rounding of 16-bit floats.
+    #[cfg(feature = "testing")]
     #[must_use]
     pub fn with_full_precision(mut self) -> Self {
         if self.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) {

@@ -60,6 +60,7 @@ impl ShaderLibrary {
 
     /// A library that replaces a text in every shader that has it. Tests use it to prove that they
     /// notice a wrong shader.
+    #[cfg(feature = "testing")]
     #[must_use]
     pub fn with_mutation(context: &Context, from: &str, to: &str) -> Self {
         Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }

@@ -8,7 +8,8 @@ macro_rules! shader_files {
 }
 
 /// Every shader file: its path below `shaders/`, and its text.
-pub const SHADERS: [(&str, &str); 43] = shader_files![
+#[cfg_attr(not(feature = "testing"), expect(unreachable_pub, reason = "the tests of shaders reach it"))]
+pub const SHADERS: [(&str, &str); 44] = shader_files![
     "common/listed_bricks.wgsl",
     "common/sizes.wgsl",
     "common/space.wgsl",
@@ -28,6 +29,7 @@ pub const SHADERS: [(&str, &str); 43] = shader_files![
     "light/raycast.wgsl",
     "output/display.wgsl",
     "output/display_deep.wgsl",
+    "output/painter.wgsl",
     "output/srgb.wgsl",
     "output/tone_map.wgsl",
     "output/window.wgsl",

@@ -1,25 +1,21 @@
-//! Looking into the renderer: pictures, light volumes and sheets, read back for export and for tests.
+//! Looking into the renderer: pictures and light volumes, read back.
 
-use std::sync::Arc;
-
-use crate::data::Dataset;
-use crate::gpu::light::march::{Sheets, march};
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::output::target::Target;
 use crate::gpu::resources::readback::{Attenuation, read_floats, read_texture};
-use crate::gpu::resources::tools::Tools;
-use crate::gpu::scatter::light::LightScatter;
-use crate::gpu::scatter::voxels::Scattering;
-use crate::gpu::volume::Gpu;
-use crate::gpu::{GpuError, RenderOptions, Renderer};
-use crate::model::Settings;
-use crate::plan::{FARTHEST, LightKey, MarchTiles, Request, light_views};
+use crate::gpu::{GpuError, Renderer};
+use crate::plan::{LightKey, Request};
 
 impl Renderer {
     /// What is shown now.
     pub(super) fn shown(&self) -> Result<&Target, GpuError> {
         let front = &self.targets.front;
         if front.shown.is_complete() { Ok(front) } else { Err(GpuError::NothingDrawn("picture")) }
+    }
+
+    /// The texture of what is shown now, for passes on the same device.
+    pub(in crate::gpu) fn shown_view(&self) -> Result<&wgpu::TextureView, GpuError> {
+        Ok(&self.shown()?.shown.value.view)
     }
 
     /// Reads back what is shown now: sRGB bytes, RGBA, row by row from the top left.
@@ -58,7 +54,7 @@ impl Renderer {
     }
 
     /// The complete volume of a light, if it is kept.
-    fn light_volume(&self, request: &Request, light: usize) -> Option<&LightVolume> {
+    pub(super) fn light_volume(&self, request: &Request, light: usize) -> Option<&LightVolume> {
         let key = LightKey::of(request, light)?;
         let lights = &self.loaded.as_ref()?.value.lights;
         lights.iter().find(|known| known.holds(&key)).map(|known| &known.value)
@@ -72,81 +68,5 @@ impl Renderer {
         let Some(found) = self.light_volume(request, light) else { return Ok(None) };
         let values = read_floats(self.context(), &found.texture)?;
         Ok(Some(Attenuation { dims: found.dims, divisor: found.divisor, values }))
-    }
-
-    /// Overwrites a light's attenuation volume, which must be complete. Tests use it to see whether
-    /// a change refills it.
-    #[doc(hidden)]
-    pub fn corrupt_attenuation(&mut self, request: &Request, light: usize) -> bool {
-        let Some(found) = self.light_volume(request, light) else { return false };
-        let texel = found.texture.format().block_copy_size(None).unwrap_or(2);
-        let [nx, ny, _] = found.dims.map(|n| n as u32);
-        let zeros = vec![0u8; (found.bytes()) as usize];
-        self.context().queue.write_texture(
-            found.texture.as_image_copy(),
-            &zeros,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(texel * nx),
-                rows_per_image: Some(ny),
-            },
-            found.texture.size(),
-        );
-        self.targets.forget();
-        true
-    }
-
-    /// The sheets of one view of a light: the transmittance that each slab deposits, sheet by sheet
-    /// front to back, each row by row. All are held at once, so this is for small volumes.
-    ///
-    /// # Errors
-    /// When the GPU cannot do it.
-    #[doc(hidden)]
-    pub fn light_sheets(
-        &mut self,
-        dataset: &Dataset,
-        settings: &Settings,
-        light: usize,
-        view: usize,
-    ) -> Result<Vec<f32>, GpuError> {
-        let size = [8, 8];
-        self.draw(dataset, settings, size, &RenderOptions::default())?;
-        let request =
-            Request { volume: dataset.volume().content_id(), settings: settings.clone(), size, coarse: None };
-        let none = || GpuError::NothingDrawn("light volume");
-        let target = self.light_volume(&request, light).ok_or_else(none)?;
-        let loaded = &self.loaded.as_ref().ok_or_else(none)?.value;
-        let (gpu, tables) = (Gpu::new(&self.tools, &loaded.volume), &loaded.tables.value);
-        let lamp = settings.lights[light].in_scene(&settings.camera);
-        let geometry = &light_views(&lamp, &settings.shadows, &gpu.volume.scene)[view];
-        let count = geometry.frame.slab_count;
-        // Tools of its own: its sheets are not left to later pictures.
-        let tools = Tools::new(self.context(), self.tools.shaders.clone())?;
-        let sheets = Sheets::new(&tools, geometry, count, i32::from(FARTHEST))?;
-        let mut encoder =
-            self.context().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let lamp = (&lamp, settings);
-        if let Some(voxels) = loaded.voxels.as_ref().filter(|_| settings.scatters()) {
-            let scattering = Scattering::new(self.context(), Arc::clone(voxels));
-            let of_light = (settings, target);
-            let options = RenderOptions::default();
-            let scatter = LightScatter::new(gpu, &scattering, tables, geometry, of_light, None, &options)?;
-            let table = &tables.lighting.buffer;
-            scatter.march(gpu, &scattering, table, lamp, geometry, &sheets, 0..count, &mut encoder)?;
-        } else {
-            let tiles = MarchTiles::all(geometry, sheets.chunk);
-            march(gpu, tables, lamp, geometry, &sheets, 0..count, tiles.of_chunk(0), &mut encoder)?;
-        }
-        self.context().queue.submit([encoder.finish()]);
-        // Four slabs to a texel, and room beside the sheets.
-        let texels = read_floats(self.context(), &sheets.ring)?;
-        let (columns, rows) = (sheets.ring.width() as usize, sheets.ring.height() as usize);
-        let [width, height] = geometry.frame.size.map(|n| n as usize);
-        let texels = texels.as_slice();
-        let of_slab = |k: usize| {
-            let row = move |j: usize| &texels[(k / 4 * rows + j) * columns * 4..][..4 * width];
-            (0..height).map(row).flat_map(move |row| row.iter().skip(k % 4).step_by(4).copied())
-        };
-        Ok((0..count as usize).flat_map(of_slab).collect())
     }
 }

@@ -13,5 +13,7 @@ pub(super) mod report;
 pub(super) mod statistics;
 pub(super) mod step;
 mod targets;
+#[cfg(feature = "testing")]
+mod testing;
 pub(super) mod tiled;
 pub(super) mod warm_up;

@@ -31,12 +31,12 @@ impl Renderer {
     /// Begins a picture of any size.
     pub fn bands<'a>(&'a mut self, dataset: &'a Dataset, settings: &'a Settings, shot: &Shot) -> Bands<'a> {
         let longest = self.context().device.limits().max_texture_dimension_2d;
-        self.bands_of(dataset, settings, shot, (longest, MOST_SAMPLES))
+        self.bands_within(dataset, settings, shot, (longest, MOST_SAMPLES))
     }
 
-    /// The same in parts whose edges have no more than so many samples, and which have no more than so many.
-    #[doc(hidden)]
-    pub fn bands_of<'a>(
+    /// Begins a picture in parts whose edges have no more than so many samples, and which have no more than so many
+    /// in all.
+    pub(super) fn bands_within<'a>(
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,

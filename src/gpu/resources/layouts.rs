@@ -270,12 +270,13 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
     ("volume/prefilter.wgsl", &[RESAMPLE]),
 ];
 
+#[cfg(feature = "testing")]
 /// What a compute shader binds: its name, and for each group the name and the entry of each binding.
 pub type ShaderBindings = (&'static str, Vec<Vec<(&'static str, wgpu::BindGroupLayoutEntry)>>);
 
 /// The bindings of every compute shader, where single channels are stored in `storage`, for light volumes of
 /// `attenuation`: for whoever compares them with the shaders.
-#[doc(hidden)]
+#[cfg(feature = "testing")]
 pub fn shader_bindings(
     storage: wgpu::TextureFormat,
     attenuation: wgpu::TextureFormat,

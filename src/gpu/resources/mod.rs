@@ -10,5 +10,9 @@ pub(super) mod pass;
 pub(super) mod pool;
 pub(super) mod readback;
 pub(super) mod tools;
+#[cfg_attr(
+    not(feature = "testing"),
+    expect(unreachable_pub, reason = "the tests that compare them with the shaders' reach them")
+)]
 pub mod uniforms;
 pub(super) mod variant;

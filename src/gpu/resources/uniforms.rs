@@ -1,7 +1,10 @@
 //! Every struct that a shader mirrors, field by field. `tests/shaders/structs.rs` compares names, offsets
 //! and sizes with what the shaders declare.
 
-#![expect(missing_docs, reason = "each field is documented where the shader declares it")]
+#![cfg_attr(
+    feature = "testing",
+    expect(missing_docs, reason = "each field is documented where the shader declares it")
+)]
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec2, DVec3};

@@ -363,6 +363,7 @@ fn density_is_unorm(context: &Context, volume: &Volume) -> bool {
 }
 
 /// A density as the GPU will have it: the reference rounds the same way.
+#[cfg(feature = "testing")]
 pub fn stored_density(context: &Context, volume: &Volume, density: f32) -> f32 {
     if density_is_unorm(context, volume) {
         f32::from(unorm16(density)) / 65535.0

@@ -1,6 +1,8 @@
-//! From linear light to what is written and shown: parts, samples, previews, fewer voxels, the window.
+//! From linear light to what is written and shown: parts, samples, previews, fewer voxels, the
+//! window, other programs.
 
 mod bands;
+mod painter;
 mod preview;
 mod reduced;
 mod tone_map;

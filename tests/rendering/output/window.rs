@@ -6,7 +6,7 @@ use crate::common::context;
 use crate::thresholds::EIGHT_BITS;
 
 /// Pixels of target and picture; a row of 256 bytes can be read back as it is.
-const SIZE: [u32; 2] = [64, 8];
+pub(super) const SIZE: [u32; 2] = [64, 8];
 
 /// Bytes in which every value occurs in every channel.
 fn picture() -> Vec<u8> {
@@ -14,7 +14,7 @@ fn picture() -> Vec<u8> {
 }
 
 /// The bytes of a target after something was drawn over black.
-fn drawn(
+pub(super) fn drawn(
     context: &Context,
     format: wgpu::TextureFormat,
     draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
@@ -32,9 +32,10 @@ fn drawn(
         view_formats: &[],
     });
     let view = target.create_view(&wgpu::TextureViewDescriptor::default());
+    let texel = format.block_copy_size(None).expect("a format of colours");
     let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("bytes"),
-        size: u64::from(4 * width * height),
+        size: u64::from(texel * width * height),
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
@@ -54,7 +55,7 @@ fn drawn(
     draw(&mut pass);
     drop(pass);
     let layout =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * width), rows_per_image: None };
     encoder.copy_texture_to_buffer(
         target.as_image_copy(),
         wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },

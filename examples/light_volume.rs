@@ -1,0 +1,50 @@
+//! The light that reaches every voxel of an array, as an array: `cargo run --example light_volume`
+
+use std::error::Error;
+
+use chiaroscuro::data::{Dataset, Samples, Volume};
+use chiaroscuro::gpu::{Context, RenderOptions, Renderer};
+use chiaroscuro::model::{
+    ControlPoint, Interpolation, Length, Light, LightStorage, Settings, TransferFunction,
+};
+use chiaroscuro::plan::Request;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    // Voxels of 1 mm, x fastest: a full block of 12³ in the middle of 32³ empty ones.
+    let n = 32;
+    let is_full = |i: usize| [i % n, i / n % n, i / n / n].iter().all(|c| (10..22).contains(c));
+    let voxels = (0..n * n * n).map(|i| if is_full(i) { 1.0_f32 } else { 0.0 }).collect();
+    let volume = Volume::with_spacing("block", [n; 3], glam::DVec3::ONE, Samples::F32(voxels))?;
+    let dataset = Dataset::new(volume);
+
+    // Light from above (+z); a full voxel takes a tenth of it on each millimetre.
+    let opacity = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+    let mut settings = Settings {
+        lights: vec![Light { position: [0.0, 0.0, 3.0], ..Light::default() }],
+        transfer: TransferFunction {
+            points: vec![opacity(0.0, 0.0), opacity(1.0, 0.1)],
+            interpolation: Interpolation::Extinction,
+            ..TransferFunction::default()
+        },
+        opacity_unit: Length::Mm(1.0),
+        ..Settings::default()
+    };
+    // A volume for each light, which is not combined with those of others.
+    settings.shadows.storage = LightStorage::PerLight;
+
+    // Light volumes are filled on the way to a picture, here of a few pixels, and here not only where it looks.
+    let mut renderer = Renderer::new(&Context::headless()?)?;
+    let (size, options) = ([8, 8], RenderOptions { fill_everything: true, ..RenderOptions::default() });
+    renderer.draw(&dataset, &settings, size, &options)?;
+    let request = Request { volume: dataset.volume().content_id(), settings, size, coarse: None };
+    let light = renderer.attenuation(&request, 0)?.ok_or("the light casts no shadows")?;
+
+    // 0 is dark, 1 fully lit, x fastest. Every `divisor` voxels of the array along an axis share one.
+    let [nx, ny, nz] = light.dims;
+    println!("{nx} × {ny} × {nz} values; from above, through the middle of the block:");
+    for z in (0..nz).rev().step_by(3) {
+        let value = light.values[(z * ny + ny / 2) * nx + nx / 2];
+        println!("z = {:>2} mm  {value:.3} {}", z * light.divisor, "█".repeat((40.0 * value) as usize));
+    }
+    Ok(())
+}

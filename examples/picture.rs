@@ -1,0 +1,37 @@
+//! A picture without a window: `cargo run --example picture -- [VOLUME [OUT.png]]`
+//!
+//! VOLUME is a file (RAW, NRRD), or a built-in volume such as `builtin:cloud:64`.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use chiaroscuro::data::Dataset;
+use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
+use chiaroscuro::export::export_png;
+use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let source = arguments.next().unwrap_or_else(|| "builtin:chair:48".to_owned());
+    let path =
+        arguments.next().map_or_else(|| std::env::temp_dir().join("chiaroscuro-picture.png"), PathBuf::from);
+
+    // A volume, with what follows from its voxels.
+    let dataset = Dataset::new(open(&source, &LoadOptions::default(), &LoadControl::new())?);
+
+    // A device without a window: the fastest, or the one that WGPU_ADAPTER_NAME names.
+    let context = Context::headless()?;
+    let mut renderer = Renderer::new(&context)?;
+
+    // Settings are the whole look. These are found from the voxels; every field may be changed.
+    let mut settings = first_look(&mut renderer, &dataset)?;
+    settings.camera.azimuth_deg += 20.0;
+    settings.floor.on = true;
+
+    // Bytes in sRGB, RGBA, row by row from the top left.
+    let size = [320, 240];
+    let shown = renderer.render_shown(&dataset, &settings, size, &RenderOptions::default())?;
+    export_png(size, &shown, false, None, &path)?;
+    println!("{}: {source}, on {}", path.display(), context.description());
+    Ok(())
+}

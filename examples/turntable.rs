@@ -1,0 +1,35 @@
+//! One turn of the camera as a file that moves: `cargo run --example turntable -- [OUT.png|OUT.gif]`
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use chiaroscuro::data::{Dataset, synthetic};
+use chiaroscuro::export::{Animation, Reel};
+use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
+use chiaroscuro::model::Record;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args()
+        .nth(1)
+        .map_or_else(|| std::env::temp_dir().join("chiaroscuro-turntable.gif"), PathBuf::from);
+    let dataset = Dataset::new(synthetic::builtin("chair", Some(32))?);
+    let mut renderer = Renderer::new(&Context::headless()?)?;
+    let settings = first_look(&mut renderer, &dataset)?;
+
+    // The name decides: GIF, animated PNG, MP4 (where ffmpeg is installed), or a folder of pictures.
+    let reel = Reel { size: [160, 120], frames: 24, rate: 12, transparent: false };
+    let mut file = Animation::create(&path, &reel)?;
+    for frame in 0..reel.frames {
+        // `Some(0)` in place of `None` turns the first light. The light volumes of the first picture serve all
+        // others: lights of the scene stay where they are when the camera turns.
+        let settings = settings.turned(None, f64::from(frame) / f64::from(reel.frames));
+        let shown = renderer.render_shown(&dataset, &settings, reel.size, &RenderOptions::default())?;
+        // Files that can carry a text get the settings, so that each picture can be made again.
+        file.add(&shown, &Record::text(&settings, None, None))?;
+    }
+    // Before this there is no file of that name.
+    file.finish()?;
+    let fills = renderer.light_rebuilds();
+    println!("{}: {} pictures; light volumes were filled {fills:?} times", path.display(), reel.frames);
+    Ok(())
+}
