@@ -60,7 +60,7 @@ impl Brightness {
     /// after a change of the background.
     pub(super) fn measure_full(
         &mut self,
-        scene: &mut Scene,
+        scene: &Scene,
         frame_request: &FrameRequest,
         is_at_rest: bool,
     ) -> Result<Option<f64>, GpuError> {
