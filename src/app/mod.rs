@@ -1,7 +1,8 @@
 //! The window.
 //!
-//! Panels change one [`Settings`] value; the viewport turns it into a picture. Only `viewport`, the
-//! loader and the export worker know the renderer; panels see settings and read-only facts.
+//! Panels change one [`Settings`] value; the viewport turns it into a picture. Whatever renders does so on a thread
+//! beside the window's: the loader and the render worker, exports, contact sheets, slices of light volumes, and the
+//! measurement of the brightness. Panels see settings and read-only facts.
 
 mod common;
 mod panels;

@@ -201,10 +201,10 @@ impl Viewport {
         let newest = (!self.waited_in_vain).then_some(&frame_request);
         let frame = self.thread.take_frame(newest, longest_wait);
         if longest_wait > Duration::ZERO {
-            let is_late = |frame: &Frame| newest.is_some_and(|newest| frame.frame_request != *newest);
+            let is_late = |frame: &Frame| newest.is_some_and(|newest| frame.request != *newest);
             self.waited_in_vain = frame.as_ref().is_none_or(is_late);
         }
-        if let Some(frame) = frame.filter(|frame| frame.frame_request.generation == self.generation) {
+        if let Some(frame) = frame.filter(|frame| frame.request.generation == self.generation) {
             self.show(frame, ctx);
         }
         if let Some(err) = self.thread.take_error() {
@@ -217,7 +217,7 @@ impl Viewport {
 
     /// Puts a finished picture on screen.
     fn show(&mut self, frame: Frame, ctx: &egui::Context) {
-        let Frame { frame_request, quality, image, other } = frame;
+        let Frame { request: frame_request, quality, image, other } = frame;
         // Pixel for pixel where there are enough of them.
         let exact = image.size == frame_request.size.map(|n| n as usize);
         // A preview of the same fades away; anything else is replaced at once.

@@ -22,7 +22,7 @@ pub(super) enum Purpose {
 #[derive(Debug)]
 pub(super) enum Due {
     /// At once.
-    Now(Purpose, FrameRequest),
+    Now(Purpose, Box<FrameRequest>),
     /// When nothing has changed for so long.
     After(Duration),
     /// When the window changes the mailbox.
@@ -108,9 +108,9 @@ impl Agenda {
         let rest = REST.saturating_sub(self.changed.elapsed());
         if shown.is_none() {
             // Something to look at comes first.
-            Due::Now(Purpose::Preview, frame_request.clone())
+            Due::Now(Purpose::Preview, Box::new(frame_request.clone()))
         } else if rest.is_zero() {
-            Due::Now(Purpose::Refinement, frame_request.clone())
+            Due::Now(Purpose::Refinement, Box::new(frame_request.clone()))
         } else if self.is_frame_pending {
             Due::WithNews
         } else {

@@ -7,7 +7,7 @@ use super::quality::QualityLevel;
 use super::request::{FrameRequest, Scene};
 use crate::gpu::{GpuError, RenderOptions, Report, dark_share, mean_luminance};
 use crate::model::Settings;
-use crate::plan::Request;
+use crate::plan::{EyeKey, Request};
 
 /// Largest previews whose brightness is measured: two milliseconds for a software adapter.
 const EXPOSED_PIXELS: u64 = 1 << 18;
@@ -22,6 +22,8 @@ pub(super) struct Brightness {
     exposures: Exposures,
     /// When darkness was measured.
     measured: Instant,
+    /// Whose light was measured then.
+    measured_eye: Option<EyeKey>,
     /// The last preview that was measured.
     last_preview: Option<FrameRequest>,
 }
@@ -29,12 +31,17 @@ pub(super) struct Brightness {
 impl Brightness {
     /// Nothing is known.
     pub(super) fn new() -> Self {
-        Self { exposures: Exposures::default(), measured: Instant::now(), last_preview: None }
+        Self {
+            exposures: Exposures::default(),
+            measured: Instant::now(),
+            measured_eye: None,
+            last_preview: None,
+        }
     }
 
     /// Forgets everything, as with another volume.
     pub(super) fn forget(&mut self) {
-        (self.exposures, self.last_preview) = (Exposures::default(), None);
+        *self = Self { measured: self.measured, ..Self::new() };
     }
 
     /// How long to expose a picture; `None` where that is not compensated.
@@ -49,17 +56,21 @@ impl Brightness {
     }
 
     /// The share of a picture at full quality that is nearly black; `None` if it was not measured. Every picture is
-    /// measured that is at rest (`is_at_rest`), others now and then.
+    /// measured that is at rest (`is_at_rest`), others now and then; none whose light is that of the one before, as
+    /// after a change of the background.
     pub(super) fn measure_full(
         &mut self,
-        scene: &mut Scene,
+        scene: &Scene,
         frame_request: &FrameRequest,
         is_at_rest: bool,
     ) -> Result<Option<f64>, GpuError> {
-        if !is_at_rest && self.measured.elapsed() < MEASURING_INTERVAL {
+        let eye = &frame_request.keys().eye;
+        let is_known = scene.renderer.report().runs.eye == 0 && self.measured_eye.as_ref() == Some(eye);
+        if is_known || (!is_at_rest && self.measured.elapsed() < MEASURING_INTERVAL) {
             return Ok(None);
         }
         self.measured = Instant::now();
+        self.measured_eye = Some(eye.clone());
         let light = scene.renderer.read_light()?;
         if frame_request.looks.right.is_none() {
             let is_of_last_preview = self.last_preview.as_ref() == Some(frame_request);

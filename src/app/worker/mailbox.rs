@@ -12,7 +12,7 @@ use crate::gpu::{GpuError, LightFigures, Stage};
 /// A finished picture.
 pub(crate) struct Frame {
     /// What it shows.
-    pub(crate) frame_request: FrameRequest,
+    pub(crate) request: FrameRequest,
     pub(crate) quality: QualityLevel,
     pub(crate) image: ColorImage,
     /// The picture that it is compared with, and what lies between them.

@@ -71,7 +71,7 @@ impl RenderThread {
 
     /// The latest finished picture, once. Waits at most so long for one, or for that of a request.
     pub(crate) fn take_frame(&self, awaited: Option<&FrameRequest>, longest_wait: Duration) -> Option<Frame> {
-        let is_it = |frame: &Frame| awaited.is_none_or(|awaited| frame.frame_request == *awaited);
+        let is_it = |frame: &Frame| awaited.is_none_or(|awaited| frame.request == *awaited);
         let is_due =
             |mailbox: &mut Mailbox| mailbox.error.is_none() && !mailbox.frame.as_ref().is_some_and(is_it);
         let (mut mailbox, _) = self

@@ -98,7 +98,7 @@ impl RenderWorker {
             let due = if self.scene.is_some() { self.agenda.due() } else { Due::WithNews };
             let rest = match due {
                 Due::Now(purpose, frame_request) => {
-                    return self.scene.take().map(|scene| (scene, purpose, frame_request));
+                    return self.scene.take().map(|scene| (scene, purpose, *frame_request));
                 }
                 Due::After(rest) => Some(rest),
                 Due::WithNews => None,
@@ -277,7 +277,7 @@ impl RenderWorker {
         figures.light_volumes = renderer.light_figures(&request);
         figures.gpu_bytes = renderer.gpu_bytes();
         figures.refining = None;
-        mailbox.frame = Some(Frame { frame_request, quality, image, other });
+        mailbox.frame = Some(Frame { request: frame_request, quality, image, other });
         drop(mailbox);
         self.shared.finished.notify_one();
         self.ctx.request_repaint();

@@ -115,7 +115,7 @@ impl HoodHandle {
         let half_angle_deg = spot.half_angle_deg(view, light, view.facing(at, moved?)?);
         // Not so far that nobody could grab it any more.
         let hood = Hood { half_angle_deg, ..light.hood };
-        let moved = spot.place(view, &SceneLight { hood, ..light.clone() });
+        let moved = spot.place(view, &SceneLight { hood, ..*light });
         view.point(moved).is_some_and(|at| view.shows(at)).then_some(half_angle_deg)
     }
 }
