@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 use serde_json::Value;
 
 use super::{CliError, warn_line};
-use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
-use crate::data::{Dataset, Volume, VoxelType, read_small};
+use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
+use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance, fitted};
 use crate::model::{Engine, MAX_EDGE, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};

@@ -3,7 +3,7 @@
 use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
-use super::picture_file::RECORD;
+use super::rows::{RECORD, word};
 use super::whole_file::{open_regular, place, temporary_beside, write_atomically};
 use super::{ExportError, ReadPictureError, Rows};
 use crate::model::{Depth, MAX_EDGE, Shot};
@@ -96,11 +96,6 @@ fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
     let kept = if alpha { 4 } else { 3 };
     let texels = shown.chunks_exact(4);
     texels.flat_map(|texel| texel[..kept].iter().flat_map(|&value| word(value).to_be_bytes())).collect()
-}
-
-/// 0 … 1 in 16 bits.
-pub(super) fn word(value: f32) -> u16 {
-    (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
 }
 
 /// All of a PNG file.

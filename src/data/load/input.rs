@@ -4,8 +4,8 @@ use std::fs::{self, File, FileType};
 use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
-use super::error::Attempt;
 use super::{LoadControl, LoadError};
+use crate::data::attempt::{Attempt, plain};
 
 /// A regular file open for reading, at its beginning.
 #[derive(Debug)]
@@ -102,5 +102,5 @@ pub(crate) fn is_gzip(magic: &[u8]) -> bool {
 /// The file name without its last extension, for a volume that has no other name.
 pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
-    super::error::plain(&stem.to_string_lossy(), 120)
+    plain(&stem.to_string_lossy(), 120)
 }

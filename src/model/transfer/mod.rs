@@ -4,7 +4,6 @@
 //! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
 
 pub(super) mod color_map;
-pub(super) mod exchange;
 pub(super) mod oklab;
 
 use serde::{Deserialize, Serialize};
