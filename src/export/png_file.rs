@@ -91,7 +91,7 @@ pub(super) fn rgb(shown: &[u8]) -> Vec<u8> {
     shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
 }
 
-/// The same of 0 … 1 in 16 bits, high byte first, with its alpha or without.
+/// Numbers from 0 to 1 in 16 bits, high byte first, with alpha or without.
 fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
     let kept = if alpha { 4 } else { 3 };
     let texels = shown.chunks_exact(4);

@@ -10,9 +10,9 @@ use crate::data::attempt::{Attempt, plain};
 /// A regular file open for reading, at its beginning.
 #[derive(Debug)]
 pub(crate) struct Input {
-    /// Its content.
+    /// The content of the file.
     pub(crate) reader: BufReader<File>,
-    /// Its length in bytes when it was opened.
+    /// Length of the file in bytes when it was opened.
     pub(crate) len: u64,
 }
 
