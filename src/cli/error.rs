@@ -21,7 +21,7 @@ pub enum CliError {
     Preset {
         /// Preset or session.
         what: &'static str,
-        /// Its file.
+        /// The file.
         path: String,
         /// Why not.
         source: PresetError,
@@ -31,7 +31,7 @@ pub enum CliError {
     Read {
         /// What was to be read.
         what: &'static str,
-        /// Its file.
+        /// The file.
         path: String,
         /// Why not.
         source: std::io::Error,

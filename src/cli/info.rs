@@ -5,8 +5,8 @@ use serde_json::json;
 
 use super::scene::LoadArgs;
 use super::{CliError, print_line};
-use crate::data::load::{LoadControl, open};
-use crate::data::{Dataset, ValueRange};
+use crate::data::load::LoadControl;
+use crate::data::{Dataset, ValueRange, open};
 
 /// Percentiles that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];

@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 use serde_json::Value;
 
 use super::{CliError, warn_line};
-use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat, open};
-use crate::data::{Dataset, Volume, VoxelType, read_small};
+use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
+use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance, fitted};
 use crate::model::{Engine, MAX_EDGE, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
@@ -81,12 +81,12 @@ impl LoadArgs {
         // What is wrong with a file is said first.
         let whole = open(source, &self.load_options()?, &LoadControl::new())?;
         let context = Context::headless()?;
-        Ok((fitted_for(source, whole, &context)?, context))
+        Ok((downsampled_to_fit(source, whole, &context)?, context))
     }
 }
 
 /// The volume as the adapter can hold it.
-fn fitted_for(source: &str, whole: Volume, context: &Context) -> Result<Volume, CliError> {
+fn downsampled_to_fit(source: &str, whole: Volume, context: &Context) -> Result<Volume, CliError> {
     let before = whole.dims();
     let volume = fitted(context, whole)?;
     if volume.dims() != before {
@@ -168,7 +168,7 @@ pub(super) struct SceneArgs {
     look: LookArgs,
 }
 
-/// A volume with what follows from it, after a word about values that are odd.
+/// A volume with what follows from it, after a word about values that are not finite.
 fn checked(volume: Volume) -> Dataset {
     if volume.non_finite_voxels() > 0 {
         warn_line(&format!(
@@ -201,7 +201,7 @@ impl LookArgs {
     /// Loads a volume for an adapter that is open.
     pub(super) fn load(&self, source: &str, context: &Context) -> Result<Dataset, CliError> {
         let whole = open(source, &self.load.load_options()?, &LoadControl::new())?;
-        Ok(checked(fitted_for(source, whole, context)?))
+        Ok(checked(downsampled_to_fit(source, whole, context)?))
     }
 
     /// The automatic look, with preset and session laid over it, and the single settings to come.

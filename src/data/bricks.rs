@@ -11,10 +11,7 @@ use std::ops::RangeInclusive;
 use rayon::prelude::*;
 
 use super::Volume;
-use super::cells::{self, CellBounds};
-
-/// Voxels along the edge of a brick.
-pub const BRICK_EDGE: usize = 8;
+use super::cells::{self, BRICK_EDGE, CellBounds};
 
 /// How far a brick's range looks beyond its voxels: the kernel's radius of 2 and one for the
 /// quadrature offset, at most 2 · 0.289 voxel with the thickest slab.

@@ -11,7 +11,9 @@
 use rayon::prelude::*;
 
 use super::Volume;
-use super::bricks::BRICK_EDGE;
+
+/// Voxels along the edge of a brick, for which the bounds of its cells are kept together.
+pub const BRICK_EDGE: usize = 8;
 
 /// Voxels along the edge of a cell.
 pub const CELL_EDGE: usize = 2;

@@ -2,21 +2,24 @@
 //!
 //! Knows nothing of settings, of the GPU or of the window.
 
+mod attempt;
 mod bricks;
 mod cells;
 mod dataset;
 mod histogram;
 pub mod load;
+mod open;
 mod reduce;
 mod small_file;
 pub mod synthetic;
 mod value_range;
 mod volume;
 
-pub use bricks::{BRICK_EDGE, Bricks};
-pub use cells::{BOUNDED_SIGMA, CELL_EDGE, CELLS, CellBounds, SIGMA_TOLERANCE};
+pub use bricks::Bricks;
+pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CELLS, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
+pub use open::open;
 pub use reduce::reduced_dims;
 pub use small_file::read_small;
 pub use value_range::ValueRange;

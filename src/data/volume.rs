@@ -279,7 +279,7 @@ impl Volume {
         self.dims
     }
 
-    /// The same before blocks of voxels were averaged ([`Self::reduced`]), if they were.
+    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]); [`Self::dims`] where none were.
     pub fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }

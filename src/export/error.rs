@@ -45,7 +45,7 @@ pub enum ExportError {
     Ffmpeg {
         /// What was to be written.
         path: PathBuf,
-        /// Its own last words.
+        /// The last words of ffmpeg.
         said: String,
     },
 }

@@ -10,7 +10,7 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::Compression;
 
-use super::picture_file::RECORD;
+use super::rows::RECORD;
 use super::whole_file::{open_regular, place, temporary_beside};
 use super::{ExportError, ReadPictureError, Rows};
 use crate::model::Shot;

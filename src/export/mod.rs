@@ -8,10 +8,12 @@ mod error;
 mod exr_file;
 mod picture_file;
 mod png_file;
+mod rows;
 mod whole_file;
 
 pub use animation::{Animation, AnimationFormat, Reel};
 pub use error::{ExportError, ReadPictureError};
-pub use picture_file::{PictureFormat, Rows, check_picture, read_picture, read_record, write_picture};
+pub use picture_file::{PictureFormat, check_picture, read_picture, read_record, write_picture};
 pub use png_file::{encode_png, export_png};
+pub use rows::Rows;
 pub use whole_file::{check_writable, write_atomically};

@@ -2,11 +2,8 @@
 
 use std::path::Path;
 
-use super::{ExportError, ReadPictureError, exr_file, png_file};
+use super::{ExportError, ReadPictureError, Rows, exr_file, png_file};
 use crate::model::{Depth, Shot};
-
-/// Under which name a picture carries its record.
-pub(super) const RECORD: &str = "chiaroscuro";
 
 /// Kinds of picture files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,53 +33,6 @@ impl PictureFormat {
             (Self::Exr, _) => Depth::Linear,
             (Self::Png, Depth::Sixteen) => Depth::Sixteen,
             (Self::Png, _) => Depth::Eight,
-        }
-    }
-}
-
-/// Rows of a picture, RGBA: display colours with straight alpha, or linear and premultiplied light.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Rows {
-    /// sRGB bytes.
-    Bytes(Vec<u8>),
-    /// 0 … 1, or light.
-    Floats(Vec<f32>),
-}
-
-impl Rows {
-    /// What a file of them gives back.
-    #[must_use]
-    pub fn as_written(self, shot: &Shot) -> Self {
-        match self {
-            Self::Bytes(mut shown) => {
-                if !shot.transparent {
-                    shown.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
-                }
-                Self::Bytes(shown)
-            }
-            Self::Floats(mut shown) => {
-                if shot.depth == Depth::Linear {
-                    for value in &mut shown {
-                        *value = half::f16::from_f32(*value).to_f32();
-                    }
-                } else {
-                    for value in &mut shown {
-                        *value = f32::from(png_file::word(*value)) / 65535.0;
-                    }
-                    if !shot.transparent {
-                        shown.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
-                    }
-                }
-                Self::Floats(shown)
-            }
-        }
-    }
-
-    /// All of them where 1 is white.
-    pub fn values(&self) -> Vec<f32> {
-        match self {
-            Self::Bytes(shown) => shown.iter().map(|&byte| f32::from(byte) / 255.0).collect(),
-            Self::Floats(shown) => shown.clone(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
-use super::picture_file::RECORD;
+use super::rows::{RECORD, word};
 use super::whole_file::{open_regular, place, temporary_beside, write_atomically};
 use super::{ExportError, ReadPictureError, Rows};
 use crate::model::{Depth, MAX_EDGE, Shot};
@@ -91,16 +91,11 @@ pub(super) fn rgb(shown: &[u8]) -> Vec<u8> {
     shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
 }
 
-/// The same of 0 … 1 in 16 bits, high byte first, with its alpha or without.
+/// Numbers from 0 to 1 in 16 bits, high byte first, with alpha or without.
 fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
     let kept = if alpha { 4 } else { 3 };
     let texels = shown.chunks_exact(4);
     texels.flat_map(|texel| texel[..kept].iter().flat_map(|&value| word(value).to_be_bytes())).collect()
-}
-
-/// 0 … 1 in 16 bits.
-pub(super) fn word(value: f32) -> u16 {
-    (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
 }
 
 /// All of a PNG file.

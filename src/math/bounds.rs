@@ -20,7 +20,7 @@ impl Bounds {
         Self { min: DVec3::splat(-0.5 - pad), max: n - DVec3::splat(0.5 - pad) }
     }
 
-    /// Its eight corners.
+    /// The eight corners of the box.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|corner| {
             let pick = |axis: usize| if corner >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };

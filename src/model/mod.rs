@@ -4,6 +4,7 @@
 //! recomputed after a change follows from comparing two of them (`crate::plan`).
 
 pub mod auto;
+mod exchange;
 mod rig;
 mod settings;
 mod shot;
@@ -28,8 +29,8 @@ pub use self::stored::library::{PRESETS, Preset, apply_relative};
 pub use self::stored::preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use self::stored::record::{PictureRecord, Record, VolumeRecord};
 pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
-pub use self::transfer::exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear};
+pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use rig::Rig;
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
 pub use shot::{Depth, MAX_EDGE, MAX_SAMPLES, Shot};

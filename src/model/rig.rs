@@ -47,7 +47,7 @@ impl Rig {
         }
     }
 
-    /// Its lights, as seen from a camera. All but the headlight then keep their places in the scene.
+    /// The lights of the rig, as seen from a camera. All but the headlight then keep their places in the scene.
     pub fn lights(self, camera: &Camera) -> Vec<Light> {
         let view = camera.scene_from_view();
         // Right, up and towards the eye.

@@ -35,7 +35,7 @@ pub fn tent(t: f64) -> f64 {
 pub(super) struct Profile {
     /// Which kernel.
     pub kernel: Kernel,
-    /// Its width relative to the right one; 1 unless a fault is wanted.
+    /// Width of the kernel relative to the right one; 1 unless a fault is wanted.
     pub width: f64,
 }
 

@@ -18,7 +18,7 @@ pub(super) struct Shader<'r> {
 
 /// A light that is on.
 struct Lamp<'r> {
-    /// Its position in the scene.
+    /// The light in scene space.
     light: SceneLight,
     /// Linear colour times intensity and balance: `C_L` of P eq. 5.
     rgb: [f64; 3],

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, Options, wgpu_setup};
 use chiaroscuro::data::Dataset;
-use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
+use chiaroscuro::data::load::{LoadControl, LoadOptions};
+use chiaroscuro::data::open;
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;

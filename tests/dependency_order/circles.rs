@@ -12,18 +12,10 @@ use crate::tokens::tokens;
 /// Circles that there still are: the folder, and the modules in it. None may grow; one that is gone is to be taken
 /// off.
 const REMAINING: &[(&str, &[&str])] = &[
-    // Bricks are made of cells, whose edge is a part of a brick's.
-    ("data", &["bricks", "cells"]),
-    // `builtin:` is resolved where files are loaded, and built-in volumes have the errors of loading.
-    ("data", &["load", "synthetic"]),
-    // Each format is chosen by its ending where pictures are written, and shares its helpers.
-    ("export", &["exr_file", "picture_file", "png_file"]),
     // `Renderer` has its methods where their passes are, and passes know its frame.
     ("gpu", &["eye", "frame", "light", "output", "resources", "scatter", "volume"]),
     // The cache is filled by methods of `Renderer`, which holds it.
     ("gpu/frame", &["light_cache", "renderer"]),
-    // Settings hold a transfer function, which is stored with them.
-    ("model", &["settings", "stored", "transfer"]),
 ];
 
 /// For each module of a folder the others that it names, with a file that does.

@@ -9,8 +9,8 @@ use eframe::egui;
 
 use super::task::Work;
 use crate::app::text;
-use crate::data::Dataset;
 use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
+use crate::data::{self, Dataset};
 use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look, fitted};
 use crate::model::Settings;
 
@@ -240,7 +240,7 @@ struct Opening {
 
 fn open(opening: Opening) -> Outcome {
     let Opening { source, reading, options, context, shaders, control, phase } = opening;
-    let volume = match load::open(&source, &options, &control) {
+    let volume = match data::open(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
         Err(err) => {

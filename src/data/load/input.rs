@@ -4,15 +4,15 @@ use std::fs::{self, File, FileType};
 use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
-use super::error::Attempt;
 use super::{LoadControl, LoadError};
+use crate::data::attempt::{Attempt, plain};
 
 /// A regular file open for reading, at its beginning.
 #[derive(Debug)]
 pub(crate) struct Input {
-    /// Its content.
+    /// The content of the file.
     pub(crate) reader: BufReader<File>,
-    /// Its length in bytes when it was opened.
+    /// Length of the file in bytes when it was opened.
     pub(crate) len: u64,
 }
 
@@ -102,5 +102,5 @@ pub(crate) fn is_gzip(magic: &[u8]) -> bool {
 /// The file name without its last extension, for a volume that has no other name.
 pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
-    super::error::plain(&stem.to_string_lossy(), 120)
+    plain(&stem.to_string_lossy(), 120)
 }

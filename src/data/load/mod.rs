@@ -5,10 +5,7 @@
 //! its own folder. Files are read in blocks into typed voxels, never mapped: the peak is the volume
 //! itself and one block.
 
-mod control;
-mod error;
 mod input;
-mod limits;
 mod nrrd;
 mod raw;
 mod raw_layout;
@@ -18,16 +15,13 @@ mod tests;
 
 use std::path::Path;
 
-pub use control::LoadControl;
-pub(crate) use error::Attempt;
-pub use error::{Explanation, LoadError, LoadErrorKind};
-pub(crate) use limits::Extent;
-pub(crate) use limits::default_budget_bytes as memory_budget_bytes;
 pub use raw::RawFormat;
 pub use raw_layout::{RawGuess, RawLayout};
 
-use super::{Volume, synthetic};
-use error::quoted;
+use super::Volume;
+use super::attempt::Attempt;
+pub(crate) use super::attempt::memory_budget_bytes;
+pub use super::attempt::{Explanation, LoadControl, LoadError, LoadErrorKind};
 use input::Input;
 
 /// The order of the bytes of one voxel.
@@ -54,45 +48,8 @@ impl Default for LoadOptions {
     /// Nothing said about RAW files, every voxel kept; a budget of three quarters of the memory that is free now
     /// (`MemAvailable` in `/proc/meminfo`), or 4 GiB where that is not known.
     fn default() -> Self {
-        Self { raw: RawFormat::default(), reduce: 1, memory_budget_bytes: limits::default_budget_bytes() }
+        Self { raw: RawFormat::default(), reduce: 1, memory_budget_bytes: memory_budget_bytes() }
     }
-}
-
-/// Prefix of the names of built-in volumes where a file is expected.
-const BUILTIN: &str = "builtin:";
-
-/// Loads what a FILE argument names: a path, or `builtin:NAME` or `builtin:NAME:N` for a built-in
-/// volume of N³ voxels. A file whose name begins like that is reached as `./builtin:…`.
-///
-/// # Errors
-/// As [`load`] and [`synthetic::builtin`].
-pub fn open(source: &str, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let volume = open_whole(source, options, control)?;
-    let attempt = Attempt { what: "average the voxels", path: Path::new(source) };
-    // What was a volume stays one: nothing else can go wrong.
-    volume
-        .reduced([options.reduce; 3])
-        .map_err(|err| attempt.bad_input("voxels", err.to_string(), "load them all"))
-}
-
-fn open_whole(source: &str, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let Some(builtin) = source.strip_prefix(BUILTIN) else {
-        return load(Path::new(source), options, control);
-    };
-    let (name, n) = match builtin.split_once(':') {
-        None => (builtin, None),
-        Some((name, digits)) => match digits.parse() {
-            Ok(n) => (name, Some(n)),
-            Err(_) => {
-                return Err(Attempt { what: "make the built-in volume", path: Path::new(source) }.bad_input(
-                    "N",
-                    format!("a number of voxels was expected after {name}:, {} was found", quoted(digits)),
-                    "write it like builtin:chair:128",
-                ));
-            }
-        },
-    };
-    synthetic::builtin_within(name, n, options.memory_budget_bytes, control)
 }
 
 /// Loads a volume from a file.

@@ -6,11 +6,11 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::error::{Attempt, plain, quoted};
 use super::input::{Input, is_gzip, stem};
-use super::limits::{Extent, is_usable_spacing};
 use super::samples::{Layout, read_binary, read_gzip};
 use super::{Endian, LoadControl, LoadError, LoadOptions};
+use crate::data::attempt::{Attempt, plain, quoted};
+use crate::data::attempt::{Extent, is_usable_spacing};
 use crate::data::{Volume, VoxelType};
 
 /// How a RAW file is stored. What is given overrides what the file's name says.

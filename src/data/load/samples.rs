@@ -7,9 +7,9 @@ use std::io::{self, BufRead, Read};
 
 use flate2::bufread::MultiGzDecoder;
 
-use super::error::{Attempt, quoted};
-use super::limits::{Extent, human_bytes};
 use super::{Endian, LoadControl, LoadError};
+use crate::data::attempt::{Attempt, quoted};
+use crate::data::attempt::{Extent, human_bytes};
 use crate::data::{Samples, VoxelType};
 
 /// Bytes that are read and decoded at a time, and between two looks at `cancel`.

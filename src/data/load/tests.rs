@@ -10,6 +10,8 @@ use glam::DVec3;
 use tempfile::TempDir;
 
 use super::*;
+use crate::data::attempt::Extent;
+use crate::data::open;
 use crate::data::{Samples, VoxelType};
 
 fn gzip(bytes: &[u8]) -> Vec<u8> {

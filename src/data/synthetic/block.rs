@@ -1,6 +1,6 @@
 //! The built-in `box`: a homogeneous cube with exact coverage, for comparisons with formulas.
 
-use super::super::load::{Attempt, LoadControl, LoadError};
+use super::super::attempt::{Attempt, LoadControl, LoadError};
 use super::Grid;
 
 /// Half the edge of the cube, in units of p.

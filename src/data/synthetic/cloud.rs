@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::super::load::{Attempt, LoadControl, LoadError};
+use super::super::attempt::{Attempt, LoadControl, LoadError};
 use super::Grid;
 use super::noise::fractal;
 

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use super::super::load::{Attempt, LoadControl, LoadError};
+use super::super::attempt::{Attempt, LoadControl, LoadError};
 use super::Grid;
 
 /// Amplitude of the ripple.

@@ -18,7 +18,7 @@ use std::path::Path;
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::load::{Attempt, Extent, LoadControl, LoadError, LoadOptions};
+use super::attempt::{Attempt, Extent, LoadControl, LoadError, memory_budget_bytes};
 use super::{Samples, Volume, VoxelType};
 
 /// The built-in volumes.
@@ -92,7 +92,7 @@ impl Grid {
 /// `BadInput` for a name that is not in [`NAMES`] or an `n` outside 8 … 1024; `Limit` when it would
 /// need more than three quarters of the free memory.
 pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
-    builtin_within(name, n, LoadOptions::default().memory_budget_bytes, &LoadControl::new())
+    builtin_within(name, n, memory_budget_bytes(), &LoadControl::new())
 }
 
 /// As [`builtin`], with a memory budget in bytes, and with a control to watch and to cancel it.
@@ -147,7 +147,7 @@ pub fn builtin_within(
 
 #[cfg(test)]
 mod tests {
-    use super::super::load::LoadErrorKind;
+    use super::super::attempt::LoadErrorKind;
     use super::*;
 
     fn make(name: &str, n: usize) -> Volume {

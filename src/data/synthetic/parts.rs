@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::super::load::{Attempt, LoadControl, LoadError};
+use super::super::attempt::{Attempt, LoadControl, LoadError};
 use super::Grid;
 use super::shapes::Shape;
 

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use super::{Moving, Reel};
+use super::{AnimationEncoder, Reel};
 use crate::export::ExportError;
 use crate::export::png_file::rgb;
 use crate::export::whole_file::{place, temporary_beside};
@@ -33,7 +33,7 @@ impl Apng {
     }
 }
 
-impl Moving for Apng {
+impl AnimationEncoder for Apng {
     fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
         if self.transparent {
             self.writer.write_image_data(shown)?;

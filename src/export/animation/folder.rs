@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Moving, Reel};
+use super::{AnimationEncoder, Reel};
 use crate::export::{ExportError, export_png};
 
 /// The name of a picture.
@@ -28,7 +28,7 @@ impl Folder {
     }
 }
 
-impl Moving for Folder {
+impl AnimationEncoder for Folder {
     fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
         let path = self.path.join(name(self.written));
         export_png(self.reel.size, shown, self.reel.transparent, Some(record), &path)?;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::{Moving, Reel};
+use super::{AnimationEncoder, Reel};
 use crate::export::ExportError;
 use crate::export::whole_file::{place, temporary_beside};
 
@@ -45,7 +45,7 @@ impl Gif {
     }
 }
 
-impl Moving for Gif {
+impl AnimationEncoder for Gif {
     fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
         let mut pixels = shown.to_vec();
         for pixel in pixels.chunks_exact_mut(4) {

@@ -57,7 +57,7 @@ pub struct Reel {
 const OTHERS: [&str; 10] = ["avi", "avif", "bmp", "exr", "jpeg", "jpg", "mkv", "mov", "webm", "webp"];
 
 /// A kind of file that is being written.
-trait Moving: Send {
+trait AnimationEncoder: Send {
     /// Adds a picture.
     fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError>;
 
@@ -67,7 +67,7 @@ trait Moving: Send {
 
 /// A file of pictures of one size that is being written. It takes its name when it is complete, and leaves
 /// nothing when it is not; but pictures in a folder are complete one by one.
-pub struct Animation(Box<dyn Moving>);
+pub struct Animation(Box<dyn AnimationEncoder>);
 
 impl std::fmt::Debug for Animation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -6,7 +6,7 @@ use std::io::{BufWriter, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
-use super::{Moving, Reel};
+use super::{AnimationEncoder, Reel};
 use crate::export::ExportError;
 use crate::export::png_file::rgb;
 use crate::export::whole_file::{place, temporary_beside};
@@ -98,7 +98,7 @@ impl Mp4 {
     }
 }
 
-impl Moving for Mp4 {
+impl AnimationEncoder for Mp4 {
     fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
         self.missing = self.missing.saturating_sub(1);
         match self.ffmpeg.frames.as_mut().map(|frames| frames.write_all(&rgb(shown))) {

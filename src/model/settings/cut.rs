@@ -135,7 +135,7 @@ impl Remains {
         *self == Self::default()
     }
 
-    /// The same in index space. Faces at the border of the grid cut nothing, so that what the kernel spreads
+    /// What remains, in index space. Faces at the border of the grid cut nothing, so that what the kernel spreads
     /// beyond it stays.
     pub fn region(&self, scene: &SceneSpace) -> Region {
         let mut region = Region::EVERYTHING;

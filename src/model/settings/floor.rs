@@ -19,7 +19,7 @@ pub struct Floor {
     pub height: f64,
     /// Distance from the middle at which nothing is left of it, in scene units.
     pub radius: f64,
-    /// Its own colour, sRGB, 0 … 1.
+    /// Colour of the floor, sRGB, 0 … 1.
     pub color: [f32; 3],
     /// How much of the background it covers in its middle, 0 … 1.
     pub opacity: f64,

@@ -97,9 +97,9 @@ impl Default for Light {
 pub struct Cone {
     /// From the light to the middle of what it shines at; a unit vector in scene space.
     pub axis: DVec3,
-    /// Cosine of the angle up to which it shines fully …
+    /// Cosine of the angle from the axis up to which the light shines fully.
     pub cos_inner: f64,
-    /// … and of that from which it does not.
+    /// Cosine of the angle from the axis from which on it does not shine.
     pub cos_outer: f64,
 }
 

@@ -15,7 +15,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::transfer::unit_in_scene;
 use super::{
     BakedTransfer, Camera, Classification, Cuts, Engine, Floor, Gradients, Kernel, Length, Light,
     LightStorage, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
@@ -207,14 +206,19 @@ impl Settings {
         self.scatters() || self.sampling.gradients == Gradients::Sheets
     }
 
+    /// The opacity unit in scene units, safe to divide by.
+    fn unit_in_scene(&self, scene: &SceneSpace) -> f64 {
+        self.opacity_unit.in_scene(scene).max(1e-9)
+    }
+
     /// The eye's transfer function as a table for a volume of that value range.
     pub fn baked_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
-        self.transfer.bake(range, unit_in_scene(self.opacity_unit, scene), 1.0)
+        self.transfer.bake(range, self.unit_in_scene(scene), 1.0)
     }
 
     /// The lighting transfer function as a table for a volume of that value range.
     pub fn baked_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
-        function.bake(range, unit_in_scene(self.opacity_unit, scene), self.lighting.scale)
+        function.bake(range, self.unit_in_scene(scene), self.lighting.scale)
     }
 }

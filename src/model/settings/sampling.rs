@@ -79,10 +79,10 @@ pub enum Classification {
 pub enum SheetOrder {
     /// Sheets across the line of sight (the paper's references 17 and 18).
     ImageAligned,
-    /// Sheets along the volume's axis that is nearest to the line of sight (its reference 26):
+    /// Sheets along the volume's axis that is nearest to the line of sight (the paper's reference 26):
     /// brightness pops when another axis becomes the nearest.
     VolumeAligned,
-    /// Every footprint by itself, classified as a voxel (its reference 25): overlaps bleed.
+    /// Every footprint by itself, classified as a voxel (the paper's reference 25): overlaps bleed.
     EveryFootprint,
 }
 

@@ -7,9 +7,9 @@ use crate::model::{Camera, Projection};
 /// A side from which to look, along the axes of the scene. What the front of a thing is, only its owner knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardView {
-    /// From +x …
+    /// From +x.
     PlusX,
-    /// … and so on.
+    /// From −x.
     MinusX,
     /// From +y.
     PlusY,
@@ -88,7 +88,7 @@ impl Camera {
     /// Frames what another camera frames, from the direction of this one.
     pub fn frame_as(&mut self, other: &Self) {
         self.target = other.target;
-        // The same width at the target, whatever the angle of view.
+        // As wide at the target as the other, whatever the angle of view.
         let ratio = (other.fov_y_deg.to_radians() / 2.0).tan() / (self.fov_y_deg.to_radians() / 2.0).tan();
         self.distance = other.distance * ratio;
     }

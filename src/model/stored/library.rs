@@ -47,7 +47,7 @@ impl Preset {
         PRESETS.into_iter().find(|preset| preset.name == name)
     }
 
-    /// Its JSON.
+    /// The JSON of the preset.
     pub fn text(&self) -> &'static str {
         self.text
     }

@@ -4,14 +4,12 @@
 //! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
 
 pub(super) mod color_map;
-pub(super) mod exchange;
 pub(super) mod oklab;
 
 use serde::{Deserialize, Serialize};
 
 use super::{linear_from_oklab, oklab_from_linear};
 use crate::data::ValueRange;
-use crate::math::SceneSpace;
 
 /// Entries of a baked table; values between are interpolated.
 pub const LUT_SIZE: usize = 1024;
@@ -120,7 +118,7 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The way back.
+/// One component of linear light as sRGB (IEC 61966-2-1).
 pub fn srgb_from_linear(linear: f64) -> f64 {
     if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
@@ -270,11 +268,6 @@ impl BakedTransfer {
             a + (b - a) * t
         })
     }
-}
-
-/// The opacity unit of a scene, safe to divide by.
-pub(crate) fn unit_in_scene(unit: super::Length, scene: &SceneSpace) -> f64 {
-    unit.in_scene(scene).max(1e-9)
 }
 
 #[cfg(test)]

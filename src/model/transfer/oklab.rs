@@ -7,13 +7,13 @@ pub fn oklab_from_linear(rgb: [f64; 3]) -> [f64; 3] {
     product(&LAB_FROM_CONES, cones)
 }
 
-/// The way back; what no display can show is cut at 0 and 1.
+/// Oklab as linear RGB; what no display can show is cut at 0 and 1.
 pub fn linear_from_oklab(lab: [f64; 3]) -> [f64; 3] {
     let cones = product(&CONES_FROM_LAB, lab).map(|root| root * root * root);
     product(&RGB_FROM_CONES, cones).map(|c| c.clamp(0.0, 1.0))
 }
 
-/// The same as lightness, chroma and hue in degrees (0 … 360; 0 for greys).
+/// A colour in Oklab as lightness, chroma and hue in degrees (0 … 360; 0 for greys).
 pub fn lch_from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
     let chroma = (a * a + b * b).sqrt();
     // Rounding gives greys a chroma of 1e-8, and any hue.
@@ -21,7 +21,7 @@ pub fn lch_from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
     [l, chroma, hue]
 }
 
-/// The way back.
+/// A colour in Oklab from lightness, chroma and hue in degrees.
 pub fn lab_from_lch([l, chroma, hue_deg]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = hue_deg.to_radians().sin_cos();
     [l, chroma * cos, chroma * sin]

@@ -36,7 +36,7 @@ impl CellSet {
         self.masks.iter().enumerate().filter(|(_, mask)| **mask != 0).map(brick)
     }
 
-    /// The same as a set of bricks.
+    /// The bricks that have any of the cells.
     pub fn to_bricks(&self) -> BrickSet {
         BrickSet::new(self.dims, self.masks.iter().map(|&mask| mask != 0).collect())
     }

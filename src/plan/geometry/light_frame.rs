@@ -52,9 +52,9 @@ pub struct SheetPosition {
     pub pixel: DVec2,
     /// In slabs; slab middles at integers.
     pub slab: f64,
-    /// Width of the reverse kernel here, in pixels …
+    /// Width of the reverse kernel here, in pixels.
     pub kernel_pixels: f64,
-    /// … and in slabs.
+    /// Length of the reverse kernel here, in slabs.
     pub kernel_slabs: f64,
 }
 

@@ -19,14 +19,14 @@ impl From<[u32; 2]> for PixelWindow {
 }
 
 impl PixelWindow {
-    /// The same part with `samples` for each pixel along an edge.
+    /// The part of a picture with `samples` pixels for each pixel along an edge.
     #[must_use]
     pub fn finer(self, samples: u32) -> Self {
         let finer = |pixels: [u32; 2]| pixels.map(|n| n * samples);
         Self { whole: finer(self.whole), first: finer(self.first), size: finer(self.size) }
     }
 
-    /// The same part and up to `margin` pixels around it, as far as the picture goes.
+    /// The part and up to `margin` pixels around it, as far as the picture goes.
     #[must_use]
     pub fn widened(self, margin: u32) -> Self {
         let begin = self.first.map(|n| n.saturating_sub(margin));

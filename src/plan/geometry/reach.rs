@@ -7,7 +7,7 @@ use crate::plan::{LightView, SheetFrame};
 /// Voxels along the edge of a cell.
 const CELL_EDGE: f64 = 2.0;
 
-/// Of samples whose kernel is stretched to at most a level of the pyramid.
+/// How far samples see whose kernel is stretched to at most a level of the pyramid.
 ///
 /// A texel of level 1 is made of
 /// voxels up to 1.5 from its middle, one of level 2 of voxels up to 4.5; a fetch between texels sees those
@@ -20,19 +20,19 @@ pub fn stretch_reach(level: f64) -> u8 {
     }
 }
 
-/// The same for previews, which may miss the tails: beyond three quarters of a stretched B-spline's radius
+/// How far a stretched kernel sees, for previews, which may miss the tails: beyond three quarters of a stretched B-spline's radius
 /// of 2 texels lies 1/1000 of its weight along an axis.
 pub(crate) fn preview_stretch_reach(level: f64) -> u8 {
     if level <= 0.0 { 0 } else { in_cells(1.5 * level.exp2()) }
 }
 
-/// Of samples that are means over a slab of `slab` scene units: how far its points lie from its middle.
+/// How far samples see that are means over a slab of `slab` scene units: how far its points lie from its middle.
 pub fn slab_reach(scene: &SceneSpace, slab: f64, obliquity: f64, quadrature: Quadrature) -> u8 {
     let farthest = quadrature.offsets().iter().fold(0.0_f64, |far, offset| far.max(offset.abs()));
     in_cells(farthest * slab * obliquity / scene.smallest_edge())
 }
 
-/// Of a frame's samples, in a preview or not.
+/// How far a frame's samples see, in a preview or not.
 pub fn sample_reach(frame: &SheetFrame, scene: &SceneSpace, quadrature: Quadrature, preview: bool) -> u8 {
     let [width, height] = frame.size.map(f64::from);
     let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
@@ -42,23 +42,23 @@ pub fn sample_reach(frame: &SheetFrame, scene: &SceneSpace, quadrature: Quadratu
     stretch.saturating_add(slab_reach(scene, frame.slab, obliquity, quadrature))
 }
 
-/// Of samples of rays to lights, which are not stretched.
+/// How far samples of rays to lights see, which are not stretched.
 pub fn ray_reach(shadows: &Shadows, scene: &SceneSpace) -> u8 {
     slab_reach(scene, shadows.ray_step(scene), 1.0, shadows.quadrature)
 }
 
-/// Of fetches from a light volume with voxels of `divisor` data voxels: the texels around a point are less
+/// How far fetches see from a light volume with voxels of `divisor` data voxels: the texels around a point are less
 /// than a light voxel away.
 pub fn lookup_reach(divisor: usize) -> u8 {
     in_cells(divisor as f64)
 }
 
-/// Of lookups `bias_voxels` from the sample.
+/// How far lookups see `bias_voxels` from the sample.
 pub fn bias_reach(bias_voxels: f64) -> u8 {
     in_cells(bias_voxels)
 }
 
-/// Of the reverse kernel around the voxels of a light volume.
+/// How far the reverse kernel sees around the voxels of a light volume.
 ///
 /// It has radius two, and linear fetches between sheet pixels see a voxel more. A cell of a light volume holds
 /// `divisor`³ cells, of which one is what the cell is there for.
@@ -66,7 +66,7 @@ pub fn reverse_reach(views: &[LightView], scene: &SceneSpace, divisor: usize) ->
     in_cells(reverse_reach_voxels(views, scene)).saturating_add(divisor as u8 - 1)
 }
 
-/// The same in voxels.
+/// Radius of the reverse kernel around the voxels of a light volume, with linear fetches, in voxels.
 pub fn reverse_reach_voxels(views: &[LightView], scene: &SceneSpace) -> f64 {
     let widest = views
         .iter()

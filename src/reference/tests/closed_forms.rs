@@ -1,4 +1,4 @@
-//! What has an exact answer: A §7 items 1, 2, 4 and 18.
+//! What has an exact answer: partition of unity, boxes that light crosses, slabs along chords, thick material.
 
 use super::*;
 
@@ -38,7 +38,7 @@ fn footprints_sum_to_one_even_where_they_are_stretched() {
     }
 }
 
-/// A §7 item 2: behind the lit face z₀ of a box, back-projected light is
+/// Behind the lit face z₀ of a box, back-projected light is
 /// exp(−μ(z₀ − z)) · exp(μ²σ²/2) · sinhc(μΔs/2)^p, with p = 1 for points and 2 for integrated slabs.
 #[test]
 fn light_in_a_box_follows_beer_and_lambert() {
@@ -61,7 +61,7 @@ fn light_in_a_box_follows_beer_and_lambert() {
     }
 }
 
-/// A §7 item 18: towards the corners slabs are longer, and light and sight follow the chord.
+/// Towards the corners slabs are longer, and light and sight follow the chord.
 #[test]
 fn oblique_light_follows_its_chord() {
     let n = 24;
@@ -80,7 +80,7 @@ fn oblique_light_follows_its_chord() {
     }
 }
 
-/// A §7 item 4: looking along the light into something thick shows ½.
+/// Looking along the light into something thick shows ½.
 fn headlight(slab: f64, deposit: Deposit, fault: Fault) -> f64 {
     let mut settings = settings(0.7);
     settings.camera = Camera {

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use super::super::LoadError;
-use super::super::error::{Attempt, quoted};
+use crate::data::attempt::{Attempt, quoted};
 
 const FIELD: &str = "data file";
 

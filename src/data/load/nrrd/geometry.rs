@@ -6,10 +6,10 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::LoadError;
-use super::super::error::{Attempt, quoted};
-use super::super::limits::{is_usable_affine, is_usable_spacing};
 use super::header::Header;
 use super::space::{directions, flips, is_anatomical, mm_per_unit, origin};
+use crate::data::attempt::{Attempt, quoted};
+use crate::data::attempt::{is_usable_affine, is_usable_spacing};
 
 /// The largest dimension that NRRD allows.
 const MOST_AXES: usize = 16;

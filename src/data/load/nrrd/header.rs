@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, Read as _};
 
 use super::super::LoadError;
-use super::super::error::{Attempt, quoted};
+use crate::data::attempt::{Attempt, quoted};
 
 /// Longer headers are refused: real ones have a few kilobytes.
 const LONGEST_HEADER_BYTES: u64 = 1 << 20;

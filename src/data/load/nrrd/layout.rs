@@ -1,10 +1,10 @@
 //! How the voxels are stored: `type`, `encoding`, `endian`, `line skip`, `byte skip`.
 
-use super::super::error::{Attempt, quoted};
 use super::super::{Endian, LoadError};
 use super::header::Header;
 use super::needs_endian;
 use crate::data::VoxelType;
+use crate::data::attempt::{Attempt, quoted};
 
 /// How the numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,11 +13,11 @@ mod tests;
 
 use std::path::Path;
 
-use super::error::{Attempt, plain};
 use super::input::{Input, stem};
-use super::limits::Extent;
 use super::samples::{Layout, read_binary, read_gzip, read_text};
 use super::{Endian, LoadControl, LoadError, LoadOptions};
+use crate::data::attempt::Extent;
+use crate::data::attempt::{Attempt, plain};
 use crate::data::{Samples, Volume, VoxelType};
 use geometry::Geometry;
 use header::Header;

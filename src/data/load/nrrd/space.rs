@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::super::LoadError;
-use super::super::error::{Attempt, quoted};
 use super::header::Header;
+use crate::data::attempt::{Attempt, quoted};
 
 /// The vectors of `space directions`, one for each axis; `None` for an axis outside space.
 ///

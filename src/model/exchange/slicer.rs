@@ -9,7 +9,7 @@ use super::{ExchangeError, form, merged, numbers, rgb};
 use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
-/// Numbers of the shading, then opacities by value, opacities by gradient, and colours by value, each list
+/// Reads a `.vp`: numbers of the shading, then opacities by value, opacities by gradient, and colours by value, each list
 /// behind the count of its numbers.
 pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
     let mut lists = Vec::new();
@@ -35,7 +35,7 @@ pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
     Ok(merged(colors, opacities))
 }
 
-/// The same with shading as Slicer's own presets for bone have it.
+/// Writes a `.vp`, with shading as Slicer's own presets for bone have it.
 pub(crate) fn to_vp(function: &TransferFunction) -> String {
     let points = &function.points;
     // Linear interpolation, shaded; diffuse, ambient, specular, power.
@@ -81,7 +81,7 @@ pub(crate) fn from_vp_json(tree: &Value) -> Result<TransferFunction, ExchangeErr
     Ok(merged(colors?, opacities?))
 }
 
-/// The same.
+/// Writes the first component of a volume property, as `.vp.json`.
 pub(crate) fn to_vp_json(function: &TransferFunction, range: ValueRange) -> String {
     let points = &function.points;
     let opacities: Vec<Value> = points

@@ -42,7 +42,7 @@ pub(crate) fn from_clut(text: &str, range: ValueRange) -> Result<TransferFunctio
     Ok(TransferFunction { points, ..TransferFunction::default() })
 }
 
-/// The same: places are bytes, so that points closer than that fall together.
+/// Writes `MRIcroGL`'s colour table. Places are bytes, so that points closer than that fall together.
 pub(crate) fn to_clut(function: &TransferFunction, range: ValueRange) -> String {
     let ends = function.points.first().zip(function.points.last());
     let range = ends.and_then(|(a, b)| ValueRange::spread(a.value, b.value)).unwrap_or(range);
@@ -86,7 +86,7 @@ pub(crate) fn from_bytes(bytes: &[u8], range: ValueRange) -> Result<TransferFunc
     Ok(ramp(&colors, range))
 }
 
-/// The same as text: rows of red, green and blue, perhaps behind the entry's number.
+/// `ImageJ`'s colour table as text: rows of red, green and blue, perhaps behind the entry's number.
 pub(crate) fn from_rows(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let row = |line: &str| {
         let numbers: Option<Vec<u8>> = line

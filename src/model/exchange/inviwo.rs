@@ -30,7 +30,7 @@ pub(crate) fn from_itf(text: &str, range: ValueRange) -> Result<TransferFunction
     Ok(TransferFunction { points, ..TransferFunction::default() })
 }
 
-/// The newer kind (version 3).
+/// Writes the newer kind of file (version 3).
 pub(crate) fn to_itf(function: &TransferFunction, range: ValueRange) -> String {
     let mut text =
         "<?xml version=\"1.0\" ?>\n<InviwoWorkspace version=\"3\">\n    <maskMin content=\"0\" />\n    \

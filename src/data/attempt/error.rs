@@ -83,15 +83,15 @@ impl LoadError {
 
 /// Makes the errors of one attempt: knows what is being done with which file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Attempt<'a> {
+pub(in crate::data) struct Attempt<'a> {
     /// What is being done, after "cannot": `read the RAW volume`.
-    pub(crate) what: &'a str,
+    pub(in crate::data) what: &'a str,
     /// The file it is done with.
-    pub(crate) path: &'a Path,
+    pub(in crate::data) path: &'a Path,
 }
 
 impl Attempt<'_> {
-    pub(crate) fn bad_input(
+    pub(in crate::data) fn bad_input(
         &self,
         field: &str,
         why: impl Into<String>,
@@ -100,19 +100,24 @@ impl Attempt<'_> {
         LoadError::BadInput(Box::new(self.explain(field, why.into(), help.into())))
     }
 
-    pub(crate) fn limit(&self, field: &str, why: impl Into<String>, help: impl Into<String>) -> LoadError {
+    pub(in crate::data) fn limit(
+        &self,
+        field: &str,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) -> LoadError {
         LoadError::Limit(Box::new(self.explain(field, why.into(), help.into())))
     }
 
     /// Something the file system is asked for is of the wrong kind.
-    pub(crate) fn not_a_file(&self, why: &str, help: &str) -> LoadError {
+    pub(in crate::data) fn not_a_file(&self, why: &str, help: &str) -> LoadError {
         LoadError::Io {
             explanation: Box::new(self.explain("", why.to_owned(), help.to_owned())),
             source: None,
         }
     }
 
-    pub(crate) fn io(&self, source: io::Error) -> LoadError {
+    pub(in crate::data) fn io(&self, source: io::Error) -> LoadError {
         let (why, help) = match source.kind() {
             io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the path"),
             io::ErrorKind::PermissionDenied => {
@@ -131,12 +136,12 @@ impl Attempt<'_> {
 }
 
 /// Text from a file in quotes, short and without control characters, for a message.
-pub(crate) fn quoted(text: &str) -> String {
+pub(in crate::data) fn quoted(text: &str) -> String {
     format!("\"{}\"", plain(text, 60))
 }
 
 /// Text from outside as one line of at most `longest` characters: control characters become `·`.
-pub(crate) fn plain(text: &str, longest: usize) -> String {
+pub(in crate::data) fn plain(text: &str, longest: usize) -> String {
     let mut characters = text.chars().map(|c| if is_odd(c) { '·' } else { c });
     let mut short: String = characters.by_ref().take(longest).collect();
     if characters.next().is_some() {

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::LoadError;
+use super::error::LoadError;
 
 /// Shared by the thread that loads and the one that waits.
 ///
@@ -41,16 +41,16 @@ impl LoadControl {
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
     }
 
-    pub(crate) fn start(&self, total_bytes: u64) {
+    pub(in crate::data) fn start(&self, total_bytes: u64) {
         self.done_bytes.store(0, Ordering::Relaxed);
         self.total_bytes.store(total_bytes, Ordering::Relaxed);
     }
 
-    pub(crate) fn advance(&self, bytes: u64) {
+    pub(in crate::data) fn advance(&self, bytes: u64) {
         self.done_bytes.fetch_add(bytes, Ordering::Relaxed);
     }
 
-    pub(crate) fn check(&self) -> Result<(), LoadError> {
+    pub(in crate::data) fn check(&self) -> Result<(), LoadError> {
         if self.is_cancelled() { Err(LoadError::Cancelled) } else { Ok(()) }
     }
 }

@@ -4,8 +4,7 @@ use std::fs;
 
 use glam::DAffine3;
 
-use super::LoadError;
-use super::error::Attempt;
+use super::error::{Attempt, LoadError};
 use crate::data::VoxelType;
 
 /// The budget where the system does not say how much memory it has.
@@ -16,18 +15,18 @@ const SPACING_RANGE_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// The size of a grid that fits into the memory budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Extent {
+pub(in crate::data) struct Extent {
     /// Voxels along x, y, z, none of them 0.
-    pub(crate) dims: [usize; 3],
+    pub(in crate::data) dims: [usize; 3],
     /// Their product.
-    pub(crate) voxels: usize,
+    pub(in crate::data) voxels: usize,
     /// Bytes of all voxels.
-    pub(crate) bytes: u64,
+    pub(in crate::data) bytes: u64,
 }
 
 impl Extent {
     /// Checks `dims`, which `field` gave, against zero, overflow and the budget.
-    pub(crate) fn checked(
+    pub(in crate::data) fn checked(
         attempt: Attempt<'_>,
         field: &str,
         dims: [u64; 3],
@@ -72,12 +71,12 @@ impl Extent {
 }
 
 /// Whether a distance between voxels can be used.
-pub(crate) fn is_usable_spacing(spacing_mm: f64) -> bool {
+pub(in crate::data) fn is_usable_spacing(spacing_mm: f64) -> bool {
     SPACING_RANGE_MM.contains(&spacing_mm)
 }
 
 /// Whether an affine has usable, independent axes and a finite origin.
-pub(crate) fn is_usable_affine(world_from_index: &DAffine3) -> bool {
+pub(in crate::data) fn is_usable_affine(world_from_index: &DAffine3) -> bool {
     let axes = world_from_index.matrix3;
     let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(glam::DVec3::length);
     let flatness = axes.determinant().abs() / lengths.iter().product::<f64>();
@@ -100,7 +99,7 @@ fn available_bytes(meminfo: &str) -> Option<u64> {
 }
 
 /// A number of bytes for a message: exact when small, else in the largest unit that fits.
-pub(crate) fn human_bytes(bytes: u128) -> String {
+pub(in crate::data) fn human_bytes(bytes: u128) -> String {
     const UNITS: [&str; 6] = ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     if bytes < 10 * 1024 {
         return format!("{bytes} bytes");
@@ -122,7 +121,7 @@ pub(crate) fn human_bytes(bytes: u128) -> String {
 mod tests {
     use std::path::Path;
 
-    use super::super::LoadErrorKind;
+    use super::super::error::LoadErrorKind;
     use super::*;
 
     fn kind_of(dims: [u64; 3], budget: u64) -> Result<Extent, LoadErrorKind> {

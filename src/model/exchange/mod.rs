@@ -85,7 +85,7 @@ pub fn import(path: &Path, bytes: &[u8], range: ValueRange) -> Result<TransferFu
     Ok(function)
 }
 
-/// The same, for files whose readers take long over many things.
+/// A text if it has at most so many bytes, for files whose readers take long over many things.
 fn within(text: &str, most: usize) -> Result<&str, ExchangeError> {
     if text.len() > most { Err(form("it is longer than any transfer function")) } else { Ok(text) }
 }
@@ -133,7 +133,7 @@ fn ending(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-/// The same function with nothing but straight ways, opacities that are linear, and colours mixed as light.
+/// The function with nothing but straight ways, opacities that are linear, and colours mixed as light.
 fn straightened(function: &TransferFunction) -> TransferFunction {
     let mut straight = function.clone();
     for index in (0..straight.points.len().saturating_sub(1)).rev() {

@@ -1,0 +1,12 @@
+//! What reading files and making built-in volumes share: memory limits, errors in words that help, and a control to
+//! watch and to cancel the work.
+
+mod control;
+mod error;
+mod limits;
+
+pub use control::LoadControl;
+pub(super) use error::{Attempt, plain, quoted};
+pub use error::{Explanation, LoadError, LoadErrorKind};
+pub(crate) use limits::default_budget_bytes as memory_budget_bytes;
+pub(super) use limits::{Extent, human_bytes, is_usable_affine, is_usable_spacing};
