@@ -13,7 +13,7 @@ pub mod synthetic;
 mod volume;
 
 pub use bricks::{BRICK_EDGE, Bricks};
-pub use cells::{BOUNDED_SIGMA, CELL_EDGE, CELLS, CellBounds, SIGMA_TOLERANCE};
+pub use cells::{BOUNDED_SIGMA, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use reduce::reduced_dims;
