@@ -1,5 +1,6 @@
 //! The renderer inside another wgpu program, which has the picture in a texture of its own; pixels stay on the GPU.
 //! `cargo run --example embedded`
+#![expect(clippy::print_stdout, reason = "it says what it made")]
 
 use std::error::Error;
 

@@ -1,4 +1,5 @@
 //! The light that reaches every voxel of an array, as an array: `cargo run --example light_volume`
+#![expect(clippy::print_stdout, reason = "it says what it made")]
 
 use std::error::Error;
 

@@ -1,6 +1,7 @@
 //! A picture without a window: `cargo run --example picture -- [VOLUME [OUT.png]]`
 //!
 //! VOLUME is a file (RAW, NRRD), or a built-in volume such as `builtin:cloud:64`.
+#![expect(clippy::print_stdout, reason = "it says what it made")]
 
 use std::error::Error;
 use std::path::PathBuf;

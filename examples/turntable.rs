@@ -1,4 +1,5 @@
 //! One turn of the camera as a file that moves: `cargo run --example turntable -- [OUT.png|OUT.gif]`
+#![expect(clippy::print_stdout, reason = "it says what it made")]
 
 use std::error::Error;
 use std::path::PathBuf;

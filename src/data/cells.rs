@@ -22,7 +22,7 @@ pub const CELL_EDGE: usize = 2;
 const PER_EDGE: usize = BRICK_EDGE / CELL_EDGE;
 
 /// Cells in a brick.
-pub const CELLS: usize = PER_EDGE * PER_EDGE * PER_EDGE;
+const CELLS: usize = PER_EDGE * PER_EDGE * PER_EDGE;
 
 /// Farthest that a Gaussian's σ may be from [`BOUNDED_SIGMA`], in voxels, for cells to bound it.
 pub const SIGMA_TOLERANCE: f64 = 0.02;

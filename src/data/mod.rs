@@ -16,7 +16,7 @@ mod value_range;
 mod volume;
 
 pub use bricks::Bricks;
-pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CELLS, CellBounds, SIGMA_TOLERANCE};
+pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use open::open;

@@ -235,7 +235,7 @@ impl Volume {
 
     /// States that world space is right-anterior-superior, as the file says of a body.
     #[must_use]
-    pub fn with_anatomy(self, is_anatomical: bool) -> Self {
+    pub(crate) fn with_anatomy(self, is_anatomical: bool) -> Self {
         Self { is_anatomical, ..self }
     }
 

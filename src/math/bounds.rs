@@ -1,6 +1,6 @@
 //! Axis-aligned boxes.
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
 /// An axis-aligned box, in whatever space its maker says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,11 +28,6 @@ impl Bounds {
         })
     }
 
-    /// The smallest axis-aligned box around this box moved by `transform`.
-    pub fn transformed(&self, transform: &DAffine3) -> Self {
-        Self::around(self.corners().into_iter().map(|corner| transform.transform_point3(corner)))
-    }
-
     /// The smallest box around some points (empty input gives an inverted box).
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let empty = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
@@ -44,6 +39,8 @@ impl Bounds {
 
 #[cfg(test)]
 mod tests {
+    use glam::DAffine3;
+
     use super::*;
 
     #[test]
@@ -56,7 +53,8 @@ mod tests {
     #[test]
     fn a_turned_box_is_wider() {
         let turn = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
-        let turned = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) }.transformed(&turn);
+        let corners = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) }.corners();
+        let turned = Bounds::around(corners.map(|corner| turn.transform_point3(corner)));
         assert!((turned.max.x - 2f64.sqrt()).abs() < 1e-12);
         assert!((turned.max.z - 1.0).abs() < 1e-12);
     }

@@ -61,9 +61,12 @@ fn all_paths(folders: &[&str]) -> Vec<String> {
 #[test]
 fn files_say_what_they_are_and_stay_short() {
     let mut found = Vec::new();
-    for (folder, ending, heading, least) in
-        [("src", "rs", "//!", 50), ("tests", "rs", "//!", 20), ("shaders", "wgsl", "// ", 20)]
-    {
+    for (folder, ending, heading, least) in [
+        ("src", "rs", "//!", 50),
+        ("tests", "rs", "//!", 20),
+        ("examples", "rs", "//!", 3),
+        ("shaders", "wgsl", "// ", 20),
+    ] {
         let files = files(folder, ending);
         assert!(files.len() > least, "the check must see the files of {folder}");
         found.extend(

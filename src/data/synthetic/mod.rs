@@ -99,7 +99,7 @@ pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
 ///
 /// # Errors
 /// As [`builtin`]; also `Cancelled`.
-pub fn builtin_within(
+pub(crate) fn builtin_within(
     name: &str,
     n: Option<usize>,
     budget_bytes: u64,

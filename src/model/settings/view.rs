@@ -42,7 +42,7 @@ impl StandardView {
     }
 
     /// Azimuth and elevation in degrees.
-    pub fn angles_deg(self) -> [f64; 2] {
+    pub(crate) fn angles_deg(self) -> [f64; 2] {
         match self {
             Self::PlusX => [0.0, 0.0],
             Self::MinusX => [180.0, 0.0],

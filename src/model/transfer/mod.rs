@@ -167,14 +167,14 @@ impl TransferFunction {
     }
 
     /// How the function goes on at a value.
-    pub fn easing_at(&self, value: f64) -> Easing {
+    pub(crate) fn easing_at(&self, value: f64) -> Easing {
         let index = self.points.partition_point(|point| point.value <= value);
         index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing)
     }
 
     /// Replaces the way from a point to the next by straight ones, if it is not: a step by a jump, a smooth way by
     /// [`STEPS`] pieces. Returns how many points there are more.
-    pub fn straighten(&mut self, index: usize) -> usize {
+    pub(crate) fn straighten(&mut self, index: usize) -> usize {
         let (Some(&point), Some(&next)) = (self.points.get(index), self.points.get(index + 1)) else {
             return 0;
         };
