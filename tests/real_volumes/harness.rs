@@ -68,8 +68,9 @@ impl Asked {
         is_chosen && !is_left_out && (trial.ignored || !self.ignored)
     }
 
+    /// What is missing is so for those who want to run everything, too: only a test's full name runs it.
     fn runs(&self, trial: &Trial) -> bool {
-        !trial.ignored || self.ignored || self.include_ignored
+        !trial.ignored || self.exact && (self.ignored || self.include_ignored)
     }
 }
 
@@ -112,11 +113,12 @@ pub(crate) fn tests_without_their_data_are_ignored() {
     for (line, meant, run) in [
         ("", [true, true], [true, false]),
         ("--list --format terse", [true, true], [true, false]),
-        ("--list --format terse --ignored", [false, true], [true, true]),
+        ("--list --format terse --ignored", [false, true], [true, false]),
         ("--exact here --nocapture", [true, false], [true, false]),
         ("--exact her", [false, false], [true, false]),
         ("her --test-threads 1", [true, false], [true, false]),
-        ("--include-ignored --skip here", [false, true], [true, true]),
+        ("--include-ignored --skip here", [false, true], [true, false]),
+        ("--exact absent --ignored", [false, false], [true, true]),
     ] {
         let asked = asked(line);
         assert_eq!([&here, &absent].map(|trial| asked.is_meant(trial)), meant, "{line}");

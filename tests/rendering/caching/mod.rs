@@ -29,13 +29,24 @@ fn loaded() -> Dataset {
 }
 
 #[test]
+fn orbiting_rebuilds_no_light() {
+    orbit(10);
+}
+
+#[test]
+#[ignore = "long: a hundred frames; script/test --all runs it"]
 fn orbiting_a_hundred_frames_rebuilds_no_light() {
+    orbit(100);
+}
+
+/// A whole turn in so many frames.
+fn orbit(frames: u32) {
     let (loaded, mut settings) = (loaded(), three_lights());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
-    for _ in 0..100 {
-        settings.camera.orbit(3.6, 1.0);
+    for _ in 0..frames {
+        settings.camera.orbit(360.0 / f64::from(frames), 1.0);
         render(&mut renderer, &loaded, &settings, SIZE);
     }
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
