@@ -7,7 +7,8 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use chiaroscuro::data::Dataset;
-use chiaroscuro::data::load::{LoadControl, LoadOptions, open};
+use chiaroscuro::data::load::{LoadControl, LoadOptions};
+use chiaroscuro::data::open;
 use chiaroscuro::export::export_png;
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
 
