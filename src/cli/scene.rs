@@ -246,7 +246,7 @@ impl Look {
     pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Dataset) -> Result<Settings, CliError> {
         let mut settings = self.settings.clone();
         if !self.balanced {
-            settings.shadows.balance = balance(renderer, &loaded, &settings)?;
+            settings.shadows.balance = balance(renderer, loaded, &settings)?;
         }
         self.with_single_settings(settings)
     }

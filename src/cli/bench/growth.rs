@@ -120,7 +120,7 @@ fn light_builds(
             light.position = (turn * glam::DVec3::from(light.position)).into();
         }
         let mut draw = || {
-            renderer.draw(&loaded, &settings, size, &options)?;
+            renderer.draw(loaded, &settings, size, &options)?;
             Ok::<_, CliError>(renderer.report().clone())
         };
         if frame < warm_up {

@@ -94,7 +94,8 @@ impl EyePass {
         let takes_gradients = stretch_level <= 0.0 || options.preview;
         let levels = Levels::of(stretch_level > 0.0);
         let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
-        let variant = GatherVariant::of(settings, count, combined.is_some(), stretch_level > 0.0);
+        let variant =
+            GatherVariant::of(settings, count, stretch_level > 0.0).with_combined(combined.is_some());
         Self { frame, uniform, dilation, takes_gradients, levels, variant }
     }
 
@@ -203,7 +204,7 @@ pub(crate) struct GatherVariant {
 impl GatherVariant {
     /// The eye pass under so many lights, with pixels that are wider than voxels somewhere or not, and without the
     /// texture of gradients.
-    pub(crate) fn of(settings: &Settings, lights: LightCount, is_combined: bool, is_stretched: bool) -> Self {
+    pub(crate) fn of(settings: &Settings, lights: LightCount, is_stretched: bool) -> Self {
         let Settings { sampling, shadows, cuts, .. } = settings;
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
         Self {
@@ -213,7 +214,7 @@ impl GatherVariant {
             sheet_gradients: sampling.gradients == Gradients::Sheets,
             shading: ShadingVariant {
                 lights,
-                is_combined,
+                is_combined: false,
                 // Rays to lights are the eye pass's own.
                 is_cut: is_cut(cuts.seen()) || casts_rays && is_cut(cuts.shading()),
             },
@@ -222,7 +223,13 @@ impl GatherVariant {
         }
     }
 
-    /// The same pass whose normals come from the texture of gradients, or do not.
+    /// The pass whose shadowed lights are combined in one volume, or are not.
+    pub(crate) fn with_combined(mut self, is_combined: bool) -> Self {
+        self.shading.is_combined = is_combined;
+        self
+    }
+
+    /// The pass whose normals come from the texture of gradients, or do not.
     pub(crate) fn with_gradients(self, has_gradients: bool) -> Self {
         Self { has_gradients, ..self }
     }

@@ -14,6 +14,7 @@ use crate::gpu::light::march::{Sheets, march};
 use crate::gpu::light::raycast::raycast;
 use crate::gpu::output::display::display;
 use crate::gpu::resources::listed_bricks::listed;
+use crate::gpu::resources::part::Part;
 use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::scatter::light::LightScatter;
 use crate::gpu::volume::transfer_tables::EVERYWHERE;
@@ -105,15 +106,8 @@ impl Job<'_> {
         self.slots.iter().map(|slot| slot.map(|slot| lights[slot].key().clone())).collect()
     }
 
-    /// The march through one view of a light, set up when its first step comes.
-    fn current_view<'b>(
-        &mut self,
-        build: &'b mut LightBuild,
-        view: usize,
-    ) -> Result<&'b mut CurrentView, GpuError> {
-        if let Some(current) = build.current.take() {
-            return Ok(build.current.insert(current));
-        }
+    /// Sets up the march through one view of a light.
+    fn begin_view(&mut self, build: &LightBuild, view: usize) -> Result<CurrentView, GpuError> {
         let settings = &self.request.settings;
         let geometry = &build.views[view];
         let loaded = &self.loaded.value;
@@ -146,7 +140,7 @@ impl Job<'_> {
         };
         let schedule = Schedule::new(scene, geometry, light, sheets.chunk, beyond);
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
-        Ok(build.current.insert(CurrentView { sheets, schedule, scatter }))
+        Ok(CurrentView { sheets, schedule, scatter })
     }
 
     /// Notes that the filling of a light volume begins.
@@ -172,7 +166,7 @@ impl Job<'_> {
         build: &mut LightBuild,
         view: usize,
         begin: u32,
-        part: crate::gpu::resources::part::Part,
+        part: Part,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         if view == 0 && begin == 0 && part.is_first() {
@@ -182,22 +176,22 @@ impl Job<'_> {
             self.begin_light(build);
         }
         let chunk = build.chunks[view];
-        self.current_view(build, view)?;
-        let Some(CurrentView { sheets, schedule, scatter }) = &build.current else { return Ok(()) };
+        let current = match build.current.take() {
+            Some(current) => current,
+            None => self.begin_view(build, view)?,
+        };
+        let CurrentView { sheets, schedule, scatter } = build.current.insert(current);
         let geometry = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
         let loaded = &self.loaded.value;
         let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
         let lamp = (&build.light, &self.request.settings);
-        match (scatter, &self.scattering) {
-            (Some(scatter), Some(scattering)) => {
-                let table = &tables.lighting.buffer;
-                scatter.march(gpu, scattering, table, lamp, geometry, sheets, slabs, encoder)
-            }
-            _ => {
-                let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, part);
-                march(gpu, tables, lamp, geometry, sheets, slabs, tiles, encoder)
-            }
+        if let (Some(scatter), Some(scattering)) = (scatter, &self.scattering) {
+            let table = &tables.lighting.buffer;
+            scatter.march(gpu, scattering, table, lamp, geometry, sheets, slabs, encoder)
+        } else {
+            let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, part);
+            march(gpu, tables, lamp, geometry, sheets, slabs, tiles, encoder)
         }
     }
 
@@ -206,15 +200,32 @@ impl Job<'_> {
         LightStep { build: at, view, begin, part }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
+        let mut builds = std::mem::take(&mut self.builds);
+        let result = self.backproject_view(&mut builds[*at], *view, *begin, *part, encoder);
+        self.builds = builds;
+        result
+    }
+
+    fn backproject_view(
+        &mut self,
+        build: &mut LightBuild,
+        view: usize,
+        begin: u32,
+        part: Part,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let current = match build.current.take() {
+            Some(current) => current,
+            None => self.begin_view(build, view)?,
+        };
         let shadows = &self.request.settings.shadows;
-        let build = &mut self.builds[*at];
-        let geometry = &build.views[*view];
-        let slabs = *begin..(*begin + build.chunks[*view]).min(geometry.frame.slab_count);
+        let geometry = &build.views[view];
+        let slabs = begin..(begin + build.chunks[view]).min(geometry.frame.slab_count);
         let ends_view = slabs.end == geometry.frame.slab_count && part.is_last();
         let loaded = &self.loaded.value;
         let gpu = Gpu::new(self.tools, &loaded.volume);
         let light = &loaded.lights[build.slot].value;
-        let Some(CurrentView { sheets, schedule, scatter }) = &build.current else { return Ok(()) };
+        let CurrentView { sheets, schedule, scatter } = &current;
         match scatter {
             // The first sheet that touches a voxel needs no sums.
             Some(scatter) if !shadows.first_touch => {
@@ -223,10 +234,12 @@ impl Job<'_> {
                     scatter.normalise(gpu, light, &build.bricks, encoder)?;
                 }
             }
-            _ => backproject(gpu, shadows, geometry, (sheets, schedule), light, slabs, *part, encoder)?,
+            _ => backproject(gpu, shadows, geometry, (sheets, schedule), light, slabs, part, encoder)?,
         }
-        if ends_view && let Some(current) = build.current.take() {
+        if ends_view {
             self.tools.pool.leave_sheets(current.sheets);
+        } else {
+            build.current = Some(current);
         }
         Ok(())
     }
@@ -298,16 +311,14 @@ impl Job<'_> {
         let Some(scattering) = &self.scattering else { return Ok(()) };
         let loaded = &self.loaded.value;
         let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let sheets = match self.eye_sheets.take() {
-            Some(sheets) => sheets,
-            None => {
-                let settings = &self.request.settings;
-                let fresh =
-                    EyeScatter::new(gpu, scattering, tables, self.eye.frame(), settings, &self.options)?;
-                let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + fresh.bytes();
-                self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
-                fresh
-            }
+        let sheets = if let Some(sheets) = self.eye_sheets.take() {
+            sheets
+        } else {
+            let settings = &self.request.settings;
+            let fresh = EyeScatter::new(gpu, scattering, tables, self.eye.frame(), settings, &self.options)?;
+            let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + fresh.bytes();
+            self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
+            fresh
         };
         let picture = &self.targets.get(self.role).light.value.plane.view;
         let attenuation = self.looked_up();

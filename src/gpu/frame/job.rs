@@ -22,8 +22,10 @@ use crate::plan::{FrameKeys, LitLights, Request};
 /// are fewer by so much.
 const DIRECT_COST: u32 = 16;
 
-/// The work for one picture, step by step. Only one can be under way, and nothing else can be done with the
-/// renderer meanwhile; dropping it leaves what was shown before, and what is complete of its products.
+/// The work for one picture, step by step.
+///
+/// Only one can be under way, and nothing else can be done with the renderer meanwhile. Dropping it leaves what was
+/// shown before, and what is complete of its products.
 #[derive(Debug)]
 pub struct Job<'r> {
     pub(super) tools: &'r Tools,

@@ -94,20 +94,19 @@ impl Renderer {
             role = self.targets.holding(&keys, shape);
         }
         let is_drawn = role.is_some();
-        let role = match role {
-            Some(role) => role,
-            None => {
-                for (at, build) in placed.builds.iter().enumerate() {
-                    steps.extend(build.steps(at, options.light_parts.max(1)));
-                }
-                steps.extend(combine_steps(placed.bricks_to_combine));
-                if request.settings.scatters() {
-                    let voxels = loaded.value.voxels_for(&self.tools.context, &request.settings)?;
-                    scattering = Some(Scattering::new(&self.tools.context, voxels));
-                }
-                self.targets.fit_back(&self.tools, shape)?;
-                Role::Back
+        let role = if let Some(role) = role {
+            role
+        } else {
+            for (at, build) in placed.builds.iter().enumerate() {
+                steps.extend(build.steps(at, options.light_parts.max(1)));
             }
+            steps.extend(combine_steps(placed.bricks_to_combine));
+            if request.settings.scatters() {
+                let voxels = loaded.value.voxels_for(&self.tools.context, &request.settings)?;
+                scattering = Some(Scattering::new(&self.tools.context, voxels));
+            }
+            self.targets.fit_back(&self.tools, shape)?;
+            Role::Back
         };
 
         let value = &loaded.value;

@@ -64,7 +64,7 @@ impl ShaderLibrary {
                     cuts: cuts.clone(),
                     ..Settings::default()
                 };
-                let eye = GatherVariant::of(&settings, FIRST_LIGHTS, false, is_stretched);
+                let eye = GatherVariant::of(&settings, FIRST_LIGHTS, is_stretched);
                 // Of stretched kernels only in previews.
                 let has_gradients = !is_stretched || kernel == Kernel::Prefiltered;
                 self.warm(&eye.with_gradients(has_gradients), stop)?;

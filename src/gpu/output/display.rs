@@ -45,7 +45,7 @@ pub(crate) fn display(
     target: &Target,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let Shape { size, samples, deep, .. } = target.shape;
+    let Shape { size, samples, deep } = target.shape;
     let variant = DisplayVariant { samples, is_linear: options.depth == Depth::Linear, is_deep: deep };
     let pipeline = shaders.pipeline(&variant)?;
     let (first_row, rows) = options.part.map_or((0, size[1]), |part| (part.first[1], part.whole[1]));

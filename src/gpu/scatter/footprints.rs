@@ -114,10 +114,10 @@ impl Footprints {
             &pipeline,
             0,
             &[
-                buffer("bound_eye", &eye_uniform),
-                buffer("table", &table),
+                buffer("bound_eye", eye_uniform),
+                buffer("table", table),
                 buffer("first_words", &scattering.voxels.first_words),
-                buffer("bricks", &scatterer.bricks()),
+                buffer("bricks", scatterer.bricks()),
                 buffer("splats", &scattering.counter),
                 buffer("voxels", &scattering.voxels.buffer),
             ],
@@ -131,15 +131,15 @@ impl Footprints {
             1,
             &[
                 buffer("bound_scatter", &slab),
-                buffer("footprint_table", &scatterer.footprints()),
-                buffer("rays", &rays),
-                sampler("clamped", &clamped),
+                buffer("footprint_table", scatterer.footprints()),
+                buffer("rays", rays),
+                sampler("clamped", clamped),
             ],
         );
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         for phase in &self.phases {
             let turn =
-                pass::bind(context, "Footprints::phase", &pipeline, 3, &[buffer("bound_phase", &phase)]);
+                pass::bind(context, "Footprints::phase", &pipeline, 3, &[buffer("bound_phase", phase)]);
             let groups = [&own, &shared, &of_lights, &turn];
             pass::dispatch(
                 encoder,

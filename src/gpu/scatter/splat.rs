@@ -294,7 +294,7 @@ impl Scatterer {
                 buffer("bricks", &self.bricks),
                 buffer("table", &self.table),
                 buffer("voxels", &voxels.buffer),
-                buffer("splats", &counter),
+                buffer("splats", counter),
             ],
         );
         let shared = self.bind_group(context, &pipeline, &uniform, true);
