@@ -2,6 +2,8 @@
 //!
 //! `script/soak HOURS` drags for hours and looks at frame times, too.
 
+#![expect(clippy::print_stdout, reason = "what was counted, for whoever reads the log")]
+
 use std::time::{Duration, Instant};
 
 use chiaroscuro::data::synthetic::builtin;
