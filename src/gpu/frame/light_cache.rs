@@ -86,7 +86,7 @@ fn is_within(needed: &Arc<CellSet>, filled: &Arc<CellSet>) -> bool {
 
 impl Loaded {
     /// Volumes that a picture began and another one interrupted: their textures serve again.
-    pub(super) fn take_unfinished(&mut self) -> Vec<LightVolume> {
+    pub(crate) fn take_unfinished(&mut self) -> Vec<LightVolume> {
         self.combined = self.combined.take().filter(Cached::is_complete);
         self.lights.extract_if(.., |light| !light.is_complete()).map(|light| light.value).collect()
     }
@@ -126,7 +126,7 @@ impl Loaded {
     }
 
     /// Forgets the light volumes of a picture, which have been combined.
-    pub(super) fn forget_combined(&mut self, keys: &[Option<LightKey>]) {
+    pub(crate) fn forget_combined(&mut self, keys: &[Option<LightKey>]) {
         self.lights.retain(|light| !keys.iter().flatten().any(|key| key == light.key()));
     }
 

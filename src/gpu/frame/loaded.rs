@@ -15,7 +15,7 @@ use crate::plan::{CombinedKey, LightKey, TablesKey};
 
 /// A volume on the GPU, and what makes sense only together with it.
 #[derive(Debug)]
-pub(super) struct Loaded {
+pub(crate) struct Loaded {
     /// Density, pyramid and gradients.
     pub volume: GpuVolume,
     /// Both transfer functions, and where they show anything.
@@ -33,7 +33,7 @@ impl Loaded {
     ///
     /// # Errors
     /// When the adapter cannot hold them.
-    pub(super) fn new(
+    pub(crate) fn new(
         context: &Context,
         dataset: &Dataset,
         settings: &Settings,
@@ -49,7 +49,7 @@ impl Loaded {
     ///
     /// # Errors
     /// When memory is out.
-    pub(super) fn refresh_tables(
+    pub(crate) fn refresh_tables(
         &mut self,
         context: &Context,
         settings: &Settings,
@@ -68,7 +68,7 @@ impl Loaded {
     ///
     /// # Errors
     /// When they are more than a buffer of the adapter can hold.
-    pub(super) fn voxels_for(
+    pub(crate) fn voxels_for(
         &mut self,
         context: &Context,
         settings: &Settings,
@@ -86,13 +86,13 @@ impl Loaded {
     }
 
     /// Bytes of light volumes, of which pictures look up those of their lights, or one for all.
-    pub(super) fn light_bytes(&self) -> u64 {
+    pub(crate) fn light_bytes(&self) -> u64 {
         let combined = self.combined.as_ref().map_or(0, |combined| combined.value.bytes());
         combined + self.lights.iter().map(|light| light.value.bytes()).sum::<u64>()
     }
 
     /// Bytes of all textures and buffers.
-    pub(super) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let voxels = self.voxels.as_ref().map_or(0, |voxels| voxels.bytes());
         self.volume.bytes() + voxels + self.light_bytes()
     }

@@ -1,6 +1,5 @@
 //! One picture from request to pixels: what must be computed, in which steps, and what is kept.
 
-pub(super) mod debug;
 pub(super) mod encode;
 pub(super) mod first_look;
 pub(super) mod job;
@@ -10,10 +9,6 @@ mod loaded;
 mod plan;
 pub(super) mod renderer;
 pub(super) mod report;
-pub(super) mod statistics;
 pub(super) mod step;
 mod targets;
-#[cfg(feature = "testing")]
-mod testing;
-pub(super) mod tiled;
 pub(super) mod warm_up;

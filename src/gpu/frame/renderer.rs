@@ -17,17 +17,17 @@ use crate::plan::Request;
 /// pictures that need the same.
 #[derive(Debug)]
 pub struct Renderer {
-    pub(super) tools: Tools,
+    pub(crate) tools: Tools,
     /// The volume on the GPU by its content, complete when it is uploaded.
-    pub(super) loaded: Option<Cached<u64, Loaded>>,
-    pub(super) targets: Targets,
+    pub(crate) loaded: Option<Cached<u64, Loaded>>,
+    pub(crate) targets: Targets,
     /// How often the light volume of each light of the settings was filled.
-    pub(super) fills: Vec<u64>,
+    pub(crate) fills: Vec<u64>,
     /// Counts pictures.
-    pub(super) pictures: u64,
-    pub(super) report: Report,
+    pub(crate) pictures: u64,
+    pub(crate) report: Report,
     /// For pictures that are timed; where the adapter has one.
-    pub(super) gpu_clock: Option<Clock>,
+    pub(crate) gpu_clock: Option<Clock>,
 }
 
 impl Renderer {

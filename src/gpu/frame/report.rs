@@ -67,7 +67,7 @@ pub struct Runs {
 
 impl Report {
     /// Notes what a step took, in all and by the GPU's own clock.
-    pub(super) fn add(&mut self, stage: Stage, took_ms: f64, gpu_ms: Option<f64>) {
+    pub(crate) fn add(&mut self, stage: Stage, took_ms: f64, gpu_ms: Option<f64>) {
         let (sum, gpu_sum) = match stage {
             Stage::Upload | Stage::Pyramid => (&mut self.upload_ms, None),
             Stage::LightMarch => (&mut self.light_march_ms, Some(&mut self.light_gpu_ms)),

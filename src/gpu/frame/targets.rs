@@ -7,7 +7,7 @@ use crate::plan::FrameKeys;
 
 /// Which of the two targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// What is shown.
     Front,
     /// The spare one.
@@ -16,7 +16,7 @@ pub(super) enum Role {
 
 /// Both pictures; of a single pixel until something is drawn.
 #[derive(Debug)]
-pub(super) struct Targets {
+pub(crate) struct Targets {
     pub front: Target,
     back: Target,
 }
@@ -26,13 +26,13 @@ impl Targets {
     ///
     /// # Errors
     /// When not even a texel can be had.
-    pub(super) fn new(context: &Context) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &Context) -> Result<Self, GpuError> {
         let texel = Shape { size: [1; 2], samples: 1, deep: false };
         Ok(Self { front: Target::new(context, texel)?, back: Target::new(context, texel)? })
     }
 
     /// The target that holds the linear light of a picture already, if one does.
-    pub(super) fn holding(&self, keys: &FrameKeys, shape: Shape) -> Option<Role> {
+    pub(crate) fn holding(&self, keys: &FrameKeys, shape: Shape) -> Option<Role> {
         let holds = |target: &Target| target.shape == shape && target.holds_light(&keys.eye);
         [Role::Front, Role::Back].into_iter().find(|&role| holds(self.get(role)))
     }
@@ -41,7 +41,7 @@ impl Targets {
     ///
     /// # Errors
     /// When memory is out.
-    pub(super) fn fit_back(&mut self, tools: &Tools, shape: Shape) -> Result<(), GpuError> {
+    pub(crate) fn fit_back(&mut self, tools: &Tools, shape: Shape) -> Result<(), GpuError> {
         if self.back.shape != shape {
             // Given back first: two large pictures may fit where three do not.
             self.back = Target::new(&tools.context, Shape { size: [1; 2], ..shape })?;
@@ -52,7 +52,7 @@ impl Targets {
     }
 
     /// The target of a role.
-    pub(super) fn get(&self, role: Role) -> &Target {
+    pub(crate) fn get(&self, role: Role) -> &Target {
         match role {
             Role::Front => &self.front,
             Role::Back => &self.back,
@@ -60,7 +60,7 @@ impl Targets {
     }
 
     /// The target of a role, to be drawn into.
-    pub(super) fn get_mut(&mut self, role: Role) -> &mut Target {
+    pub(crate) fn get_mut(&mut self, role: Role) -> &mut Target {
         match role {
             Role::Front => &mut self.front,
             Role::Back => &mut self.back,
@@ -68,20 +68,20 @@ impl Targets {
     }
 
     /// Shows what was drawn.
-    pub(super) fn show(&mut self, role: Role) {
+    pub(crate) fn show(&mut self, role: Role) {
         if role == Role::Back {
             std::mem::swap(&mut self.front, &mut self.back);
         }
     }
 
     /// Nothing of them may be shown again.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.front.forget();
         self.back.forget();
     }
 
     /// Bytes of both.
-    pub(super) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.front.bytes() + self.back.bytes()
     }
 }

@@ -1,36 +1,10 @@
-//! What the combined light volume, and the look of a light, are made from.
+//! What the combined light volume is made from.
 
-use super::eye::ReceivedLight;
 use super::light::LightKey;
 use super::lit_lights::LitLights;
-use crate::model::{Hood, Length, LightKind, Remains, SceneLight, Settings};
+use super::received::{LightLook, ReceivedLight};
+use crate::model::{Length, Remains, Settings};
 use crate::plan::{RenderOptions, Request};
-
-/// A light as samples see it: what moving a parallel light outwards does not change.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct LightLook {
-    kind: LightKind,
-    /// The position, or for a parallel light the direction.
-    placed: [f64; 3],
-    color: [f32; 3],
-    intensity: f64,
-    hood: Option<Hood>,
-    density_scale: f64,
-}
-
-impl LightLook {
-    /// What samples see of a light.
-    pub(super) fn of(light: &SceneLight) -> Self {
-        let SceneLight { kind, position, color, intensity, on: _, casts_shadows: _, hood, density_scale } =
-            *light;
-        let placed = match kind {
-            LightKind::Parallel => light.direction().into(),
-            LightKind::Perspective => position,
-        };
-        let hood = (hood.on && kind == LightKind::Perspective).then_some(hood);
-        Self { kind, placed, color, intensity, hood, density_scale }
-    }
-}
 
 /// Everything that the volume is made from that holds the diffuse light of all shadowed lights (P §4).
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! What linear pictures are made from: the volume as the eye sees it, and the floor under it.
 
-use super::combined::LightLook;
 use super::light::LightKey;
 use super::lit_lights::{Attenuation, LitLights};
+use super::received::{LightLook, ReceivedLight};
 use super::table::{EyeTableKey, OpacityKey};
 use crate::model::{
     Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
@@ -54,46 +54,11 @@ struct SamplingKey {
     order: Option<SheetOrder>,
 }
 
-/// What becomes of light that arrives: the cures for darkness.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ReceivedLight {
-    algorithm: ShadowAlgorithm,
-    strength: f64,
-    ambient_offset: f64,
-    gain: f64,
-    bias_voxels: f64,
-    balance: f64,
-}
-
 /// What rays from samples or from the floor to lights meet.
 #[derive(Debug, Clone, PartialEq)]
 struct RaysKey {
     opacity: OpacityKey,
     shadows: Shadows,
-}
-
-impl ReceivedLight {
-    /// The part of the shadows that acts where light is looked up.
-    pub(super) fn of(shadows: &Shadows) -> Self {
-        let Shadows {
-            algorithm,
-            strength,
-            ambient_offset,
-            gain,
-            bias_voxels,
-            balance,
-            // In the keys of light volumes and of rays.
-            first_touch: _,
-            deposit: _,
-            kernel: _,
-            slab: _,
-            quadrature: _,
-            resolution: _,
-            precision: _,
-            storage: _,
-        } = *shadows;
-        Self { algorithm, strength, ambient_offset, gain, bias_voxels, balance }
-    }
 }
 
 impl SamplingKey {

@@ -8,6 +8,7 @@ mod display;
 mod eye;
 mod light;
 mod lit_lights;
+mod received;
 mod table;
 #[cfg(test)]
 mod tests;

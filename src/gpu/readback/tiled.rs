@@ -36,7 +36,7 @@ impl Renderer {
 
     /// Begins a picture in parts whose edges have no more than so many samples, and which have no more than so many
     /// in all.
-    pub(super) fn bands_within<'a>(
+    pub(crate) fn bands_within<'a>(
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,

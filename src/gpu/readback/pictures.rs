@@ -8,7 +8,7 @@ use crate::plan::{LightKey, Request};
 
 impl Renderer {
     /// What is shown now.
-    pub(super) fn shown(&self) -> Result<&Target, GpuError> {
+    pub(crate) fn shown(&self) -> Result<&Target, GpuError> {
         let front = &self.targets.front;
         if front.shown.is_complete() { Ok(front) } else { Err(GpuError::NothingDrawn("picture")) }
     }
@@ -54,7 +54,7 @@ impl Renderer {
     }
 
     /// The complete volume of a light, if it is kept.
-    pub(super) fn light_volume(&self, request: &Request, light: usize) -> Option<&LightVolume> {
+    pub(crate) fn light_volume(&self, request: &Request, light: usize) -> Option<&LightVolume> {
         let key = LightKey::of(request, light)?;
         let lights = &self.loaded.as_ref()?.value.lights;
         lights.iter().find(|known| known.holds(&key)).map(|known| &known.value)

@@ -1,0 +1,64 @@
+//! Light as samples receive it: the look of a light, and the cures for darkness.
+
+use crate::model::{Hood, LightKind, SceneLight, ShadowAlgorithm, Shadows};
+
+/// A light as samples see it: what moving a parallel light outwards does not change.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LightLook {
+    kind: LightKind,
+    /// The position, or for a parallel light the direction.
+    placed: [f64; 3],
+    color: [f32; 3],
+    intensity: f64,
+    hood: Option<Hood>,
+    density_scale: f64,
+}
+
+impl LightLook {
+    /// What samples see of a light.
+    pub(super) fn of(light: &SceneLight) -> Self {
+        let SceneLight { kind, position, color, intensity, on: _, casts_shadows: _, hood, density_scale } =
+            *light;
+        let placed = match kind {
+            LightKind::Parallel => light.direction().into(),
+            LightKind::Perspective => position,
+        };
+        let hood = (hood.on && kind == LightKind::Perspective).then_some(hood);
+        Self { kind, placed, color, intensity, hood, density_scale }
+    }
+}
+
+/// What becomes of light that arrives: the cures for darkness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ReceivedLight {
+    algorithm: ShadowAlgorithm,
+    strength: f64,
+    ambient_offset: f64,
+    gain: f64,
+    bias_voxels: f64,
+    balance: f64,
+}
+
+impl ReceivedLight {
+    /// The part of the shadows that acts where light is looked up.
+    pub(super) fn of(shadows: &Shadows) -> Self {
+        let Shadows {
+            algorithm,
+            strength,
+            ambient_offset,
+            gain,
+            bias_voxels,
+            balance,
+            // In the keys of light volumes and of rays.
+            first_touch: _,
+            deposit: _,
+            kernel: _,
+            slab: _,
+            quadrature: _,
+            resolution: _,
+            precision: _,
+            storage: _,
+        } = *shadows;
+        Self { algorithm, strength, ambient_offset, gain, bias_voxels, balance }
+    }
+}
