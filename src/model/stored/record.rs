@@ -112,7 +112,8 @@ impl Record {
         Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
     }
 
-    /// The settings of the record laid over others, for a volume with these values, and warnings of what was not understood.
+    /// The settings of the record laid over others, for a volume with these values, and warnings of what was not
+    /// understood.
     ///
     /// # Errors
     /// As [`apply_relative`].
