@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use chiaroscuro::data::{Dataset, synthetic};
-use chiaroscuro::export::{Animation, Reel};
+use chiaroscuro::export::{Animation, AnimationSpec};
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
 use chiaroscuro::model::Record;
 
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings = first_look(&mut renderer, &dataset)?;
 
     // The name decides: GIF, animated PNG, MP4 (where ffmpeg is installed), or a folder of pictures.
-    let reel = Reel { size: [160, 120], frames: 24, rate: 12, transparent: false };
+    let reel = AnimationSpec { size: [160, 120], frames: 24, rate: 12, transparent: false };
     let mut file = Animation::create(&path, &reel)?;
     for frame in 0..reel.frames {
         // `Some(0)` in place of `None` turns the first light. The light volumes of the first picture serve all

@@ -5,12 +5,12 @@ mod bench;
 mod compare;
 mod cpu_time;
 mod error;
+mod image_args;
 mod info;
 mod light_volume;
 mod render;
 mod replay;
 mod scene;
-mod shot;
 mod turntable;
 
 use std::io::Write as _;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
+use super::image_args::ImageArgs;
 use super::scene::SceneArgs;
-use super::shot::ShotArgs;
 use super::{CliError, print_line, warn_line};
 use crate::export::{check_picture, check_writable, write_atomically, write_picture};
 use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
@@ -21,7 +21,7 @@ pub(super) struct RenderArgs {
     #[arg(short, long, value_name = "OUT.png|OUT.exr")]
     output: PathBuf,
     #[command(flatten)]
-    shot: ShotArgs,
+    shot: ImageArgs,
     /// Also write what it took, and all settings, as JSON: of the picture drawn at once, with a sample per pixel
     #[arg(long, value_name = "REPORT.json")]
     report: Option<PathBuf>,
@@ -44,7 +44,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     say("finding the look");
     let settings = look.settings(&mut renderer, &loaded)?;
     say("rendering");
-    let shot = args.shot.shot(&args.output);
+    let shot = args.shot.spec(&args.output);
     check_picture(&args.output, &shot)?;
     for path in std::iter::once(&args.output).chain(&args.report) {
         check_writable(path)?;

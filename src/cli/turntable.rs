@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::scene::{SceneArgs, parse_size};
 use super::{CliError, print_line, warn_line};
-use crate::export::{Animation, AnimationFormat, Reel};
+use crate::export::{Animation, AnimationFormat, AnimationSpec};
 use crate::gpu::{RenderOptions, Renderer};
-use crate::model::{PictureRecord, Record, Shot, VolumeRecord};
+use crate::model::{ImageSpec, PictureRecord, Record, VolumeRecord};
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]
@@ -53,10 +53,11 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
         )));
     }
     let (size, frames, transparent) = (args.size, args.frames, args.transparent);
-    let mut file = Animation::create(&args.output, &Reel { size, frames, rate: args.rate, transparent })?;
+    let mut file =
+        Animation::create(&args.output, &AnimationSpec { size, frames, rate: args.rate, transparent })?;
     let folder = AnimationFormat::record_folder(&args.output);
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().content_id(), folder);
-    let shot = Shot { transparent, ..Shot::new(size) };
+    let shot = ImageSpec { transparent, ..ImageSpec::new(size) };
     let how = PictureRecord::new(shot, context.description());
     let options = RenderOptions::of_shot(&shot);
     for frame in 0..args.frames {

@@ -279,7 +279,8 @@ impl Volume {
         self.dims
     }
 
-    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]); [`Self::dims`] where none were.
+    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]); [`Self::dims`] where none
+    /// were.
     pub fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }

@@ -13,7 +13,7 @@ use exr::prelude::Compression;
 use super::rows::RECORD;
 use super::whole_file::{open_regular, place, temporary_beside};
 use super::{ExportError, ReadPictureError, Rows};
-use crate::model::Shot;
+use crate::model::ImageSpec;
 
 /// Channels in the order of the file, which is that of their names, and where they are in a pixel.
 const CHANNELS: [(&str, usize); 4] = [("A", 3), ("B", 2), ("G", 1), ("R", 0)];
@@ -24,7 +24,7 @@ const LONGEST: usize = 255;
 /// Writes a picture in blocks of sixteen rows, as the format's lossless compression has them.
 pub(super) fn write<E: From<ExportError>>(
     path: &Path,
-    shot: &Shot,
+    shot: &ImageSpec,
     record: Option<&str>,
     rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
 ) -> Result<(), E> {
@@ -147,7 +147,7 @@ mod tests {
         let value = |i: usize| (i % 64) as f32 / 16.0;
         let pixels: Vec<f32> = (0..4 * width * height).map(value).collect();
         let mut bands: Vec<_> = pixels.chunks(4 * width * 10).map(<[f32]>::to_vec).rev().collect();
-        let shot = Shot { depth: Depth::Linear, ..Shot::new([width as u32, height as u32]) };
+        let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new([width as u32, height as u32]) };
         let record = format!("{{\"name\": \"Größe, 体積 🫁\", \"long\": \"{}\"}}", "x".repeat(700));
         let record = record.as_str();
         let mut next = || Ok::<_, ExportError>(bands.pop().map(Rows::Floats));

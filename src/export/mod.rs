@@ -11,7 +11,7 @@ mod png_file;
 mod rows;
 mod whole_file;
 
-pub use animation::{Animation, AnimationFormat, Reel};
+pub use animation::{Animation, AnimationFormat, AnimationSpec};
 pub use error::{ExportError, ReadPictureError};
 pub use picture_file::{PictureFormat, check_picture, read_picture, read_record, write_picture};
 pub use png_file::{encode_png, export_png};

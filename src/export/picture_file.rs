@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{ExportError, ReadPictureError, Rows, exr_file, png_file};
-use crate::model::{Depth, Shot};
+use crate::model::{Depth, ImageSpec};
 
 /// Kinds of picture files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,13 +40,13 @@ impl PictureFormat {
 /// Writes a picture whose rows come band by band from the top, whole or not at all.
 ///
 /// It carries a record ([`crate::model::Record`]) as text. How its numbers are written follows from the name
-/// and from [`Shot::depth`], which must fit ([`PictureFormat::depth`]).
+/// and from [`ImageSpec::depth`], which must fit ([`PictureFormat::depth`]).
 ///
 /// # Errors
 /// What `rows` says; when the kind of file does not fit the depth, or the disk refuses.
 pub fn write_picture<E: From<ExportError>>(
     path: &Path,
-    shot: &Shot,
+    shot: &ImageSpec,
     record: Option<&str>,
     rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
 ) -> Result<(), E> {
@@ -65,7 +65,7 @@ const OTHERS: [&str; 13] =
 ///
 /// # Errors
 /// When the name stands for another kind of file, or that kind does not fit the depth.
-pub fn check_picture(path: &Path, shot: &Shot) -> Result<(), ExportError> {
+pub fn check_picture(path: &Path, shot: &ImageSpec) -> Result<(), ExportError> {
     let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase).unwrap_or_default();
     let format = PictureFormat::of_path(path);
     if OTHERS.iter().any(|other| ending == *other) {
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn names_say_what_files_hold() {
         let folder = tempfile::tempdir().unwrap();
-        let mut shot = Shot::new([1, 1]);
+        let mut shot = ImageSpec::new([1, 1]);
         for (name, depth, fits) in [
             ("a.png", Depth::Eight, true),
             ("a.PNG", Depth::Sixteen, true),
@@ -148,7 +148,7 @@ mod tests {
         for name in ["a.png", "a.exr"] {
             let path = folder.path().join(name);
             let depth = PictureFormat::of_path(&path).depth(Depth::Eight);
-            let shot = Shot { depth, ..Shot::new([2, 40]) };
+            let shot = ImageSpec { depth, ..ImageSpec::new([2, 40]) };
             let mut bands = 0;
             let mut next = || {
                 bands += 1;

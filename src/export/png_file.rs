@@ -6,7 +6,7 @@ use std::path::Path;
 use super::rows::{RECORD, word};
 use super::whole_file::{open_regular, place, temporary_beside, write_atomically};
 use super::{ExportError, ReadPictureError, Rows};
-use crate::model::{Depth, MAX_EDGE, Shot};
+use crate::model::{Depth, ImageSpec, MAX_EDGE};
 
 /// Most bytes that are read of a picture's texts: a thousand times a real record.
 const MOST_TEXT: usize = 16 << 20;
@@ -57,7 +57,7 @@ pub fn encode_png(
 /// Writes a picture as its rows come.
 pub(super) fn write<E: From<ExportError>>(
     path: &Path,
-    shot: &Shot,
+    shot: &ImageSpec,
     record: Option<&str>,
     rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
 ) -> Result<(), E> {
@@ -184,7 +184,7 @@ mod tests {
         let path = folder.path().join("a.png");
         let value = |i: usize| i as f32 / 65535.0;
         for transparent in [false, true] {
-            let shot = Shot { depth: Depth::Sixteen, transparent, ..Shot::new([5, 4]) };
+            let shot = ImageSpec { depth: Depth::Sixteen, transparent, ..ImageSpec::new([5, 4]) };
             let shown: Vec<f32> = (0..80).map(|i| value(i * 3)).collect();
             // A band of three rows and one of one.
             let mut bands = vec![shown[60..].to_vec(), shown[..60].to_vec()];

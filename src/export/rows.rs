@@ -1,6 +1,6 @@
 //! What pictures consist of before they are files.
 
-use crate::model::{Depth, Shot};
+use crate::model::{Depth, ImageSpec};
 
 /// Under which name a picture carries its record.
 pub(super) const RECORD: &str = "chiaroscuro";
@@ -22,7 +22,7 @@ pub enum Rows {
 impl Rows {
     /// What a file of them gives back.
     #[must_use]
-    pub fn as_written(self, shot: &Shot) -> Self {
+    pub fn as_written(self, shot: &ImageSpec) -> Self {
         match self {
             Self::Bytes(mut shown) => {
                 if !shot.transparent {

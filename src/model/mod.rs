@@ -5,12 +5,12 @@
 
 pub mod auto;
 mod exchange;
+mod image_spec;
 mod rig;
 mod settings;
-mod shot;
 mod stored;
 mod transfer;
-mod turn;
+mod turntable;
 
 pub use self::settings::camera::{Camera, Projection};
 pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
@@ -31,9 +31,9 @@ pub use self::stored::record::{PictureRecord, Record, VolumeRecord};
 pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear};
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
+pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
 pub use rig::Rig;
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
-pub use shot::{Depth, MAX_EDGE, MAX_SAMPLES, Shot};
 pub use transfer::{
     BakedTransfer, ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, Mixing, STEPS,
     TransferFunction, linear_from_srgb, srgb_from_linear,

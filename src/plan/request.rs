@@ -1,7 +1,7 @@
 //! What is asked of the renderer: which volume, which look, how large, and how it is to be computed.
 
 use super::PixelWindow;
-use crate::model::{Depth, Resolution, Settings, Shot};
+use crate::model::{Depth, ImageSpec, Resolution, Settings};
 
 /// A picture to be made: of which volume, how, and how large.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,8 +68,8 @@ impl Default for RenderOptions {
 
 impl RenderOptions {
     /// What a picture is drawn with that is taken like this.
-    pub fn of_shot(shot: &Shot) -> Self {
-        let Shot { size: _, transparent, samples, depth } = *shot;
+    pub fn of_shot(shot: &ImageSpec) -> Self {
+        let ImageSpec { size: _, transparent, samples, depth } = *shot;
         Self { transparent, samples, depth, ..Self::default() }
     }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use chiaroscuro::export::{export_png, read_picture};
 use chiaroscuro::gpu::RenderOptions;
-use chiaroscuro::model::{Depth, Shot};
+use chiaroscuro::model::{Depth, ImageSpec};
 use eframe::egui::{self, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 
@@ -49,7 +49,7 @@ fn fine_pictures_come_from_the_window() {
         wait_until(&mut harness, "never exported", |app| !app.is_exporting());
         let app = harness.state();
         let (dataset, mut renderer) = beside();
-        let shot = Shot { samples: 2, depth, ..Shot::new([60, 45]) };
+        let shot = ImageSpec { samples: 2, depth, ..ImageSpec::new([60, 45]) };
         let expected = renderer.bands(&dataset, app.settings(), &shot).all().unwrap();
         let found = read_picture(&path.with_extension(ending)).unwrap();
         assert!(found == ([60, 45], expected.as_written(&shot)), "{label}");

@@ -1,7 +1,7 @@
 //! Pictures that are made again from what they or their reports say.
 
 use chiaroscuro::export::{ExportError, export_png, read_picture, read_record, write_picture};
-use chiaroscuro::model::{Depth, Shot};
+use chiaroscuro::model::{Depth, ImageSpec};
 
 use crate::program::Folder;
 use crate::volumes::small_ball;
@@ -102,7 +102,7 @@ fn fine_pictures_can_be_made_again_from_themselves() {
     let (size, rows) = read_picture(&folder.path("light.exr")).expect("a picture");
     let changed = text.replace("\"gain\": 1.0", "\"gain\": 0.4");
     assert_ne!(changed, text);
-    let shot = Shot { depth: Depth::Linear, ..Shot::new(size) };
+    let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new(size) };
     let mut rows = Some(rows);
     let mut next = || Ok::<_, ExportError>(rows.take());
     write_picture(&folder.path("changed.exr"), &shot, Some(&changed), &mut next).expect("written");

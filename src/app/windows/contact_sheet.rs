@@ -10,7 +10,7 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::data::ValueRange;
-use crate::model::{Camera, Kernel, Light, PRESETS, Resolution, Rig, Settings, Shot};
+use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings};
 
 /// Pixels of a picture.
 const SIZE: [u32; 2] = [176, 132];
@@ -160,7 +160,8 @@ impl ContactSheet {
             let tried = sheet.candidates(&subject).into_iter();
             tried
                 .map(|candidate| {
-                    let shown = worker.render(&subject, &quick(&candidate.settings), &Shot::new(SIZE))?;
+                    let shown =
+                        worker.render(&subject, &quick(&candidate.settings), &ImageSpec::new(SIZE))?;
                     let picture = ColorImage::from_rgba_unmultiplied(SIZE.map(|n| n as usize), &shown);
                     Ok((candidate, picture))
                 })

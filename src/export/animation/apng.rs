@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use super::{AnimationEncoder, Reel};
+use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
 use crate::export::png_file::rgb;
 use crate::export::whole_file::{place, temporary_beside};
@@ -19,8 +19,8 @@ pub(super) struct Apng {
 }
 
 impl Apng {
-    pub(super) fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
-        let Reel { size: [width, height], frames, rate, transparent } = *reel;
+    pub(super) fn create(path: &Path, reel: &AnimationSpec) -> Result<Self, ExportError> {
+        let AnimationSpec { size: [width, height], frames, rate, transparent } = *reel;
         let file = temporary_beside(path)?;
         let out = BufWriter::new(file.reopen().map_err(ExportError::writing(path))?);
         let mut encoder = png::Encoder::new(out, width, height);
@@ -58,7 +58,7 @@ mod tests {
     fn the_file_says_how_many_pictures_it_has() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let reel = Reel { size: [3, 2], frames: 3, rate: 10, transparent: true };
+        let reel = AnimationSpec { size: [3, 2], frames: 3, rate: 10, transparent: true };
         let mut file = Box::new(Apng::create(&path, &reel).unwrap());
         for at in 1..=3 {
             file.add(&[at; 4 * 6], "").unwrap();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{AnimationEncoder, Reel};
+use super::{AnimationEncoder, AnimationSpec};
 use crate::export::{ExportError, export_png};
 
 /// The name of a picture.
@@ -13,12 +13,12 @@ fn name(at: u32) -> String {
 /// A folder of pictures.
 pub(super) struct Folder {
     path: PathBuf,
-    reel: Reel,
+    reel: AnimationSpec,
     written: u32,
 }
 
 impl Folder {
-    pub(super) fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+    pub(super) fn create(path: &Path, reel: &AnimationSpec) -> Result<Self, ExportError> {
         if path.join(name(reel.frames)).exists() {
             let what = "the folder holds the pictures of a longer turn; another folder keeps them apart";
             return Err(ExportError::Unfit { what, path: path.to_owned() });

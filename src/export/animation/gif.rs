@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::{AnimationEncoder, Reel};
+use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
 use crate::export::whole_file::{place, temporary_beside};
 
@@ -19,13 +19,13 @@ pub(super) struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
     file: tempfile::NamedTempFile,
     path: PathBuf,
-    reel: Reel,
+    reel: AnimationSpec,
     size: [u16; 2],
     written: u32,
 }
 
 impl Gif {
-    pub(super) fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+    pub(super) fn create(path: &Path, reel: &AnimationSpec) -> Result<Self, ExportError> {
         let unfit = ExportError::Unfit {
             what: "GIF pictures have at most 65535 pixels along an edge",
             path: path.to_owned(),
@@ -77,7 +77,7 @@ mod tests {
     fn pictures_come_back_and_take_their_time() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.gif");
-        let reel = Reel { size: [2, 1], frames: 24, rate: 24, transparent: true };
+        let reel = AnimationSpec { size: [2, 1], frames: 24, rate: 24, transparent: true };
         let mut file = Box::new(Gif::create(&path, &reel).unwrap());
         for _ in 0..24 {
             file.add(&[200, 100, 50, 255, 9, 9, 9, 0], "").unwrap();
@@ -94,6 +94,6 @@ mod tests {
             hundredths += u32::from(frame.delay);
         }
         assert_eq!((frames, hundredths), (24, 100), "a second");
-        assert!(Gif::create(&path, &Reel { size: [70000, 1], ..reel }).is_err());
+        assert!(Gif::create(&path, &AnimationSpec { size: [70000, 1], ..reel }).is_err());
     }
 }

@@ -42,7 +42,7 @@ impl AnimationFormat {
 
 /// What all pictures of a file that moves have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Reel {
+pub struct AnimationSpec {
     /// Columns and rows.
     pub size: [u32; 2],
     /// How many there will be.
@@ -81,7 +81,7 @@ impl Animation {
     /// # Errors
     /// When the folder cannot be written to, the kind of file cannot hold what is asked for, or ffmpeg is
     /// needed and not there.
-    pub fn create(path: &Path, reel: &Reel) -> Result<Self, ExportError> {
+    pub fn create(path: &Path, reel: &AnimationSpec) -> Result<Self, ExportError> {
         let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase).unwrap_or_default();
         if OTHERS.iter().any(|other| ending == *other) {
             let what = "turns are written as .png, .gif, .mp4 or into a folder";
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     /// What tests write.
-    const REEL: Reel = Reel { size: [6, 4], frames: 3, rate: 24, transparent: false };
+    const REEL: AnimationSpec = AnimationSpec { size: [6, 4], frames: 3, rate: 24, transparent: false };
 
     fn picture(at: u8) -> Vec<u8> {
         (0..24).flat_map(|i| [at * 60, i * 10, 30, if i == 0 { 0 } else { 255 }]).collect()
@@ -150,7 +150,7 @@ mod tests {
             assert!(short.finish().is_err(), "two are missing");
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left");
             for transparent in [false, true] {
-                let mut whole = Animation::create(&path, &Reel { transparent, ..REEL }).unwrap();
+                let mut whole = Animation::create(&path, &AnimationSpec { transparent, ..REEL }).unwrap();
                 for at in 1..=3 {
                     whole.add(&picture(at), "{}").unwrap();
                 }
@@ -176,7 +176,7 @@ mod tests {
         assert_eq!(image::open(&last).unwrap().to_rgba8().get_pixel(1, 0).0, [120, 10, 30, 255]);
         assert_eq!(std::fs::read_dir(&path).unwrap().count(), 3);
         // A shorter turn would be mixed with what is left of this one.
-        assert!(Animation::create(&path, &Reel { frames: 2, ..REEL }).is_err());
+        assert!(Animation::create(&path, &AnimationSpec { frames: 2, ..REEL }).is_err());
         assert!(Animation::create(&path, &REEL).is_ok());
         for name in ["turn.webm", "turn.exr"] {
             assert!(Animation::create(&folder.path().join(name), &REEL).is_err(), "{name}");

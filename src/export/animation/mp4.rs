@@ -6,7 +6,7 @@ use std::io::{BufWriter, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
-use super::{AnimationEncoder, Reel};
+use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
 use crate::export::png_file::rgb;
 use crate::export::whole_file::{place, temporary_beside};
@@ -67,7 +67,7 @@ pub(super) struct Mp4 {
 
 impl Mp4 {
     /// Starts ffmpeg, which is called `program`.
-    pub(super) fn create(path: &Path, reel: &Reel, program: &OsStr) -> Result<Self, ExportError> {
+    pub(super) fn create(path: &Path, reel: &AnimationSpec, program: &OsStr) -> Result<Self, ExportError> {
         if reel.transparent {
             let what = "MP4 has no transparency; PNG and GIF have, or leave the background in";
             return Err(ExportError::Unfit { what, path: path.to_owned() });
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt as _;
 
-    const REEL: Reel = Reel { size: [3, 2], frames: 2, rate: 24, transparent: false };
+    const REEL: AnimationSpec = AnimationSpec { size: [3, 2], frames: 2, rate: 24, transparent: false };
 
     /// A stand-in for ffmpeg: knows its encoders, then does what `script` says with the video's name in $last.
     fn stand_in(folder: &Path, script: &str) -> PathBuf {
@@ -180,7 +180,7 @@ mod tests {
         }
         let err = make(folder.path(), Path::new("/no/such/ffmpeg")).unwrap_err();
         assert!(matches!(err, ExportError::NoFfmpeg { .. }), "{err}");
-        let transparent = Reel { transparent: true, ..REEL };
+        let transparent = AnimationSpec { transparent: true, ..REEL };
         assert!(Mp4::create(&folder.path().join("a.mp4"), &transparent, "ffmpeg".as_ref()).is_err());
         // And one that is not wanted any more ends.
         let program = stand_in(folder.path(), "cat > \"$last\"");

@@ -11,7 +11,7 @@ use crate::gpu::scatter::light::LightScatter;
 use crate::gpu::scatter::voxels::Scattering;
 use crate::gpu::volume::Gpu;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
-use crate::model::{Settings, Shot};
+use crate::model::{Settings, ImageSpec};
 use crate::plan::{FARTHEST, MarchTiles, Request, light_views};
 
 impl Renderer {
@@ -21,7 +21,7 @@ impl Renderer {
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,
-        shot: &Shot,
+        shot: &ImageSpec,
         limits: (u32, u32),
     ) -> Bands<'a> {
         self.bands_within(dataset, settings, shot, limits)

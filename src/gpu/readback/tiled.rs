@@ -6,7 +6,7 @@ use crate::export::Rows;
 use crate::gpu::resources::readback::{read_floats, read_texture};
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::math::SceneSpace;
-use crate::model::{Depth, Settings, Shot};
+use crate::model::{Depth, ImageSpec, Settings};
 use crate::plan::PixelWindow;
 use crate::plan::eye_frame;
 
@@ -19,7 +19,7 @@ pub struct Bands<'a> {
     renderer: &'a mut Renderer,
     dataset: &'a Dataset,
     settings: &'a Settings,
-    shot: Shot,
+    shot: ImageSpec,
     /// Pixels that are drawn around each part.
     margin: u32,
     /// Those that are left, the next one last.
@@ -29,7 +29,12 @@ pub struct Bands<'a> {
 
 impl Renderer {
     /// Begins a picture of any size.
-    pub fn bands<'a>(&'a mut self, dataset: &'a Dataset, settings: &'a Settings, shot: &Shot) -> Bands<'a> {
+    pub fn bands<'a>(
+        &'a mut self,
+        dataset: &'a Dataset,
+        settings: &'a Settings,
+        shot: &ImageSpec,
+    ) -> Bands<'a> {
         let longest = self.context().device.limits().max_texture_dimension_2d;
         self.bands_within(dataset, settings, shot, (longest, MOST_SAMPLES))
     }
@@ -40,7 +45,7 @@ impl Renderer {
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,
-        shot: &Shot,
+        shot: &ImageSpec,
         (longest, most): (u32, u32),
     ) -> Bands<'a> {
         let samples = shot.samples.max(1);
@@ -49,7 +54,7 @@ impl Renderer {
         let mut left: Vec<_> = PixelWindow::bands(shot.size, longest, most / (samples * samples)).collect();
         left.reverse();
         let total = left.len();
-        let shot = Shot { samples, ..*shot };
+        let shot = ImageSpec { samples, ..*shot };
         Bands { renderer: self, dataset, settings, shot, margin, left, total }
     }
 }

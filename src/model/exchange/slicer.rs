@@ -9,8 +9,8 @@ use super::{ExchangeError, form, merged, numbers, rgb};
 use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
-/// Reads a `.vp`: numbers of the shading, then opacities by value, opacities by gradient, and colours by value, each list
-/// behind the count of its numbers.
+/// Reads a `.vp`: numbers of the shading, then opacities by value, opacities by gradient, and colours by value,
+/// each list behind the count of its numbers.
 pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
     let mut lists = Vec::new();
     for line in text.lines() {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::data::ValueRange;
-use crate::model::{PresetError, Settings, Shot, apply_relative};
+use crate::model::{ImageSpec, PresetError, Settings, apply_relative};
 
 /// The volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct VolumeRecord {
 pub struct PictureRecord {
     /// Size and fineness.
     #[serde(flatten)]
-    pub shot: Shot,
+    pub shot: ImageSpec,
     /// Version of this program.
     pub version: String,
     /// The graphics adapter and its driver.
@@ -67,7 +67,7 @@ impl VolumeRecord {
 
 impl PictureRecord {
     /// A picture that this version makes on an adapter.
-    pub fn new(shot: Shot, adapter: String) -> Self {
+    pub fn new(shot: ImageSpec, adapter: String) -> Self {
         Self { shot, version: env!("CARGO_PKG_VERSION").to_owned(), adapter }
     }
 }
@@ -112,7 +112,8 @@ impl Record {
         Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
     }
 
-    /// The settings of the record laid over others, for a volume with these values, and warnings of what was not understood.
+    /// The settings of the record laid over others, for a volume with these values, and warnings of what was not
+    /// understood.
     ///
     /// # Errors
     /// As [`apply_relative`].
@@ -138,7 +139,12 @@ mod tests {
         settings.views.insert(3, settings.camera.clone());
         let volume = VolumeRecord::new("builtin:chair", 0x1234, None);
         let picture = PictureRecord {
-            shot: Shot { transparent: true, samples: 2, depth: Depth::Sixteen, ..Shot::new([640, 480]) },
+            shot: ImageSpec {
+                transparent: true,
+                samples: 2,
+                depth: Depth::Sixteen,
+                ..ImageSpec::new([640, 480])
+            },
             version: "0.1.0".to_owned(),
             adapter: "an adapter".to_owned(),
         };
@@ -155,7 +161,7 @@ mod tests {
         let text =
             r#"{"_picture": {"size": [4, 3], "transparent": true, "version": "0.1.0", "adapter": "a"}}"#;
         let picture = Record::read(text).unwrap().picture.unwrap();
-        assert_eq!(picture.shot, Shot { transparent: true, ..Shot::new([4, 3]) });
+        assert_eq!(picture.shot, ImageSpec { transparent: true, ..ImageSpec::new([4, 3]) });
     }
 
     #[test]

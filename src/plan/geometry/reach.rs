@@ -20,8 +20,8 @@ pub fn stretch_reach(level: f64) -> u8 {
     }
 }
 
-/// How far a stretched kernel sees, for previews, which may miss the tails: beyond three quarters of a stretched B-spline's radius
-/// of 2 texels lies 1/1000 of its weight along an axis.
+/// How far a stretched kernel sees, for previews, which may miss the tails: beyond three quarters of a stretched
+/// B-spline's radius of 2 texels lies 1/1000 of its weight along an axis.
 pub(crate) fn preview_stretch_reach(level: f64) -> u8 {
     if level <= 0.0 { 0 } else { in_cells(1.5 * level.exp2()) }
 }

@@ -3,7 +3,7 @@
 use chiaroscuro::export::Rows;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
-    Background, Depth, Engine, Floor, Projection, Sampling, Settings, ShadowAlgorithm, Shot,
+    Background, Depth, Engine, Floor, Projection, Sampling, Settings, ShadowAlgorithm, ImageSpec,
 };
 use glam::DVec3;
 
@@ -26,7 +26,7 @@ fn picture(
     renderer: &mut Renderer,
     loaded: &Dataset,
     settings: &Settings,
-    shot: &Shot,
+    shot: &ImageSpec,
     parts: (u32, u32),
 ) -> Vec<f32> {
     let bands = renderer.bands_of(loaded, settings, shot, parts);
@@ -66,7 +66,7 @@ fn check_parts(is_meant: impl Fn(&str, Depth) -> bool) {
     {
         let depths = [Depth::Eight, Depth::Sixteen, Depth::Linear];
         for depth in depths.into_iter().filter(|&depth| is_meant(name, depth)) {
-            let shot = Shot { depth, ..Shot::new(SIZE) };
+            let shot = ImageSpec { depth, ..ImageSpec::new(SIZE) };
             let whole = picture(&mut renderer, &loaded, &settings, &shot, (4096, 1 << 20));
             let fills = renderer.light_rebuilds().to_vec();
             // Bands of whole rows, and bands in columns.
@@ -87,7 +87,7 @@ fn check_parts(is_meant: impl Fn(&str, Depth) -> bool) {
 fn parts_that_lie_elsewhere_are_noticed() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
-    let shot = Shot { depth: Depth::Sixteen, ..Shot::new(SIZE) };
+    let shot = ImageSpec { depth: Depth::Sixteen, ..ImageSpec::new(SIZE) };
     let whole = picture(&mut renderer, &loaded, &look(), &shot, (4096, 1 << 20));
     // One pixel further right is the smallest mistake that parts can make.
     let shifted: Vec<f32> = whole.iter().skip(4).chain(&whole[..4]).copied().collect();
@@ -100,9 +100,9 @@ fn samples_are_the_mean_of_a_finer_picture() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     for samples in [2, 3] {
         for transparent in [false, true] {
-            let shot = Shot { depth: Depth::Linear, transparent, samples, ..Shot::new(SIZE) };
+            let shot = ImageSpec { depth: Depth::Linear, transparent, samples, ..ImageSpec::new(SIZE) };
             let found = picture(&mut renderer, &loaded, &look(), &shot, (4096, 93 * 9 * 20));
-            let finer = Shot { size: SIZE.map(|n| n * samples), samples: 1, ..shot };
+            let finer = ImageSpec { size: SIZE.map(|n| n * samples), samples: 1, ..shot };
             // The background of one colour: else it is that of the pixel's middle, not the mean.
             let finer = picture(&mut renderer, &loaded, &look(), &finer, (4096, 1 << 20));
             let mean = means(&finer, samples as usize);
@@ -134,9 +134,9 @@ fn sixteen_bits_are_between_the_steps_of_eight() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let whole = (4096, 1 << 20);
     for transparent in [false, true] {
-        let shot = Shot { transparent, ..Shot::new(SIZE) };
+        let shot = ImageSpec { transparent, ..ImageSpec::new(SIZE) };
         let coarse = picture(&mut renderer, &loaded, &look(), &shot, whole);
-        let fine = Shot { depth: Depth::Sixteen, ..shot };
+        let fine = ImageSpec { depth: Depth::Sixteen, ..shot };
         let fine = picture(&mut renderer, &loaded, &look(), &fine, whole);
         let apart = largest(&coarse, &fine);
         assert!(apart < HALF_STEP, "{apart}");
@@ -152,9 +152,9 @@ fn linear_light_is_what_the_display_shows() {
     settings.output.tone_map = chiaroscuro::model::ToneMap::Clip;
     settings.floor.on = false;
     let whole = (4096, 1 << 20);
-    let shot = Shot { depth: Depth::Linear, ..Shot::new(SIZE) };
+    let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new(SIZE) };
     let linear = picture(&mut renderer, &loaded, &settings, &shot, whole);
-    let shown = Shot { depth: Depth::Sixteen, ..shot };
+    let shown = ImageSpec { depth: Depth::Sixteen, ..shot };
     let shown = picture(&mut renderer, &loaded, &settings, &shown, whole);
     let srgb = |c: f32| if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
     // Nothing is brighter than white here, so that clipping and laying over commute.

@@ -1,7 +1,7 @@
 //! Tone maps against their formulas, in double precision: from the linear light of pictures to what is shown of it.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Depth, Settings, Shot, ToneMap};
+use chiaroscuro::model::{Depth, Settings, ImageSpec, ToneMap};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};
@@ -62,7 +62,7 @@ fn sweep(mut renderer: Renderer, tone_map: ToneMap) -> (Vec<[f32; 4]>, Vec<f64>)
     for intensity in INTENSITIES {
         let settings = look(intensity, tone_map);
         light.extend(render(&mut renderer, &loaded, &settings, SIZE).light);
-        let shot = Shot { depth: Depth::Sixteen, transparent: true, ..Shot::new(SIZE) };
+        let shot = ImageSpec { depth: Depth::Sixteen, transparent: true, ..ImageSpec::new(SIZE) };
         let whole = (4096, 1 << 20);
         let rows = renderer.bands_of(&loaded, &settings, &shot, whole).all();
         found.extend(rows.expect("the picture is rendered").values().into_iter().map(f64::from));

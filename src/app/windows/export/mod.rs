@@ -14,8 +14,8 @@ use self::worker::Progress;
 pub(in crate::app) use self::worker::{Exported, Subject, Worker};
 use crate::app::text;
 use crate::app::worker::task::Work;
-use crate::export::{AnimationFormat, Reel};
-use crate::model::Shot;
+use crate::export::{AnimationFormat, AnimationSpec};
+use crate::model::ImageSpec;
 
 /// How long a window that closes waits for an export to end: a part of a picture takes seconds on slow adapters.
 const LONGEST_WAIT: Duration = Duration::from_secs(10);
@@ -44,7 +44,7 @@ pub(crate) enum Request {
 #[derive(Debug)]
 pub(crate) struct Export {
     open: bool,
-    shot: Shot,
+    shot: ImageSpec,
     path: String,
     kind: Kind,
     frames: u32,
@@ -57,7 +57,7 @@ impl Default for Export {
     fn default() -> Self {
         Self {
             open: false,
-            shot: Shot::new([0, 0]),
+            shot: ImageSpec::new([0, 0]),
             path: "chiaroscuro.png".to_owned(),
             kind: Kind::Still,
             frames: 72,
@@ -86,7 +86,7 @@ impl Export {
 
     /// How large.
     pub(crate) fn set_size(&mut self, size: [u32; 2]) {
-        self.shot = Shot { size, ..self.shot }.within_limits();
+        self.shot = ImageSpec { size, ..self.shot }.within_limits();
     }
 
     /// Whether a picture is being made.
@@ -121,7 +121,7 @@ impl Export {
             Kind::LightTurn => Some(subject.selected_light),
         };
         let transparent = shot.transparent && self.animation() != AnimationFormat::Mp4;
-        let reel = Reel { size: shot.size, frames: self.frames, rate: self.rate, transparent };
+        let reel = AnimationSpec { size: shot.size, frames: self.frames, rate: self.rate, transparent };
         self.run(ctx, move || worker::turn(&subject, light, &reel, path, &progress))
     }
 
@@ -132,7 +132,7 @@ impl Export {
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<(), String> {
-        let shot = Shot { transparent: self.shot.transparent, ..Shot::new(size) };
+        let shot = ImageSpec { transparent: self.shot.transparent, ..ImageSpec::new(size) };
         self.progress = Arc::default();
         self.run(ctx, move || worker::copy(&subject, &shot))
     }

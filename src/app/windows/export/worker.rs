@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use eframe::egui;
 
 use crate::data::Dataset;
-use crate::export::{Animation, AnimationFormat, ExportError, Reel, write_picture};
+use crate::export::{Animation, AnimationFormat, AnimationSpec, ExportError, write_picture};
 use crate::gpu::{Context, GpuError, RenderOptions, Renderer};
-use crate::model::{PictureRecord, Record, Settings, Shot, VolumeRecord};
+use crate::model::{ImageSpec, PictureRecord, Record, Settings, VolumeRecord};
 
 /// What is to be exported.
 #[derive(Debug)]
@@ -104,7 +104,7 @@ impl Worker {
         &mut self,
         subject: &Subject,
         settings: &Settings,
-        shot: &Shot,
+        shot: &ImageSpec,
     ) -> Result<Vec<u8>, String> {
         let options = RenderOptions::of_shot(shot);
         let shown = self.renderer.render_shown(&subject.dataset, settings, shot.size, &options);
@@ -112,7 +112,13 @@ impl Worker {
     }
 
     /// How a picture was made, for a file in a folder.
-    fn record(&self, subject: &Subject, settings: &Settings, shot: &Shot, folder: Option<&Path>) -> String {
+    fn record(
+        &self,
+        subject: &Subject,
+        settings: &Settings,
+        shot: &ImageSpec,
+        folder: Option<&Path>,
+    ) -> String {
         let volume = VolumeRecord::new(&subject.source, subject.dataset.volume().content_id(), folder);
         let how = PictureRecord::new(*shot, self.adapter.clone());
         Record::text(settings, Some(&volume), Some(&how))
@@ -122,7 +128,7 @@ impl Worker {
 /// Renders and writes one picture.
 pub(crate) fn still(
     subject: &Subject,
-    shot: &Shot,
+    shot: &ImageSpec,
     path: PathBuf,
     progress: &Progress,
 ) -> Result<Exported, String> {
@@ -143,13 +149,13 @@ pub(crate) fn still(
 pub(crate) fn turn(
     subject: &Subject,
     light: Option<usize>,
-    reel: &Reel,
+    reel: &AnimationSpec,
     path: PathBuf,
     progress: &Progress,
 ) -> Result<Exported, String> {
     let mut worker = Worker::new(subject)?;
     let folder = AnimationFormat::record_folder(&path);
-    let shot = Shot { transparent: reel.transparent, ..Shot::new(reel.size) };
+    let shot = ImageSpec { transparent: reel.transparent, ..ImageSpec::new(reel.size) };
     let mut write = || {
         let mut file = Animation::create(&path, reel)?;
         for frame in 0..reel.frames {
@@ -165,7 +171,7 @@ pub(crate) fn turn(
 }
 
 /// Renders for the clipboard.
-pub(crate) fn copy(subject: &Subject, shot: &Shot) -> Result<Exported, String> {
+pub(crate) fn copy(subject: &Subject, shot: &ImageSpec) -> Result<Exported, String> {
     let shown = Worker::new(subject)?.render(subject, &subject.settings, shot)?;
     let size = shot.size.map(|n| n as usize);
     Ok(Exported::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &shown)))

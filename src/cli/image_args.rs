@@ -6,11 +6,11 @@ use clap::{Args, ValueEnum};
 
 use super::scene::parse_size;
 use crate::export::PictureFormat;
-use crate::model::{Depth, MAX_SAMPLES, Shot};
+use crate::model::{Depth, ImageSpec, MAX_SAMPLES};
 
 /// Arguments of a still picture.
 #[derive(Debug, Args)]
-pub(super) struct ShotArgs {
+pub(super) struct ImageArgs {
     /// Pixels; more than the adapter can draw at once are drawn in parts
     #[arg(long, value_name = "WxH", default_value = "1280x960", value_parser = parse_size)]
     size: [u32; 2],
@@ -34,14 +34,14 @@ enum Bits {
     Sixteen,
 }
 
-impl ShotArgs {
+impl ImageArgs {
     /// What is asked for, in a file of this name.
-    pub(super) fn shot(&self, path: &Path) -> Shot {
+    pub(super) fn spec(&self, path: &Path) -> ImageSpec {
         let wanted = match self.bits {
             Bits::Eight => Depth::Eight,
             Bits::Sixteen => Depth::Sixteen,
         };
         let depth = PictureFormat::of_path(path).depth(wanted);
-        Shot { size: self.size, transparent: self.transparent, samples: self.samples, depth }
+        ImageSpec { size: self.size, transparent: self.transparent, samples: self.samples, depth }
     }
 }

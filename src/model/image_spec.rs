@@ -23,7 +23,7 @@ pub enum Depth {
 
 /// Size and fineness of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Shot {
+pub struct ImageSpec {
     /// Columns and rows.
     pub size: [u32; 2],
     /// Whether the background is left out.
@@ -40,7 +40,7 @@ fn one() -> u32 {
     1
 }
 
-impl Shot {
+impl ImageSpec {
     /// An opaque picture of 8 bits and a sample per pixel.
     pub fn new(size: [u32; 2]) -> Self {
         Self { size, transparent: false, samples: 1, depth: Depth::Eight }
