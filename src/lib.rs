@@ -29,7 +29,7 @@
 //! | [`math`] | spaces and boxes |
 //! | [`data`] | volumes: readers, built-ins, histograms, bricks |
 //! | [`model`] | `Settings`, the one value that is the whole look |
-//! | [`plan`] | what a change makes stale; the geometry of the passes |
+//! | [`plan`] | the keys of what a picture needs; the geometry of the passes |
 //! | [`export`] | files that go out: pictures, pictures that move |
 //! | `reference` | the paper in f64, literal and slow; with the feature `testing` |
 //! | [`gpu`] | the renderer |

@@ -16,6 +16,7 @@ mod worker;
 pub use self::shell::start::{Adjustment, AppError, Options, run, storage_folder, wgpu_setup};
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use eframe::egui;
 
@@ -49,7 +50,7 @@ use self::windows::palette::Palette;
 use self::windows::raw_dialog::RawDialog;
 use self::windows::slices::Slices;
 use self::worker::loader::Loader;
-use self::worker::task::Work;
+use self::worker::task::{self, Work};
 use crate::gpu::{Context, GpuError, WindowPainter};
 use crate::model::Settings;
 
@@ -99,6 +100,15 @@ pub struct App {
     /// The longest frame so far; see `status_file`.
     longest_ui_ms: f64,
     status_file: StatusFile,
+}
+
+/// How long a window that closes waits for tasks that still use the graphics driver.
+const LAST_TASKS: Duration = Duration::from_secs(10);
+
+impl Drop for App {
+    fn drop(&mut self) {
+        task::wait_for_all(LAST_TASKS);
+    }
 }
 
 impl std::fmt::Debug for App {

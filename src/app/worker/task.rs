@@ -4,10 +4,42 @@ use std::any::Any;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{self, TryRecvError};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Duration;
 
 use eframe::egui;
 
 use crate::app::text;
+
+/// How many tasks of this process run.
+static RUNNING: Mutex<usize> = Mutex::new(0);
+
+/// One of them has ended.
+static ENDED: Condvar = Condvar::new();
+
+/// Counts a task from its beginning to its end, however that comes.
+struct Counted;
+
+impl Counted {
+    fn begin() -> Self {
+        *RUNNING.lock().unwrap_or_else(PoisonError::into_inner) += 1;
+        Self
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        *RUNNING.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
+        ENDED.notify_all();
+    }
+}
+
+/// Waits until no task runs, but not for longer than that: a graphics driver must not be unloaded while a thread is
+/// in it.
+pub(crate) fn wait_for_all(longest: Duration) {
+    let running = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
+    drop(ENDED.wait_timeout_while(running, longest, |running| *running > 0));
+}
 
 /// A task on its own thread. Dropping this forgets the result, so a late one replaces nothing.
 #[derive(Debug)]
@@ -24,7 +56,9 @@ impl<T: Send + 'static> Work<T> {
     ) -> io::Result<Self> {
         let (sender, receiver) = mpsc::channel();
         let ctx = ctx.clone();
+        let counted = Counted::begin();
         std::thread::Builder::new().name(name.to_owned()).spawn(move || {
+            let _counted = counted;
             let result = catch_unwind(AssertUnwindSafe(task)).map_err(|panic| panic_message(&*panic));
             // Nobody waits any more when the receiver is gone.
             drop(sender.send(result));
@@ -54,7 +88,6 @@ pub(crate) fn panic_message(panic: &(dyn Any + Send)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     fn wait<T: Send + 'static>(work: &Work<T>) -> Result<T, String> {
         loop {
@@ -63,6 +96,18 @@ mod tests {
             }
             std::thread::sleep(Duration::from_millis(1));
         }
+    }
+
+    #[test]
+    fn tasks_that_nobody_wants_are_waited_for() {
+        let ctx = egui::Context::default();
+        let (sender, receiver) = mpsc::channel();
+        drop(Work::start("slow", &ctx, move || {
+            std::thread::sleep(Duration::from_millis(50));
+            sender.send(()).unwrap();
+        }));
+        wait_for_all(Duration::from_secs(10));
+        receiver.try_recv().expect("the task has ended");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::gpu::scatter::light::LightScatter;
 use crate::gpu::scatter::voxels::Scattering;
 use crate::gpu::volume::Gpu;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
-use crate::model::{Settings, ImageSpec};
+use crate::model::{ImageSpec, Settings};
 use crate::plan::{FARTHEST, MarchTiles, Request, light_views};
 
 impl Renderer {

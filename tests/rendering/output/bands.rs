@@ -3,7 +3,7 @@
 use chiaroscuro::export::Rows;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
-    Background, Depth, Engine, Floor, Projection, Sampling, Settings, ShadowAlgorithm, ImageSpec,
+    Background, Depth, Engine, Floor, ImageSpec, Projection, Sampling, Settings, ShadowAlgorithm,
 };
 use glam::DVec3;
 

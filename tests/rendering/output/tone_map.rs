@@ -1,7 +1,7 @@
 //! Tone maps against their formulas, in double precision: from the linear light of pictures to what is shown of it.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Depth, Settings, ImageSpec, ToneMap};
+use chiaroscuro::model::{Depth, ImageSpec, Settings, ToneMap};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};
