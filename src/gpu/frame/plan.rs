@@ -51,9 +51,11 @@ impl Renderer {
             Some(known) if known.holds(&keys.volume) => known,
             _ => {
                 self.tools.pool.clear();
+                let start = Instant::now();
                 let fresh = Loaded::new(&self.tools.context, dataset, &request.settings, &keys.tables)?;
                 steps.extend(upload_steps(&fresh.volume));
                 self.report.runs.tables = 2;
+                self.report.bricks_ms = start.elapsed().as_secs_f64() * 1000.0;
                 Cached::unfilled(keys.volume, fresh)
             }
         };
@@ -69,7 +71,7 @@ impl Renderer {
                 self.tools.pool.forget_groups();
             }
             self.report.runs.tables += baked;
-            self.report.bricks_ms = start.elapsed().as_secs_f64() * 1000.0;
+            self.report.bricks_ms += start.elapsed().as_secs_f64() * 1000.0;
         }
         if role.is_none() {
             let mut recyclable = loaded.value.take_unfinished();

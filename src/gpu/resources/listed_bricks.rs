@@ -4,6 +4,7 @@ use crate::gpu::volume::Gpu;
 
 /// Bricks or tiles per row of a dispatch over a list: at most two workgroups each, within the 65535 that all adapters
 /// allow.
+#[cfg_attr(not(feature = "testing"), expect(unreachable_pub, reason = "the tests of shaders reach it"))]
 pub const LISTED_PER_ROW: u32 = 16384;
 
 /// A brick's coordinates, ten bits each.

@@ -11,6 +11,7 @@ use crate::thresholds::{F16_STEP, REFILLED, SPOILED};
 
 mod bits;
 mod recomputes;
+mod warm_up;
 
 const SIZE: [u32; 2] = [64, 48];
 

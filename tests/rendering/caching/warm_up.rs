@@ -1,0 +1,35 @@
+//! Pipelines that are made ahead of time are those that the first picture needs.
+
+use std::sync::atomic::AtomicBool;
+
+use chiaroscuro::data::Dataset;
+use chiaroscuro::data::synthetic::builtin;
+use chiaroscuro::gpu::{RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro::model::{Settings, auto};
+
+use crate::common::context;
+
+/// How many pipelines a picture makes after the warm-up.
+fn made_after_warm_up(change: impl Fn(&mut Settings)) -> usize {
+    let context = context();
+    let shaders = ShaderLibrary::new(&context);
+    shaders.warm_up(&AtomicBool::new(false)).expect("the warm-up");
+    let before = shaders.pipeline_count();
+    assert!(before > 10, "the warm-up makes pipelines: {before}");
+    let mut renderer = Renderer::with_shaders(&context, shaders.clone()).expect("a renderer");
+    let dataset = Dataset::new(builtin("chair", Some(24)).expect("the chair"));
+    let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
+    change(&mut settings);
+    renderer.draw(&dataset, &settings, [160, 120], &RenderOptions::default()).expect("a picture");
+    shaders.pipeline_count() - before
+}
+
+#[test]
+fn the_first_picture_after_the_warm_up_compiles_nothing() {
+    assert_eq!(made_after_warm_up(|_| ()), 0);
+}
+
+#[test]
+fn what_nobody_warmed_up_is_counted() {
+    assert_eq!(made_after_warm_up(|settings| settings.floor.on = true), 1, "the floor");
+}
