@@ -1,4 +1,4 @@
-//! What an edit of a transfer function takes, and loading a volume.
+//! What an edit of a transfer function takes, another background, and loading a volume.
 
 use serde_json::{Value, json};
 
@@ -27,6 +27,18 @@ impl Bench<'_> {
         }
         let rebuilds = self.renderer.light_rebuilds().iter().sum::<u64>() - before;
         cases.push(self.case("tf-edit", &samples, rebuilds));
+        Ok(())
+    }
+
+    /// The background changes, which the display pass alone reads.
+    pub(super) fn background(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
+        let mut samples = Samples::default();
+        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+            let mut settings = self.settings.clone();
+            settings.output.background.top = [frame as f32 / 2000.0; 3];
+            self.frame(&settings, (frame >= WARM_UP).then_some(&mut samples))?;
+        }
+        cases.push(self.case("background", &samples, 0));
         Ok(())
     }
 

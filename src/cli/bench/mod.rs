@@ -2,8 +2,8 @@
 //!
 //! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
 //! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
-//! halves of the light pass of those frames); *tf-edit* (a transfer function changes); *load* (from a file to
-//! its first picture) and *memory*; *growth* (light volumes of clouds of growing size, splatted
+//! halves of the light pass of those frames); *tf-edit* (a transfer function changes); *background* (only the
+//! background does); *load* (from a file to its first picture) and *memory*; *growth* (light volumes of clouds of growing size, splatted
 //! and by rays, with everything that saves work and without);
 //! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms).
 
@@ -30,8 +30,8 @@ const WARM_UP: usize = 2;
 const STEP_DEG: f64 = 12.0;
 
 /// What there is to be measured.
-const CASES: [&str; 8] =
-    ["orbit", "light-drag", "light-build", "tf-edit", "load", "memory", "growth", "paper"];
+const CASES: [&str; 9] =
+    ["orbit", "light-drag", "light-build", "tf-edit", "background", "load", "memory", "growth", "paper"];
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -91,6 +91,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         }
         if wants("tf-edit") {
             bench.transfer_edit(&mut cases)?;
+        }
+        if wants("background") {
+            bench.background(&mut cases)?;
         }
         if wants("load") || wants("memory") {
             bench.load(&context, volume, wants, &mut cases)?;

@@ -18,7 +18,7 @@ pub enum GpuError {
     OutOfMemory {
         /// What was to be made.
         what: String,
-        /// Its size.
+        /// Size of what was to be made.
         mebibytes: u64,
     },
     /// A size is beyond what the adapter can do.

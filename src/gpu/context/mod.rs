@@ -145,7 +145,7 @@ impl Context {
         Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaint })
     }
 
-    /// The same device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
+    /// This device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
     /// checks that must not see the rounding of 16-bit floats.
     #[cfg(feature = "testing")]
     #[must_use]

@@ -30,9 +30,9 @@ pub struct Report {
     pub eye_ms: f64,
     /// Milliseconds of the display pass and of reading back.
     pub readback_ms: f64,
-    /// The same of both halves and of rays, and of the eye pass, by the GPU's own clock, if it has one.
+    /// Milliseconds of the light pass, both halves and rays, by the GPU's own clock, if it has one.
     pub light_gpu_ms: Option<f64>,
-    /// Of the eye pass.
+    /// Milliseconds of the eye pass by the GPU's own clock, if it has one.
     pub eye_gpu_ms: Option<f64>,
     /// Pixels of the picture.
     pub size: [u32; 2],

@@ -21,7 +21,7 @@ pub enum Stage {
     LightRaycast,
     /// The picture.
     Eye,
-    /// Its display colours.
+    /// Display colours of the picture.
     Display,
 }
 

@@ -27,9 +27,9 @@ const TILE_ROOM: u64 = 64 << 10;
 /// Columns and rows of the ring come in so many, because sheets get larger and smaller as the light moves.
 const ROOM: u32 = 32;
 
-/// A ring has at most so many times the texels that are needed …
+/// A ring has at most so many times the texels that are needed, or [`SMALL_RING`].
 const MOST_ROOM: u64 = 2;
-/// … or so many, 8 MiB: coarse previews and small volumes.
+/// Texels of a ring that is not worth making smaller, 8 MiB: for coarse previews and small volumes.
 const SMALL_RING: u64 = 1 << 20;
 
 /// The sheets of one view of a light: a ring of layers through which the slabs stream.
@@ -45,7 +45,7 @@ pub(crate) struct Sheets {
     pub preview: bool,
     /// Deposited transmittance, four sheets in a texel.
     pub ring: wgpu::Texture,
-    /// The same.
+    /// A view of all layers of the ring.
     pub ring_view: wgpu::TextureView,
     transmittance: wgpu::Buffer,
     /// Cells beyond those that the transfer functions show whose sheets are read.
@@ -108,7 +108,7 @@ impl Sheets {
         })
     }
 
-    /// The same, if so many columns, rows and layers fit and are not much less; otherwise the size of sheets to
+    /// These sheets, if so many columns, rows and layers fit and are not much less; otherwise the size of sheets to
     /// take their place, which hold both if they can.
     fn or_larger(self, needed: [u32; 3]) -> Result<Self, [u32; 3]> {
         let size = self.ring.size();

@@ -23,7 +23,7 @@ pub(crate) struct LightVolume {
     pub divisor: usize,
     /// Attenuation, 0 … 1.
     pub texture: wgpu::Texture,
-    /// The same.
+    /// A view of all of it.
     pub view: wgpu::TextureView,
     /// Cells (of light voxels) that hold, or will hold, values.
     pub filled: Arc<CellSet>,

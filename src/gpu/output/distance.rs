@@ -15,7 +15,7 @@ impl Distance {
         Self::of(left, right, f64::from)
     }
 
-    /// The same where 1 is white.
+    /// The distance in units in which 1 is white.
     pub fn between_values(left: &[f32], right: &[f32]) -> Self {
         Self::of(left, right, |value| 255.0 * f64::from(value))
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::tiled::Bands;
+use super::tiled::LargestPart;
 use crate::data::Dataset;
 use crate::gpu::light::march::{Sheets, march};
 use crate::gpu::resources::readback::read_floats;
@@ -15,16 +16,17 @@ use crate::model::{ImageSpec, Settings};
 use crate::plan::{FARTHEST, MarchTiles, Request, light_views};
 
 impl Renderer {
-    /// Begins a picture, as [`Self::bands`] does, in parts whose edges have no more than so many samples, and which
-    /// have no more than so many in all.
+    /// Begins a picture, as [`Self::bands`] does, in parts with no more than `edge` samples along an edge, and no
+    /// more than `samples` in all.
     pub fn bands_of<'a>(
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,
         shot: &ImageSpec,
-        limits: (u32, u32),
+        edge: u32,
+        samples: u32,
     ) -> Bands<'a> {
-        self.bands_within(dataset, settings, shot, limits)
+        self.bands_within(dataset, settings, shot, LargestPart { edge, samples })
     }
 
     /// Overwrites a light's attenuation volume, which must be complete. Tests use it to see whether

@@ -13,6 +13,15 @@ use crate::plan::eye_frame;
 /// Most samples of a part: a picture of high-definition television in one part, and about 100 MiB of textures.
 const MOST_SAMPLES: u32 = 1 << 21;
 
+/// How large a part of a picture may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct LargestPart {
+    /// Samples along an edge.
+    pub edge: u32,
+    /// Samples in all.
+    pub samples: u32,
+}
+
 /// A picture that is being made, from the top down.
 #[derive(Debug)]
 pub struct Bands<'a> {
@@ -36,7 +45,8 @@ impl Renderer {
         shot: &ImageSpec,
     ) -> Bands<'a> {
         let longest = self.context().device.limits().max_texture_dimension_2d;
-        self.bands_within(dataset, settings, shot, (longest, MOST_SAMPLES))
+        let largest = LargestPart { edge: longest, samples: MOST_SAMPLES };
+        self.bands_within(dataset, settings, shot, largest)
     }
 
     /// Begins a picture in parts whose edges have no more than so many samples, and which have no more than so many
@@ -46,12 +56,13 @@ impl Renderer {
         dataset: &'a Dataset,
         settings: &'a Settings,
         shot: &ImageSpec,
-        (longest, most): (u32, u32),
+        largest: LargestPart,
     ) -> Bands<'a> {
         let samples = shot.samples.max(1);
         let margin = margin(dataset.volume(), settings, shot.size, samples);
-        let longest = (longest / samples).saturating_sub(2 * margin);
-        let mut left: Vec<_> = PixelWindow::bands(shot.size, longest, most / (samples * samples)).collect();
+        let longest = (largest.edge / samples).saturating_sub(2 * margin);
+        let mut left: Vec<_> =
+            PixelWindow::bands(shot.size, longest, largest.samples / (samples * samples)).collect();
         left.reverse();
         let total = left.len();
         let shot = ImageSpec { samples, ..*shot };
@@ -86,9 +97,9 @@ impl Bands<'_> {
             self.renderer.draw(self.dataset, self.settings, self.shot.size, &options)?;
             let (context, shown) = (self.renderer.context(), &self.renderer.shown()?.shown.value.texture);
             if self.shot.depth == Depth::Eight {
-                lay(&mut bytes, &read_texture(context, shown)?, width, (drawn, part));
+                lay(&mut bytes, &read_texture(context, shown)?, width, drawn, part);
             } else {
-                lay(&mut floats, &read_floats(context, shown)?, width, (drawn, part));
+                lay(&mut floats, &read_floats(context, shown)?, width, drawn, part);
             }
         }
         Ok(Some(if self.shot.depth == Depth::Eight { Rows::Bytes(bytes) } else { Rows::Floats(floats) }))
@@ -126,7 +137,7 @@ fn margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) ->
 }
 
 /// Puts a part of what was drawn into its place in a band.
-fn lay<T: Copy>(band: &mut [T], texels: &[T], width: usize, (drawn, part): (PixelWindow, PixelWindow)) {
+fn lay<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
     let (left, columns) = (part.first[0] as usize, part.size[0] as usize);
     let [before, above] = [0, 1].map(|axis| (part.first[axis] - drawn.first[axis]) as usize);
     let rows = texels.chunks_exact(4 * drawn.size[0] as usize).skip(above);

@@ -97,7 +97,7 @@ impl ResourcePool {
         self.buffer_with_room(context, label, contents, usage, SMALLEST_BUFFER)
     }
 
-    /// The same, of at least `room` bytes.
+    /// A buffer for one submission that begins with `contents`, of at least `room` bytes.
     pub(crate) fn buffer_with_room<T: bytemuck::NoUninit>(
         &self,
         context: &Context,

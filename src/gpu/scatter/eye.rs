@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::footprints::{Footprints, Inputs};
-use super::splat::{ScatterVariant, Scatterer, Splat, sums, widest_stretch};
+use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums, widest_stretch};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::eye::gather::{EyePass, ShadingVariant};
@@ -69,7 +69,7 @@ impl EyeScatter {
         let order = sampling.order;
         // Slices of voxels are a voxel apart.
         let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().1 } else { 1 };
-        let kernel = (sampling.kernel, sampling.quadrature, order);
+        let kernel = Splatting { kernel: sampling.kernel, quadrature: sampling.quadrature, order };
         let seen = splatted_bricks(frame, &tables.eye.occupied, options);
         let what = match sampling.classification {
             Classification::Post => Splat::Density,

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::eye::{scatter_dilation, splatted_bricks};
-use super::splat::{Scatterer, Splat, sums};
+use super::splat::{Scatterer, Splat, Splatting, sums};
 use super::voxels::Scattering;
 use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, march_uniform};
 use crate::gpu::light::volume::LightVolume;
@@ -47,9 +47,9 @@ impl Variant for ScatterMarchVariant {
 #[derive(Debug)]
 pub(crate) struct LightScatter {
     scatterer: Scatterer,
-    /// Σ D·h per light voxel …
+    /// Σ D·h per light voxel.
     light: wgpu::Buffer,
-    /// … and the weight volume, Σ h.
+    /// The weight volume: Σ h per light voxel.
     weights: wgpu::Buffer,
     /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
     distances: wgpu::TextureView,
@@ -78,7 +78,8 @@ impl LightScatter {
             Classification::Pre => Splat::Extinction,
         };
         let what = (what, &tables.lighting);
-        let kernel = (shadows.kernel, shadows.quadrature, SheetOrder::ImageAligned);
+        let order = SheetOrder::ImageAligned;
+        let kernel = Splatting { kernel: shadows.kernel, quadrature: shadows.quadrature, order };
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
         let dims = tables.lighting.occupied.dims;
         let unread = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);

@@ -31,9 +31,9 @@ pub(crate) struct Scatterer {
     half: DVec3,
     /// How many times wider kernels are where they are widest.
     widest: f64,
-    /// Bricks, slab by slab …
+    /// Bricks, slab by slab.
     bricks: wgpu::Buffer,
-    /// … of which those of slab k are `starts[k] .. starts[k + 1]`.
+    /// Bricks of slab k are `starts[k] .. starts[k + 1]` of the list.
     starts: Vec<u32>,
     /// Sums, as integers.
     pub sheets: wgpu::Buffer,
@@ -44,11 +44,11 @@ pub(crate) struct Scatterer {
 /// What of a voxel is splatted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Splat {
-    /// Its density.
+    /// The voxel's density.
     Density,
-    /// Its extinction, for lights.
+    /// The voxel's extinction, for lights.
     Extinction,
-    /// Its density, colour and extinction, for the eye.
+    /// The voxel's density, colour and extinction, for the eye.
     Material,
 }
 
@@ -70,6 +70,14 @@ impl Splat {
             Self::Material => 5,
         }
     }
+}
+
+/// How voxels are splatted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Splatting {
+    pub kernel: Kernel,
+    pub quadrature: Quadrature,
+    pub order: SheetOrder,
 }
 
 /// What tells one pipeline of the scattering passes from another.
@@ -127,7 +135,7 @@ impl Scatterer {
         gpu: Gpu<'_>,
         voxels: &ScatterVoxels,
         frame: &SheetFrame,
-        (kernel, quadrature, order): (Kernel, Quadrature, SheetOrder),
+        Splatting { kernel, quadrature, order }: Splatting,
         (what, table): (Splat, &Table),
         seen: &BrickSet,
         layers: u32,
@@ -186,7 +194,7 @@ impl Scatterer {
         })
     }
 
-    /// The same stack seen from a light volume: `divisor` data voxels per light voxel.
+    /// This stack seen from a light volume: `divisor` data voxels per light voxel.
     #[must_use]
     pub(crate) fn towards_grid(
         mut self,
@@ -253,7 +261,7 @@ impl Scatterer {
         }
     }
 
-    /// The same as a buffer.
+    /// What shaders know of a slab, as a buffer.
     pub(crate) fn uniform_buffer(&self, context: &Context, k: u32, least_stretch: f64) -> wgpu::Buffer {
         let uniform = self.uniform(k, least_stretch);
         context.buffer("Scatterer::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)

@@ -19,7 +19,7 @@ pub(crate) struct ScatterVoxels {
     pub buffer: wgpu::Buffer,
     /// For each brick of the volume the word where its voxels begin; `None` for empty ones.
     pub first_word: Vec<Option<u32>>,
-    /// The same for shaders; −1 for empty ones.
+    /// The word where each brick's voxels begin, for shaders; −1 for empty ones.
     pub first_words: wgpu::Buffer,
     /// Whether empty bricks are listed, too.
     pub holds_all: bool,

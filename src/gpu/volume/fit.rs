@@ -6,9 +6,9 @@ use crate::gpu::light::volume::attenuation_texture;
 use crate::gpu::volume;
 use crate::gpu::{Context, GpuError};
 
-/// Volumes of no more voxels are not tried out: 256³ take 100 MiB with one light …
+/// Volumes of no more voxels are not tried out: 256³ take 100 MiB with one light.
 const SMALL: usize = 1 << 24;
-/// … if their axes are no longer than every adapter must allow (2048), with what lies around the grid.
+/// Volumes with longer axes are tried out: every adapter allows 2048 texels, which hold what lies around the grid, too.
 const SHORT: usize = 2048 - BORDER;
 
 /// Most texels of a texture beyond the voxels of an axis: four before and behind, and up to whole eights.

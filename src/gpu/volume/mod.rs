@@ -57,7 +57,7 @@ impl Gpu<'_> {
         self.pool.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
     }
 
-    /// The same in a buffer of so many bytes at least: lists of any length up to that use one.
+    /// A list in a buffer of so many bytes at least: lists of any length up to that use one.
     pub(crate) fn list_with_room<T: bytemuck::NoUninit>(
         &self,
         label: &'static str,
@@ -170,9 +170,9 @@ pub(crate) struct GpuVolume {
     pub pyramid_views: LevelViews,
     /// The bricks of its levels that hold anything.
     pub filled_levels: Vec<Vec<u32>>,
-    /// Its gradients, while memory allows.
+    /// Gradients of the pyramid, while memory allows.
     pub gradients: Option<wgpu::Texture>,
-    /// The same.
+    /// Views of the gradients.
     pub gradients_views: Option<LevelViews>,
     pub clamped: wgpu::Sampler,
     nearest: wgpu::Sampler,

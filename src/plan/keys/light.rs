@@ -32,7 +32,7 @@ pub struct LightKey {
 }
 
 impl LightKey {
-    /// The same light volume at another resolution.
+    /// The key of this light's volume at another resolution.
     #[must_use]
     pub fn at_resolution(&self, resolution: Resolution) -> Self {
         Self { resolution, ..self.clone() }

@@ -16,7 +16,7 @@ pub enum Attenuation {
 /// A light that is on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LitLight {
-    /// Its place in the settings.
+    /// Place of the light in the settings.
     pub index: usize,
     /// Where and what it is.
     pub light: SceneLight,

@@ -27,9 +27,9 @@ fn picture(
     loaded: &Dataset,
     settings: &Settings,
     shot: &ImageSpec,
-    parts: (u32, u32),
+    (edge, samples): (u32, u32),
 ) -> Vec<f32> {
-    let bands = renderer.bands_of(loaded, settings, shot, parts);
+    let bands = renderer.bands_of(loaded, settings, shot, edge, samples);
     let rows = bands.all().expect("the picture is rendered");
     assert_eq!(matches!(rows, Rows::Bytes(_)), shot.depth == Depth::Eight);
     rows.values()

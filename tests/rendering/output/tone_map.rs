@@ -63,8 +63,7 @@ fn sweep(mut renderer: Renderer, tone_map: ToneMap) -> (Vec<[f32; 4]>, Vec<f64>)
         let settings = look(intensity, tone_map);
         light.extend(render(&mut renderer, &loaded, &settings, SIZE).light);
         let shot = ImageSpec { depth: Depth::Sixteen, transparent: true, ..ImageSpec::new(SIZE) };
-        let whole = (4096, 1 << 20);
-        let rows = renderer.bands_of(&loaded, &settings, &shot, whole).all();
+        let rows = renderer.bands_of(&loaded, &settings, &shot, 4096, 1 << 20).all();
         found.extend(rows.expect("the picture is rendered").values().into_iter().map(f64::from));
     }
     (light, found)
