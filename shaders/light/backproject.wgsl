@@ -52,7 +52,7 @@ override WIDE: bool = false;
 // paper's h̄, the kernel averaged over the slab.
 override QUADRATURE: u32 = 1u;
 
-// Of the kernel across the sheets: least width in voxels, and largest in pixels (src/plan/light_frame.rs).
+// Of the kernel across the sheets: least width in voxels, and largest in pixels (src/plan/geometry/light_frame.rs).
 const MIN_KERNEL_VOXELS = 0.3125;
 const MAX_KERNEL_PIXELS = 4.0;
 
@@ -235,7 +235,7 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
 // Voxels of a cell, a lane each.
 const CELL_VOXELS = CELL_EDGE * CELL_EDGE * CELL_EDGE;
 
-// Lanes that share a brick, a power of two from 8 to 64 (src/gpu/light_backproject.rs).
+// Lanes that share a brick, a power of two from 8 to 64 (src/gpu/light/backproject.rs).
 override LANES: u32 = 64u;
 
 // Eight lanes to a cell of 2³ voxels, and to the same lanes every cell of the brick so many cells on.

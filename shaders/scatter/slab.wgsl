@@ -54,7 +54,7 @@ const SPLAT_MATERIAL = 2u;
 
 override SPLAT: u32 = 0u;
 
-// What the sheets are, src/model/settings.rs: across the line of sight, slices of voxels, or single
+// What the sheets are, src/model/settings/mod.rs: across the line of sight, slices of voxels, or single
 // footprints.
 const ORDER_IMAGE_ALIGNED = 0u;
 const ORDER_VOLUME_ALIGNED = 1u;

@@ -1,4 +1,4 @@
-// The list of voxels that scattering takes them from (src/gpu/scatter_voxels.rs).
+// The list of voxels that scattering takes them from (src/gpu/scatter/voxels.rs).
 #import "common/sizes.wgsl"
 
 // Densities of 8³ voxels per brick, two to a word, as 16-bit normalised numbers.

@@ -1,4 +1,4 @@
-// The rays of a stack of sheet buffers (src/plan/sheet_frame.rs): pixel (i, j) sees, at depth z along
+// The rays of a stack of sheet buffers (src/plan/geometry/sheet_frame.rs): pixel (i, j) sees, at depth z along
 // the axis of projection, the index-space point origin + z * direction. Depth is in scene units,
 // counted from the anchor plane; a parallel projection has inverse_distance 0.
 struct SheetFrame {
