@@ -13,7 +13,7 @@ const BUILTIN: &str = "builtin:";
 /// volume of N³ voxels. A file whose name begins like that is reached as `./builtin:…`.
 ///
 /// # Errors
-/// As [`load`](super::load::load) and [`builtin`](super::synthetic::builtin).
+/// As [`load`] and [`builtin`](super::synthetic::builtin).
 pub fn open(source: &str, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let volume = open_whole(source, options, control)?;
     let attempt = Attempt { what: "average the voxels", path: Path::new(source) };

@@ -12,7 +12,11 @@ pub(super) mod readback;
 pub(super) mod tools;
 #[cfg_attr(
     not(feature = "testing"),
-    expect(unreachable_pub, reason = "the tests that compare them with the shaders' reach them")
+    expect(
+        unreachable_pub,
+        clippy::struct_field_names,
+        reason = "the tests that compare them with the shaders' reach them; names are those of the shaders"
+    )
 )]
 pub mod uniforms;
 pub(super) mod variant;
