@@ -1,11 +1,12 @@
 //! Chiaroscuro: see the shape of volume data.
 //!
 //! ```
-//! use chiaroscuro::data::{Dataset, load};
+//! use chiaroscuro::data::load::{LoadControl, LoadOptions};
+//! use chiaroscuro::data::{Dataset, open};
 //! use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
 //!
 //! // A built-in volume of 24³ voxels; the name of a RAW or NRRD file does as well.
-//! let volume = load::open("builtin:chair:24", &load::LoadOptions::default(), &load::LoadControl::new())?;
+//! let volume = open("builtin:chair:24", &LoadOptions::default(), &LoadControl::new())?;
 //! let dataset = Dataset::new(volume);
 //! let mut renderer = Renderer::new(&Context::headless()?)?;
 //! let settings = first_look(&mut renderer, &dataset)?;
