@@ -14,7 +14,6 @@ use crate::gpu::light::march::{Sheets, march};
 use crate::gpu::light::raycast::raycast;
 use crate::gpu::output::display::display;
 use crate::gpu::resources::listed_bricks::listed;
-use crate::gpu::resources::part::Part;
 use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::scatter::light::LightScatter;
 use crate::gpu::volume::transfer_tables::EVERYWHERE;
@@ -40,8 +39,8 @@ impl Job<'_> {
                 self.report.runs.volume += 1;
                 gradients::fill(context, &self.tools.shaders, volume, *level, bricks, encoder)
             }
-            Step::March(light) => self.encode_march(light, encoder),
-            Step::Backproject(light) => self.encode_backproject(light, encoder),
+            Step::March(light) => self.encode_light(light, Self::march_view, encoder),
+            Step::Backproject(light) => self.encode_light(light, Self::backproject_view, encoder),
             Step::Raycast(build, bricks) => self.encode_raycast(*build, bricks, encoder),
             Step::Combine(bricks) => self.encode_combine(bricks, encoder),
             Step::Eye(rows) => self.encode_eye(rows, encoder),
@@ -150,23 +149,32 @@ impl Job<'_> {
         self.loaded.value.lights[build.slot].value.begin();
     }
 
-    fn encode_march(
+    /// Records a step of one half of a light pass.
+    fn encode_light(
         &mut self,
-        LightStep { build: at, view, begin, part }: &LightStep,
+        step: &LightStep,
+        half: fn(&mut Self, &mut LightBuild, &LightStep, &mut wgpu::CommandEncoder) -> Result<(), GpuError>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
+        // Taken out meanwhile: a half changes its build and the job.
         let mut builds = std::mem::take(&mut self.builds);
-        let result = self.march_view(&mut builds[*at], *view, *begin, *part, encoder);
+        let result = half(self, &mut builds[step.build], step, encoder);
         self.builds = builds;
         result
+    }
+
+    /// The view that is being marched, set up when its first step comes.
+    fn take_view(&mut self, build: &mut LightBuild, view: usize) -> Result<CurrentView, GpuError> {
+        match build.current.take() {
+            Some(current) => Ok(current),
+            None => self.begin_view(build, view),
+        }
     }
 
     fn march_view(
         &mut self,
         build: &mut LightBuild,
-        view: usize,
-        begin: u32,
-        part: Part,
+        &LightStep { view, begin, part, .. }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         if view == 0 && begin == 0 && part.is_first() {
@@ -176,10 +184,7 @@ impl Job<'_> {
             self.begin_light(build);
         }
         let chunk = build.chunks[view];
-        let current = match build.current.take() {
-            Some(current) => current,
-            None => self.begin_view(build, view)?,
-        };
+        let current = self.take_view(build, view)?;
         let CurrentView { sheets, schedule, scatter } = build.current.insert(current);
         let geometry = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
@@ -195,29 +200,13 @@ impl Job<'_> {
         }
     }
 
-    fn encode_backproject(
-        &mut self,
-        LightStep { build: at, view, begin, part }: &LightStep,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let mut builds = std::mem::take(&mut self.builds);
-        let result = self.backproject_view(&mut builds[*at], *view, *begin, *part, encoder);
-        self.builds = builds;
-        result
-    }
-
     fn backproject_view(
         &mut self,
         build: &mut LightBuild,
-        view: usize,
-        begin: u32,
-        part: Part,
+        &LightStep { view, begin, part, .. }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let current = match build.current.take() {
-            Some(current) => current,
-            None => self.begin_view(build, view)?,
-        };
+        let current = self.take_view(build, view)?;
         let shadows = &self.request.settings.shadows;
         let geometry = &build.views[view];
         let slabs = begin..(begin + build.chunks[view]).min(geometry.frame.slab_count);
