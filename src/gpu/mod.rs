@@ -8,6 +8,8 @@ mod eye;
 mod frame;
 mod light;
 mod output;
+mod painter;
+mod pipelines;
 mod readback;
 mod resources;
 mod scatter;
@@ -17,26 +19,26 @@ pub use self::readback::statistics::LightFigures;
 pub use self::readback::tiled::Bands;
 pub use crate::plan::RenderOptions;
 pub use context::error::GpuError;
-pub use context::shader::ShaderLibrary;
-#[cfg(feature = "testing")]
-pub use context::shader_files::SHADERS;
 pub use context::{Context, device_descriptor};
 pub use frame::first_look::{balance, dark_share, first_look, mean_luminance};
+pub use frame::fit::fitted;
 pub use frame::job::Job;
 pub use frame::renderer::Renderer;
 pub use frame::report::{Picture, Report, Runs};
 pub use frame::step::Stage;
 pub use output::distance::Distance;
 pub use output::light_slice::{LightSlice, export_slice, light_volume_nrrd};
-pub use output::painter::PicturePainter;
 pub use output::window::{WindowPainter, WindowPicture};
+pub use painter::PicturePainter;
 #[cfg(feature = "testing")]
-pub use resources::layouts::{ShaderBindings, shader_bindings};
+pub use pipelines::layouts::{ShaderBindings, shader_bindings};
+pub use pipelines::shader::ShaderLibrary;
 #[cfg(feature = "testing")]
-pub use resources::listed_bricks::LISTED_PER_ROW;
+pub use pipelines::shader_files::SHADERS;
+#[cfg(feature = "testing")]
+pub use pipelines::uniforms;
 pub use resources::readback::Attenuation;
 #[cfg(feature = "testing")]
-pub use resources::uniforms;
-pub use volume::fit::fitted;
+pub use volume::listed_bricks::LISTED_PER_ROW;
 #[cfg(feature = "testing")]
 pub use volume::stored_density;

@@ -9,14 +9,6 @@ use crate::paths::{Path, imports, paths, without_tests};
 use crate::sources::{Source, files};
 use crate::tokens::tokens;
 
-/// Circles that there still are: the folder, and the modules in it. None may grow; one that is gone is to be taken
-/// off.
-const REMAINING: &[(&str, &[&str])] = &[
-    // Pipelines are kept with the context and name what they bind; the pool keeps sheets of light; combined light is
-    // filled by the eye's shading.
-    ("gpu", &["context", "eye", "frame", "light", "output", "resources", "scatter", "volume"]),
-];
-
 /// For each module of a folder the others that it names, with a file that does.
 type Named = BTreeMap<String, BTreeMap<String, String>>;
 
@@ -111,21 +103,6 @@ fn circles(edges: &Edges) -> Vec<(String, BTreeSet<String>)> {
     found
 }
 
-/// What is wrong with the circles that there are, beside those that may remain.
-fn violations(found: &[(String, BTreeSet<String>)], remaining: &[(&str, &[&str])]) -> Vec<String> {
-    let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect::<BTreeSet<String>>();
-    let is_listed = |(folder, circle): &&(String, BTreeSet<String>)| {
-        !remaining.iter().any(|(known, list)| known == folder && circle.is_subset(&names(list)))
-    };
-    let new = found.iter().filter(is_listed).map(|(folder, circle)| format!("new: in {folder}: {circle:?}"));
-    let is_gone = |(folder, list): &&(&str, &[&str])| {
-        !found.iter().any(|(known, circle)| known == folder && *circle == names(list))
-    };
-    let gone = remaining.iter().filter(is_gone);
-    let gone = gone.map(|(folder, list)| format!("gone, take it off the list: in {folder}: {list:?}"));
-    new.chain(gone).collect()
-}
-
 /// The circles link by link, for whoever opens them.
 fn links(edges: &Edges, circles: &[(String, BTreeSet<String>)]) -> String {
     let mut lines = Vec::new();
@@ -144,8 +121,7 @@ fn no_modules_side_by_side_import_each_other() {
     let edges = edges(&files("src", "rs"));
     assert!(edges.values().flatten().count() > 50, "the check must see the modules");
     let circles = circles(&edges);
-    let found = violations(&circles, REMAINING);
-    assert!(found.is_empty(), "\n{}\nAll circles:\n{}", found.join("\n"), links(&edges, &circles));
+    assert!(circles.is_empty(), "\n{}", links(&edges, &circles));
 }
 
 /// The circles of these files: folder and modules.
@@ -207,14 +183,4 @@ fn what_is_no_circle_is_not_reported() {
         ];
         assert_eq!(circles_of(&files), [""; 0], "{a} {b}");
     }
-}
-
-#[test]
-fn the_list_of_circles_must_be_true() {
-    let found = [("gpu".to_owned(), BTreeSet::from(["a".to_owned(), "b".to_owned()]))];
-    assert_eq!(violations(&found, &[("gpu", &["a", "b"])]), [""; 0]);
-    assert_eq!(violations(&found, &[]).len(), 1, "a new one");
-    assert_eq!(violations(&found, &[("app", &["a", "b"])]).len(), 2, "another folder's");
-    assert_eq!(violations(&found, &[("gpu", &["a", "b", "c"])]).len(), 1, "one that has shrunk");
-    assert_eq!(violations(&[], &[("gpu", &["a", "b"])]).len(), 1, "one that is gone");
 }

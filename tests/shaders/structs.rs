@@ -73,7 +73,7 @@ fn shared_structs_have_the_same_fields_in_the_same_places() {
 
 #[test]
 fn every_shared_struct_is_compared() {
-    let declared: BTreeSet<_> = include_str!("../../src/gpu/resources/uniforms.rs")
+    let declared: BTreeSet<_> = include_str!("../../src/gpu/pipelines/uniforms.rs")
         .lines()
         .filter_map(|line| line.strip_prefix("pub struct "))
         .map(|rest| rest.trim_end_matches(" {").to_owned())

@@ -2,9 +2,6 @@
 
 pub(super) mod clock;
 pub(super) mod error;
-pub(super) mod pipeline_cache;
-pub(super) mod shader;
-pub(super) mod shader_files;
 
 use std::sync::{Arc, Mutex, PoisonError};
 

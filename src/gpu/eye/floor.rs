@@ -1,12 +1,12 @@
 //! The floor pass: the light on the floor under the volume.
 
-use super::gather::{EyePass, pack_light};
+use super::gather::EyePass;
+use crate::gpu::light::packed::pack_light;
 use crate::gpu::light::raycast::RaycastVariant;
-use crate::gpu::output::target::Target;
-use crate::gpu::resources::binding::{buffer, view_of};
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{Constants, LightCount, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::variant::{Constants, LightCount, Variant};
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
@@ -28,11 +28,12 @@ pub(crate) struct FloorInputs<'a> {
     pub options: &'a RenderOptions,
 }
 
-/// Draws some rows of the floor, where the picture of the volume does not cover it.
+/// Draws some rows of the floor, where the volume in `picture` does not cover it.
 pub(crate) fn draw(
     gpu: Gpu<'_>,
     FloorInputs { tables, eye, lit, settings, options }: FloorInputs<'_>,
-    target: &Target,
+    picture: &wgpu::TextureView,
+    floor_light: &wgpu::TextureView,
     rows: std::ops::Range<u32>,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
@@ -57,8 +58,8 @@ pub(crate) fn draw(
             buffer("bound_floor_disc", &uniform),
             buffer("table", &tables.lighting.buffer),
             view_of("distances", &tables.light_distances),
-            view_of("picture", &target.light.value.plane.view),
-            view_of("floor_light", &target.floor.value.view),
+            view_of("picture", picture),
+            view_of("floor_light", floor_light),
         ],
     );
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));

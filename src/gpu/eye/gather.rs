@@ -1,32 +1,21 @@
 //! The eye pass: from density and attenuation to linear light.
 
 use crate::gpu::light::combine::CombinedLight;
-use crate::gpu::light::volume::{LightVolume, light_bind_group};
-use crate::gpu::resources::binding::{buffer, view_of};
-use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::variant::{
-    Constants, LightCount, Reconstruction, Variant, classification_constant, deposit_constant, flag, is_cut,
+use crate::gpu::light::packed::{LightInput, light_bind_group, pack_light};
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{
+    Constants, LightCount, Reconstruction, ShadingVariant, Variant, classification_constant,
+    deposit_constant, flag, is_cut,
 };
-use crate::gpu::scatter::eye::scatter_dilation;
+use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
-use crate::model::{
-    Classification, Deposit, Gradients, LightKind, MAX_LIGHTS, Projection, SceneLight, Settings,
-    ShadowAlgorithm,
-};
+use crate::model::{Classification, Deposit, Gradients, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm};
 use crate::plan::eye_frame;
-use crate::plan::{LitLight, PixelWindow, SheetFrame, ray_reach, sample_reach};
-
-/// A light, and the volume that says how much of it is left.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LightInput<'a> {
-    pub lit: &'a LitLight,
-    /// `None` where nothing attenuates it, or rays say how much.
-    pub volume: Option<&'a LightVolume>,
-}
+use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
 
 /// Everything that the eye pass of one picture needs besides the volume.
 #[derive(Debug)]
@@ -73,7 +62,7 @@ impl EyePass {
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
             end_row: window.size[1],
-            dilation: if options.empty_space_skipping { scatter_dilation(&frame) } else { EVERYWHERE },
+            dilation: if options.empty_space_skipping { scatter_reach_bricks(&frame) } else { EVERYWHERE },
             dark: options.min_transmittance,
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
@@ -165,27 +154,6 @@ impl EyePass {
     }
 }
 
-/// What tells pipelines apart of passes that shade.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct ShadingVariant {
-    lights: LightCount,
-    /// The diffuse light of shadowed lights is in one volume.
-    is_combined: bool,
-    is_cut: bool,
-}
-
-impl ShadingVariant {
-    /// The override constants of shading.
-    pub(crate) fn constants(self) -> Constants {
-        let mut constants = self.lights.constants();
-        constants.push(flag("CUT", self.is_cut));
-        if self.is_combined {
-            constants.push(("COMBINED", 1.0));
-        }
-        constants
-    }
-}
-
 /// What tells one pipeline of the eye pass from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct GatherVariant {
@@ -256,39 +224,7 @@ impl Variant for GatherVariant {
     }
 }
 
-/// A light for the shaders.
-pub(crate) fn pack_light(
-    light: &SceneLight,
-    volume: Option<&LightVolume>,
-    scene: &SceneSpace,
-    settings: &Settings,
-) -> uniforms::Light {
-    // Balance makes up for the light that shadows take away; without shadows there is none.
-    let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
-    let cone = light.cone();
-    let linear = |c: f32| crate::model::linear_from_srgb(f64::from(c));
-    let to_index = &scene.index_from_scene;
-    let (place, place_in_index, perspective) = match light.kind {
-        LightKind::Parallel => (light.direction(), to_index.transform_vector3(light.direction()), 0.0),
-        LightKind::Perspective => {
-            let position = light.position.into();
-            (position, to_index.transform_point3(position), 1.0)
-        }
-    };
-    uniforms::Light {
-        place: place.as_vec3().into(),
-        perspective,
-        color: light.color.map(|c| (linear(c) * light.intensity * balance) as f32),
-        extinction_scale: light.density_scale as f32,
-        lookup: volume.map_or([0.0; 3], |volume| volume.dims.map(|n| 1.0 / (n * volume.divisor) as f32)),
-        hood_inner: cone.cos_inner as f32,
-        hood_axis: cone.axis.as_vec3().into(),
-        hood_outer: cone.cos_outer as f32,
-        place_in_index: place_in_index.as_vec3().into(),
-        pad0: 0.0,
-    }
-}
-
+/// How surfaces and shadows look, for the shaders.
 pub(crate) fn pack_shading(
     settings: &Settings,
     scene: &SceneSpace,

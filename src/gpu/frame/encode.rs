@@ -13,9 +13,9 @@ use crate::gpu::light::backproject::{Schedule, backproject};
 use crate::gpu::light::march::{Sheets, march};
 use crate::gpu::light::raycast::raycast;
 use crate::gpu::output::display::display;
-use crate::gpu::resources::listed_bricks::listed;
 use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::scatter::light::LightScatter;
+use crate::gpu::volume::listed_bricks::listed;
 use crate::gpu::volume::transfer_tables::EVERYWHERE;
 use crate::gpu::volume::{Gpu, gradients, prefilter};
 use crate::plan::reverse_reach;
@@ -48,6 +48,7 @@ impl Job<'_> {
             Step::Floor(rows) => {
                 self.report.runs.floor += 1;
                 let target = self.targets.get(self.role);
+                let (picture, floor) = (&target.light.value.plane.view, &target.floor.value.view);
                 let gpu = Gpu::new(self.tools, volume);
                 let inputs = floor::FloorInputs {
                     tables: &self.loaded.value.tables.value,
@@ -56,7 +57,7 @@ impl Job<'_> {
                     settings: &self.request.settings,
                     options: &self.options,
                 };
-                floor::draw(gpu, inputs, target, rows.clone(), encoder)
+                floor::draw(gpu, inputs, picture, floor, rows.clone(), encoder)
             }
             Step::Display => {
                 self.report.runs.display += 1;
@@ -118,7 +119,7 @@ impl Job<'_> {
         sheets.min_transmittance = self.options.min_transmittance;
         // A volume as pictures have it serves them, too.
         sheets.preview = self.options.preview && build.is_coarse;
-        let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + sheets.bytes();
+        let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + sheets.ring.bytes();
         let scatter = match &self.scattering {
             Some(scattering) if build.scatters => {
                 let read = build.read.as_ref().filter(|_| skips);
@@ -226,7 +227,7 @@ impl Job<'_> {
             _ => backproject(gpu, shadows, geometry, (sheets, schedule), light, slabs, part, encoder)?,
         }
         if ends_view {
-            self.tools.pool.leave_sheets(current.sheets);
+            self.tools.pool.leave_ring(current.sheets.ring);
         } else {
             build.current = Some(current);
         }
@@ -267,7 +268,8 @@ impl Job<'_> {
         let lights = inputs(&self.lit, &self.slots, loaded);
         let list: Vec<_> = target.value.filled.bricks().map(listed).collect();
         let gpu = Gpu::new(self.tools, &loaded.volume);
-        target.value.fill(gpu, pass, &lights, &list[bricks.clone()], encoder)
+        let shading = (pass.uniform(), pass.shading_variant());
+        target.value.fill(gpu, shading, &lights, &list[bricks.clone()], encoder)
     }
 
     /// Views of the light volumes that the picture looks up, in the order of its lights.

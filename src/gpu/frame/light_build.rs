@@ -5,11 +5,11 @@ use crate::gpu::light::backproject::Schedule;
 use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets};
 use crate::gpu::light::raycast::BRICKS_PER_STEP;
 use crate::gpu::light::volume::{LightVolume, read_bricks};
-use crate::gpu::resources::listed_bricks::{Listed, listed};
 use crate::gpu::resources::part::Part;
 use crate::gpu::scatter::eye::SLABS_PER_STEP;
 use crate::gpu::scatter::light::LightScatter;
 use crate::gpu::volume::GpuVolume;
+use crate::gpu::volume::listed_bricks::{Listed, listed};
 use crate::model::{Resolution, SceneLight, ShadowAlgorithm, Shadows};
 use crate::plan::{BrickSet, LightView, Request, light_views, reverse_reach};
 

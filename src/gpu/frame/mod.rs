@@ -2,6 +2,7 @@
 
 pub(super) mod encode;
 pub(super) mod first_look;
+pub(super) mod fit;
 pub(super) mod job;
 pub(super) mod light_build;
 pub(super) mod light_cache;

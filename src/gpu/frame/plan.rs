@@ -9,8 +9,9 @@ use super::report::Report;
 use super::step::{Product, Step};
 use super::targets::{Role, shown_key};
 use crate::data::Dataset;
-use crate::gpu::eye::gather::{EyePass, LightInput};
+use crate::gpu::eye::gather::EyePass;
 use crate::gpu::light::combine;
+use crate::gpu::light::packed::LightInput;
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::output::target::Shape;
 use crate::gpu::resources::cached::Cached;
@@ -88,7 +89,7 @@ impl Renderer {
                 self.tools.pool.forget_groups();
             }
             if placed.builds.is_empty() {
-                self.tools.pool.drop_sheets();
+                self.tools.pool.drop_ring();
             }
             keys.eye = EyeKey::of(&request, options, &placed.keys, keys.combined.as_ref());
             keys.floor = FloorKey::of(&request, &keys.eye);

@@ -8,7 +8,7 @@ use crate::gpu::eye::gather::GatherVariant;
 use crate::gpu::light::backproject::BackprojectVariant;
 use crate::gpu::light::march::MarchVariant;
 use crate::gpu::output::display::DisplayVariant;
-use crate::gpu::resources::variant::{LightCount, Only, Variant};
+use crate::gpu::pipelines::variant::{LightCount, Only, Variant};
 use crate::gpu::{GpuError, ShaderLibrary};
 use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows};
 

@@ -7,13 +7,13 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::march::Sheets;
 use super::volume::LightVolume;
 use crate::data::BRICK_EDGE;
-use crate::gpu::resources::binding::{buffer, sampler, view_of};
-use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::pipelines::uniforms::{self, rows};
+use crate::gpu::pipelines::variant::{Constants, Reconstruction, Variant, flag};
 use crate::gpu::resources::part::Part;
 use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms::{self, rows};
-use crate::gpu::resources::variant::{Constants, Reconstruction, Variant, flag};
 use crate::gpu::volume::Gpu;
+use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::EVERYWHERE;
 use crate::gpu::{Context, GpuError};
 use crate::math::SceneSpace;
@@ -176,7 +176,7 @@ pub(crate) fn backproject(
         end: slabs.end,
         layers: sheets.layers,
         bricks: bricks.len() as u32,
-        ring_scale: [sheets.ring.width(), sheets.ring.height()].map(|n| 1.0 / n as f32),
+        ring_scale: [sheets.ring.texture.width(), sheets.ring.texture.height()].map(|n| 1.0 / n as f32),
         pad0: 0.0,
         pad1: 0.0,
     };
@@ -189,7 +189,7 @@ pub(crate) fn backproject(
         &[
             buffer("bound_view", &uniform),
             buffer("bricks", &list),
-            view_of("ring", &sheets.ring_view),
+            view_of("ring", &sheets.ring.view),
             sampler("ring_sampler", &volume.clamped),
             view_of("attenuation", &light.view),
         ],

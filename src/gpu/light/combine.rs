@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::volume::{LightVolume, light_bind_group};
-use crate::gpu::eye::gather::{EyePass, LightInput, ShadingVariant};
-use crate::gpu::resources::binding::{buffer, view_of};
-use crate::gpu::resources::listed_bricks::{self, Listed};
+use super::packed::{LightInput, light_bind_group};
+use super::volume::LightVolume;
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::variant::{Constants, Variant};
+use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError};
 use crate::plan::CellSet;
@@ -67,11 +67,11 @@ impl CombinedLight {
         8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
 
-    /// Fills the listed bricks from the light volumes that `pass` shades with.
+    /// Fills the listed bricks from the volumes of some lights, which are those of `eye` and `shading`.
     pub(crate) fn fill(
         &self,
         gpu: Gpu<'_>,
-        pass: &EyePass,
+        (eye, shading): (uniforms::Eye, ShadingVariant),
         lights: &[LightInput<'_>],
         bricks: &[Listed],
         encoder: &mut wgpu::CommandEncoder,
@@ -82,8 +82,8 @@ impl CombinedLight {
         let attenuation: Vec<_> =
             lights.iter().filter_map(|input| input.volume).map(|volume| &volume.view).collect();
         let Gpu { shaders, .. } = gpu;
-        let pipeline = shaders.pipeline(&CombineVariant(pass.shading_variant()))?;
-        let eye = gpu.uniform("Combine::eye", pass.uniform());
+        let pipeline = shaders.pipeline(&CombineVariant(shading))?;
+        let eye = gpu.uniform("Combine::eye", eye);
         let uniform = uniforms::Combine {
             dims: self.dims.map(|n| n as u32),
             bricks: bricks.len() as u32,

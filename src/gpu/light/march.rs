@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use crate::gpu::context::shader::ring_format;
-use crate::gpu::resources::binding::{Named, buffer, view_of};
-use crate::gpu::resources::listed_bricks::single_workgroups;
-use crate::gpu::resources::pass;
-use crate::gpu::resources::tools::Tools;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::variant::{
+use crate::gpu::pipelines::binding::{Named, buffer, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{
     Constants, Reconstruction, Variant, classification_constant, deposit_constant, flag, is_cut,
 };
+use crate::gpu::resources::pass;
+use crate::gpu::resources::ring::Ring;
+use crate::gpu::resources::tools::Tools;
+use crate::gpu::volume::listed_bricks::single_workgroups;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
@@ -27,11 +27,6 @@ const TILE_ROOM: u64 = 64 << 10;
 /// Columns and rows of the ring come in so many, because sheets get larger and smaller as the light moves.
 const ROOM: u32 = 32;
 
-/// A ring has at most so many times the texels that are needed, or [`SMALL_RING`].
-const MOST_ROOM: u64 = 2;
-/// Texels of a ring that is not worth making smaller, 8 MiB: for coarse previews and small volumes.
-const SMALL_RING: u64 = 1 << 20;
-
 /// The sheets of one view of a light: a ring of layers through which the slabs stream.
 #[derive(Debug)]
 pub(crate) struct Sheets {
@@ -43,11 +38,7 @@ pub(crate) struct Sheets {
     pub min_transmittance: f32,
     /// For a preview.
     pub preview: bool,
-    /// Deposited transmittance, four sheets in a texel.
-    pub ring: wgpu::Texture,
-    /// A view of all layers of the ring.
-    pub ring_view: wgpu::TextureView,
-    transmittance: wgpu::Buffer,
+    pub ring: Ring,
     /// Cells beyond those that the transfer functions show whose sheets are read.
     pub reach: i32,
 }
@@ -58,7 +49,7 @@ impl Sheets {
     ///
     /// Sheets are read up to `reach` cells from what either transfer function shows.
     pub(crate) fn new(tools: &Tools, view: &LightView, chunk: u32, reach: i32) -> Result<Self, GpuError> {
-        let Tools { context, pool, .. } = tools;
+        let pool = &tools.pool;
         let frame = &view.frame;
         // Radius 2 on both sides of a voxel, rounded outwards, and one for the quadrature points; the first
         // of them may be the last of its texel.
@@ -66,62 +57,19 @@ impl Sheets {
         let chunk = chunk.min(frame.slab_count).next_multiple_of(SLABS_PER_TEXEL).max(SLABS_PER_TEXEL);
         let layers = chunk / SLABS_PER_TEXEL + kept;
         let needed = [frame.size[0].next_multiple_of(ROOM), frame.size[1].next_multiple_of(ROOM), layers];
-        let min_transmittance = RenderOptions::default().min_transmittance;
-        let size = match pool.take_sheets().map(|known| known.or_larger(needed)) {
-            Some(Ok(known)) => return Ok(Self { chunk, reach, min_transmittance, preview: false, ..known }),
-            Some(Err(larger)) => larger,
-            None => needed,
+        let ring = match pool.take_ring().map(|known| known.or_larger(needed)) {
+            Some(Ok(known)) => known,
+            Some(Err(larger)) => Self::make_ring(tools, larger)?,
+            None => Self::make_ring(tools, needed)?,
         };
-        pool.made_sheets();
-        let [width, height, layers] = size;
-        let ring = context.texture(&wgpu::TextureDescriptor {
-            label: Some("Sheets::ring"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: ring_format(context.storage_format),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        })?;
-        let transmittance = context.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("Sheets::transmittance"),
-            size: u64::from(width) * u64::from(height) * 4,
-            usage: wgpu::BufferUsages::STORAGE,
-            mapped_at_creation: false,
-        });
-        Ok(Self {
-            layers,
-            chunk,
-            min_transmittance,
-            preview: false,
-            // An array even where it has one layer.
-            ring_view: ring.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                ..Default::default()
-            }),
-            ring,
-            transmittance,
-            reach,
-        })
+        let layers = ring.texture.depth_or_array_layers();
+        let min_transmittance = RenderOptions::default().min_transmittance;
+        Ok(Self { layers, chunk, min_transmittance, preview: false, ring, reach })
     }
 
-    /// These sheets, if so many columns, rows and layers fit and are not much less; otherwise the size of sheets to
-    /// take their place, which hold both if they can.
-    fn or_larger(self, needed: [u32; 3]) -> Result<Self, [u32; 3]> {
-        let size = self.ring.size();
-        let held = [size.width, size.height, size.depth_or_array_layers];
-        let texels = |[a, b, c]: [u32; 3]| u64::from(a) * u64::from(b) * u64::from(c);
-        let both = [0, 1, 2].map(|axis| held[axis].max(needed[axis]));
-        if texels(both) > (MOST_ROOM * texels(needed)).max(SMALL_RING) {
-            Err(needed)
-        } else if both == held {
-            Ok(self)
-        } else {
-            Err(both)
-        }
+    fn make_ring(Tools { context, pool, .. }: &Tools, size: [u32; 3]) -> Result<Ring, GpuError> {
+        pool.made_ring();
+        Ring::new(context, size)
     }
 
     /// What the passes that march bind to group 0.
@@ -135,17 +83,9 @@ impl Sheets {
             buffer("bound_march", uniform),
             buffer("table", table),
             view_of("distances", distances),
-            buffer("transmittance", &self.transmittance),
-            view_of("ring", &self.ring_view),
+            buffer("transmittance", &self.ring.transmittance),
+            view_of("ring", &self.ring.view),
         ]
-    }
-
-    /// Bytes of the ring and of the running transmittance.
-    pub(crate) fn bytes(&self) -> u64 {
-        let size = self.ring.size();
-        let pixels = u64::from(size.width) * u64::from(size.height);
-        pixels
-            * (4 + u64::from(self.layers) * u64::from(self.ring.format().block_copy_size(None).unwrap_or(8)))
     }
 }
 

@@ -6,5 +6,6 @@
 pub(super) mod backproject;
 pub(super) mod combine;
 pub(super) mod march;
+pub(super) mod packed;
 pub(super) mod raycast;
 pub(super) mod volume;

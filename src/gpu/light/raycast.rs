@@ -1,12 +1,12 @@
 //! Fills a light volume by a ray from every voxel to the light.
 
+use super::packed::pack_light;
 use super::volume::LightVolume;
-use crate::gpu::eye::gather::pack_light;
-use crate::gpu::resources::binding::{buffer, view_of};
-use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{Constants, Reconstruction, Variant, deposit_constant, flag, is_cut};
 use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::variant::{Constants, Reconstruction, Variant, deposit_constant, flag, is_cut};
+use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};

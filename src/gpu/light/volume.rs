@@ -4,11 +4,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::data::BRICK_EDGE;
-use crate::gpu::resources::binding::{Named, Pipeline, view_of};
-use crate::gpu::resources::layouts::ATTENUATION;
-use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::pipelines::binding::{Named, view_of};
+use crate::gpu::pipelines::variant::Only;
 use crate::gpu::resources::pass;
-use crate::gpu::resources::variant::Only;
+use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::{Gpu, GpuVolume, texture_3d};
 use crate::gpu::{Context, GpuError};
 use crate::model::Precision;
@@ -160,17 +159,6 @@ pub(crate) fn attenuation_texture(
             | wgpu::TextureUsages::COPY_SRC
             | wgpu::TextureUsages::COPY_DST,
     ))
-}
-
-/// Bind group 2 of the passes that shade: the light volumes, in the order of their lights.
-pub(crate) fn light_bind_group(
-    gpu: Gpu<'_>,
-    pipeline: &Pipeline,
-    attenuation: &[&wgpu::TextureView],
-) -> wgpu::BindGroup {
-    let of_light = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
-    let views: Vec<_> = (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect();
-    gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
 }
 
 /// The data bricks whose scattered sheets are splatted back into `filled`: within the reverse kernel of

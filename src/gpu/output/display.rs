@@ -1,11 +1,11 @@
 //! The display pass: the mean of a pixel's samples, tone map, background and sRGB.
 
 use super::target::{Shape, Target};
-use crate::gpu::resources::binding::{buffer, view_of};
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{Constants, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::tools::Tools;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::variant::{Constants, Variant};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Depth, Output, ToneMap};
 

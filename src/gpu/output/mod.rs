@@ -3,6 +3,5 @@
 pub(super) mod display;
 pub(super) mod distance;
 pub(super) mod light_slice;
-pub(super) mod painter;
 pub(super) mod target;
 pub(super) mod window;

@@ -1,7 +1,7 @@
 //! Pictures in the window, and what lies under its panels: drawn into a render pass of the window's own device.
 
 use crate::gpu::GpuError;
-use crate::gpu::context::shader::ShaderLibrary;
+use crate::gpu::pipelines::shader::ShaderLibrary;
 
 /// What draws them, for a target of one format.
 #[derive(Debug, Clone)]

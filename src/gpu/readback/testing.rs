@@ -92,8 +92,8 @@ impl Renderer {
         }
         self.context().queue.submit([encoder.finish()]);
         // Four slabs to a texel, and room beside the sheets.
-        let texels = read_floats(self.context(), &sheets.ring)?;
-        let (columns, rows) = (sheets.ring.width() as usize, sheets.ring.height() as usize);
+        let texels = read_floats(self.context(), &sheets.ring.texture)?;
+        let (columns, rows) = (sheets.ring.texture.width() as usize, sheets.ring.texture.height() as usize);
         let [width, height] = geometry.frame.size.map(|n| n as usize);
         let texels = texels.as_slice();
         let of_slab = |k: usize| {

@@ -1,7 +1,7 @@
 //! What every compute pass is made of: bind groups, and a dispatch.
 
-use super::binding::{Named, Pipeline};
 use crate::gpu::Context;
+use crate::gpu::pipelines::binding::{Named, Pipeline};
 
 /// Binds resources to a group of a pipeline.
 pub(crate) fn bind(

@@ -1,13 +1,13 @@
-//! What one picture leaves for the next: small buffers, bind groups and the sheets of light. While a light or
+//! What one picture leaves for the next: small buffers, bind groups and a ring of sheets. While a light or
 //! the camera is dragged, nothing is made anew.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
-use super::binding::{Named, Pipeline};
 use super::pass;
+use super::ring::Ring;
 use crate::gpu::Context;
-use crate::gpu::light::march::Sheets;
+use crate::gpu::pipelines::binding::{Named, Pipeline};
 
 /// Bind groups that are kept at most. What they bind is as many as buffers and textures: a few dozen.
 const MOST_GROUPS: usize = 1024;
@@ -15,7 +15,7 @@ const MOST_GROUPS: usize = 1024;
 /// Smallest buffer; sizes are powers of two, so that lists of changing lengths find one.
 const SMALLEST_BUFFER: u64 = 256;
 
-/// Buffers, bind groups and sheets of one renderer.
+/// Buffers, bind groups and a ring of sheets of one renderer.
 #[derive(Debug, Default)]
 pub(crate) struct ResourcePool(RefCell<Inner>);
 
@@ -24,9 +24,9 @@ struct Inner {
     /// By label, size and usage.
     shelves: BTreeMap<(&'static str, u64, u32), Shelf>,
     groups: HashMap<GroupKey, wgpu::BindGroup>,
-    sheets: Option<Sheets>,
-    /// Groups may hold on to sheets.
-    binds_sheets: bool,
+    ring: Option<Ring>,
+    /// Groups may hold on to a ring.
+    binds_ring: bool,
     made: u64,
 }
 
@@ -83,7 +83,7 @@ impl ResourcePool {
         let inner = &mut *self.0.borrow_mut();
         inner.shelves.clear();
         inner.groups.clear();
-        inner.sheets = None;
+        inner.ring = None;
     }
 
     /// A buffer that begins with `contents`, for one submission. It may be longer.
@@ -151,39 +151,39 @@ impl ResourcePool {
         kept.clone()
     }
 
-    /// The sheets that were left behind.
-    pub(crate) fn take_sheets(&self) -> Option<Sheets> {
-        self.0.borrow_mut().sheets.take()
+    /// The ring of sheets that was left behind.
+    pub(crate) fn take_ring(&self) -> Option<Ring> {
+        self.0.borrow_mut().ring.take()
     }
 
-    /// Leaves sheets to the next light volume, unless larger ones are there.
-    pub(crate) fn leave_sheets(&self, sheets: Sheets) {
+    /// Leaves a ring of sheets to the next light volume, unless a larger one is there.
+    pub(crate) fn leave_ring(&self, ring: Ring) {
         let inner = &mut *self.0.borrow_mut();
-        if inner.sheets.as_ref().is_none_or(|known| known.bytes() < sheets.bytes()) {
-            inner.sheets = Some(sheets);
+        if inner.ring.as_ref().is_none_or(|known| known.bytes() < ring.bytes()) {
+            inner.ring = Some(ring);
         }
     }
 
-    /// Takes note that sheets are made: groups that bind those before would keep them alive.
-    pub(crate) fn made_sheets(&self) {
+    /// Takes note that a ring is made: groups that bind the one before would keep it alive.
+    pub(crate) fn made_ring(&self) {
         let inner = &mut *self.0.borrow_mut();
         inner.made += 1;
         inner.groups.clear();
-        inner.binds_sheets = true;
+        inner.binds_ring = true;
     }
 
-    /// Drops the sheets, because a picture fills no light volume.
-    pub(crate) fn drop_sheets(&self) {
+    /// Drops the ring, because a picture fills no light volume.
+    pub(crate) fn drop_ring(&self) {
         let inner = &mut *self.0.borrow_mut();
-        inner.sheets = None;
-        if std::mem::take(&mut inner.binds_sheets) {
+        inner.ring = None;
+        if std::mem::take(&mut inner.binds_ring) {
             inner.groups.clear();
         }
     }
 
-    /// Bytes of sheets that wait.
+    /// Bytes of the ring that waits.
     pub(crate) fn bytes(&self) -> u64 {
-        self.0.borrow().sheets.as_ref().map_or(0, Sheets::bytes)
+        self.0.borrow().ring.as_ref().map_or(0, Ring::bytes)
     }
 
     /// How many buffers and bind groups were made so far, and sheets.

@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use super::footprints::{Footprints, Inputs};
-use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums, widest_stretch};
+use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
-use crate::gpu::eye::gather::{EyePass, ShadingVariant};
-use crate::gpu::light::volume::light_bind_group;
-use crate::gpu::resources::binding::{buffer, sampler, view_of};
+use crate::gpu::eye::gather::EyePass;
+use crate::gpu::light::packed::light_bind_group;
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::pipelines::variant::{Constants, Only, ShadingVariant, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::resources::variant::{Constants, Only, Variant};
 use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
 use crate::gpu::{GpuError, RenderOptions};
@@ -224,15 +224,8 @@ pub(crate) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: 
     if !options.empty_space_skipping {
         return BrickSet::full(occupied.dims);
     }
-    let widest = widest_stretch(frame);
+    let widest = frame.widest_stretch();
     // A kernel's radius, at most √2 of it along a slanted axis, and a gradient's step of one pixel or voxel.
     let reach = (2.0 * std::f64::consts::SQRT_2 + 1.5) * widest + frame.slab / frame.voxel_edge;
     occupied.dilated((reach / BRICK_EDGE as f64).ceil() as usize)
-}
-
-/// Bricks beyond an occupied one whose samples a stretched kernel lets see it: brick ranges look three
-/// voxels beyond their brick.
-pub(crate) fn scatter_dilation(frame: &SheetFrame) -> i32 {
-    let widest = widest_stretch(frame);
-    ((2.0 * std::f64::consts::SQRT_2 * widest - 3.0).max(0.0) / BRICK_EDGE as f64).ceil() as i32
 }

@@ -5,13 +5,13 @@ use super::splat::{ScatterVariant, Scatterer};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::GpuError;
-use crate::gpu::eye::gather::{EyePass, ShadingVariant};
-use crate::gpu::light::volume::light_bind_group;
-use crate::gpu::resources::binding::{buffer, sampler};
+use crate::gpu::eye::gather::EyePass;
+use crate::gpu::light::packed::light_bind_group;
+use crate::gpu::pipelines::binding::{buffer, sampler};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::uniforms::Phase;
+use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::uniforms::Phase;
-use crate::gpu::resources::variant::{Constants, Variant};
 use crate::gpu::volume::Gpu;
 
 /// What tells one pipeline that composites footprints from another.

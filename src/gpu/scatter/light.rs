@@ -3,20 +3,20 @@
 
 use std::ops::Range;
 
-use super::eye::{scatter_dilation, splatted_bricks};
+use super::eye::splatted_bricks;
 use super::splat::{Scatterer, Splat, Splatting, sums};
 use super::voxels::Scattering;
 use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, march_uniform};
 use crate::gpu::light::volume::LightVolume;
-use crate::gpu::resources::binding::{buffer, view_of};
-use crate::gpu::resources::listed_bricks::{self, Listed};
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::variant::{Constants, Only, Variant, deposit_constant, flag, is_cut};
 use crate::gpu::resources::pass;
-use crate::gpu::resources::variant::{Constants, Only, Variant, deposit_constant, flag, is_cut};
 use crate::gpu::volume::Gpu;
+use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Classification, Deposit, SceneLight, Settings, SheetOrder};
-use crate::plan::{BrickSet, LightView};
+use crate::plan::{BrickSet, LightView, scatter_reach_bricks};
 
 /// What tells one pipeline of the march over scattered sheets from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -105,7 +105,7 @@ impl LightScatter {
                 ),
             light: sums(gpu.context, "LightScatter::light", nz, [nx, ny])?,
             weights: sums(gpu.context, "LightScatter::weights", nz, [nx, ny])?,
-            dilation: scatter_dilation(&view.frame),
+            dilation: scatter_reach_bricks(&view.frame),
             deposits: sums(gpu.context, "LightScatter::deposits", SLABS_PER_TEXEL, view.frame.size)?,
             divisor: target.divisor,
         })
@@ -177,7 +177,7 @@ impl LightScatter {
             0,
             &[
                 view_of("distances", &self.distances),
-                view_of("ring", &sheets.ring_view),
+                view_of("ring", &sheets.ring.view),
                 buffer("light", &self.light),
                 buffer("weights", &self.weights),
             ],

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use crate::data::BRICK_EDGE;
-use crate::gpu::resources::listed_bricks;
+use crate::gpu::volume::listed_bricks;
 use crate::plan::{SheetFrame, SliceOrder};
 
 /// For every slab the bricks whose voxels reach it, with where their voxels begin; lists start at the

@@ -6,12 +6,12 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::footprint_table::{RADIUS, footprint_table};
 use super::sheet_lists::{slab_lists, slice_lists};
 use super::voxels::{ScatterVoxels, Scattering};
-use crate::gpu::resources::binding::{Pipeline, buffer};
-use crate::gpu::resources::listed_bricks;
+use crate::gpu::pipelines::binding::{Pipeline, buffer};
+use crate::gpu::pipelines::uniforms::{self, rows};
+use crate::gpu::pipelines::variant::{Constants, Reconstruction, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms::{self, rows};
-use crate::gpu::resources::variant::{Constants, Reconstruction, Variant};
 use crate::gpu::volume::Gpu;
+use crate::gpu::volume::listed_bricks;
 use crate::gpu::volume::transfer_tables::Table;
 use crate::gpu::{Context, GpuError};
 use crate::model::{Kernel, Quadrature, SheetOrder};
@@ -146,7 +146,7 @@ impl Scatterer {
         let slices = (order != SheetOrder::ImageAligned).then(|| SliceOrder::new(frame, dims));
         let tabled = if slices.is_some() { round(kernel) } else { kernel };
         let half = half_extents(frame, &sheets_from_index, tabled);
-        let widest = widest_stretch(frame);
+        let widest = frame.widest_stretch();
         let (starts, listed) = match &slices {
             None => slab_lists(frame, &sheets_from_index, voxels.among(seen), half.z * widest),
             Some(slices) => slice_lists(slices, voxels.among(seen)),
@@ -246,7 +246,7 @@ impl Scatterer {
         let stretch = if self.slices.is_some() {
             self.widest
         } else {
-            stretch_at(&self.frame, f64::from(k)).max(least_stretch)
+            self.frame.stretch_at(f64::from(k)).max(least_stretch)
         };
         let pitch = self.frame.pitch_at(self.frame.depth_of(f64::from(k))) / self.frame.voxel_edge;
         let starts = &self.starts[k as usize..=k as usize + 1];
@@ -341,16 +341,6 @@ pub(crate) fn sums(
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     }))
-}
-
-/// How many times wider kernels are at slab `k` than in index space.
-pub(crate) fn stretch_at(frame: &SheetFrame, k: f64) -> f64 {
-    (frame.pitch_at(frame.depth_of(k)) / frame.voxel_edge).max(1.0)
-}
-
-/// The most that kernels of a frame are stretched.
-pub(crate) fn widest_stretch(frame: &SheetFrame) -> f64 {
-    stretch_at(frame, f64::from(frame.slab_count)).max(stretch_at(frame, 0.0))
 }
 
 /// The round kernel that stands for one: that of the same variance, ⅓ of the other two.

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::GpuVolume;
 use super::prefilter::{level_of, uniform_and_list};
-use crate::gpu::resources::binding::{buffer, view_of};
-use crate::gpu::resources::listed_bricks;
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::variant::Only;
 use crate::gpu::resources::pass;
-use crate::gpu::resources::variant::Only;
+use crate::gpu::volume::listed_bricks;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 
 /// Most bytes that gradients may take: 512³ voxels need 1.29 GB, with coarser levels. Beyond that, a

@@ -1,7 +1,7 @@
 //! The volume on the GPU: density with a border of nothing, and the pyramid made from it.
 
-pub(super) mod fit;
 pub(super) mod gradients;
+pub(super) mod listed_bricks;
 pub(super) mod prefilter;
 pub(super) mod transfer_tables;
 
@@ -11,10 +11,10 @@ use half::f16;
 
 use super::resources::pool::ResourcePool;
 use super::resources::tools::Tools;
-use super::resources::uniforms::Grid;
 use super::{Context, GpuError};
 use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
-use crate::gpu::resources::binding::{Named, Pipeline, buffer, sampler, view_of};
+use crate::gpu::pipelines::binding::{Named, Pipeline, buffer, sampler, view_of};
+use crate::gpu::pipelines::uniforms::Grid;
 use crate::math::SceneSpace;
 use crate::plan::MAX_STRETCH_LEVEL;
 

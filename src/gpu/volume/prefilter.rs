@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::GpuVolume;
 use crate::data::Bricks;
-use crate::gpu::resources::binding::{buffer, sampler, view_of};
-use crate::gpu::resources::listed_bricks;
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::Only;
 use crate::gpu::resources::pass;
-use crate::gpu::resources::uniforms;
-use crate::gpu::resources::variant::Only;
+use crate::gpu::volume::listed_bricks;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 use crate::plan::BrickSet;
 

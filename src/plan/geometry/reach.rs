@@ -1,5 +1,6 @@
 //! How far, in cells of 2³ voxels, samples and lookups reach beyond their own cell.
 
+use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
 use crate::model::{Quadrature, Shadows};
 use crate::plan::{LightView, SheetFrame};
@@ -76,6 +77,13 @@ pub fn reverse_reach_voxels(views: &[LightView], scene: &SceneSpace) -> f64 {
         })
         .fold(0.0, f64::max);
     2.0 * widest / scene.smallest_edge() + 1.0
+}
+
+/// How far, in bricks beyond an occupied one, samples of scattered sheets see it whose kernel is stretched: brick
+/// ranges look three voxels beyond their brick.
+pub fn scatter_reach_bricks(frame: &SheetFrame) -> i32 {
+    let widest = frame.widest_stretch();
+    ((2.0 * std::f64::consts::SQRT_2 * widest - 3.0).max(0.0) / BRICK_EDGE as f64).ceil() as i32
 }
 
 /// Cells between those of two points that are so many voxels apart, at most.

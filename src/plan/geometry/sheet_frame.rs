@@ -160,6 +160,16 @@ impl SheetFrame {
         (steps(self.pitch), steps(self.slab))
     }
 
+    /// How many times wider kernels are at slab `k` than in index space.
+    pub fn stretch_at(&self, k: f64) -> f64 {
+        (self.pitch_at(self.depth_of(k)) / self.voxel_edge).max(1.0)
+    }
+
+    /// The most that kernels are stretched anywhere, as [`Self::stretch_at`] says.
+    pub fn widest_stretch(&self) -> f64 {
+        self.stretch_at(f64::from(self.slab_count)).max(self.stretch_at(0.0))
+    }
+
     /// The largest [`Self::stretch_level`] of any slab.
     pub fn max_stretch_level(&self) -> f64 {
         self.max_stretch_level_of(0..self.slab_count)

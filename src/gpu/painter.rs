@@ -1,6 +1,6 @@
 //! Finished pictures in render passes of a program that the renderer is a part of, without a way through host memory.
 
-use crate::gpu::context::shader::ShaderLibrary;
+use crate::gpu::pipelines::shader::ShaderLibrary;
 use crate::gpu::{Context, GpuError, Renderer};
 
 /// Draws what a renderer shows into render passes with a colour target of one format, without depth and with one

@@ -91,6 +91,27 @@ impl LightCount {
     }
 }
 
+/// What tells pipelines apart of passes that shade.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct ShadingVariant {
+    pub lights: LightCount,
+    /// The diffuse light of shadowed lights is in one volume.
+    pub is_combined: bool,
+    pub is_cut: bool,
+}
+
+impl ShadingVariant {
+    /// The override constants of shading.
+    pub(crate) fn constants(self) -> Constants {
+        let mut constants = self.lights.constants();
+        constants.push(flag("CUT", self.is_cut));
+        if self.is_combined {
+            constants.push(("COMBINED", 1.0));
+        }
+        constants
+    }
+}
+
 /// A constant that is on or off.
 pub(crate) fn flag(name: &'static str, on: bool) -> (&'static str, f64) {
     (name, f64::from(u8::from(on)))

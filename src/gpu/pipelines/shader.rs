@@ -4,21 +4,13 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::binding::{Group, Pipeline, Slot, ring_format};
+use super::layouts::LAYOUTS;
 use super::pipeline_cache::PipelineCache;
 use super::shader_files::SHADERS;
+use super::variant::Variant;
 use crate::export::ExportError;
-use crate::gpu::resources::binding::{Group, Pipeline, Slot};
-use crate::gpu::resources::layouts::LAYOUTS;
-use crate::gpu::resources::variant::Variant;
 use crate::gpu::{Context, GpuError};
-
-/// The format of the ring of sheets where single channels are stored in `format`.
-pub(crate) fn ring_format(format: wgpu::TextureFormat) -> wgpu::TextureFormat {
-    match format {
-        wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rgba32Float,
-        _ => wgpu::TextureFormat::Rgba16Float,
-    }
-}
 
 /// Joins sources and makes pipelines, each once.
 #[derive(Debug, Clone)]

@@ -1,7 +1,6 @@
 //! Bindings by name: what a shader declares, and what is bound to it.
 
 use crate::gpu::Context;
-use crate::gpu::context::shader::ring_format;
 
 /// A binding of a shader: its number in its group, its name there, and what may be bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -34,6 +33,14 @@ pub(crate) enum Kind {
 pub(crate) enum Access {
     Read,
     ReadWrite,
+}
+
+/// The format of the ring of sheets where single channels are stored in `storage`.
+pub(crate) fn ring_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
+    match storage {
+        wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rgba32Float,
+        _ => wgpu::TextureFormat::Rgba16Float,
+    }
 }
 
 /// How the texels of a texture lie.

@@ -1,0 +1,62 @@
+//! Lights as the passes that shade take them: packed for uniforms, and their volumes bound.
+
+use super::volume::LightVolume;
+use crate::gpu::pipelines::binding::{Pipeline, view_of};
+use crate::gpu::pipelines::layouts::ATTENUATION;
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::volume::Gpu;
+use crate::math::SceneSpace;
+use crate::model::{LightKind, SceneLight, Settings};
+use crate::plan::LitLight;
+
+/// A light, and the volume that says how much of it is left.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LightInput<'a> {
+    pub lit: &'a LitLight,
+    /// `None` where nothing attenuates it, or rays say how much.
+    pub volume: Option<&'a LightVolume>,
+}
+
+/// A light for the shaders.
+pub(crate) fn pack_light(
+    light: &SceneLight,
+    volume: Option<&LightVolume>,
+    scene: &SceneSpace,
+    settings: &Settings,
+) -> uniforms::Light {
+    // Balance makes up for the light that shadows take away; without shadows there is none.
+    let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
+    let cone = light.cone();
+    let linear = |c: f32| crate::model::linear_from_srgb(f64::from(c));
+    let to_index = &scene.index_from_scene;
+    let (place, place_in_index, perspective) = match light.kind {
+        LightKind::Parallel => (light.direction(), to_index.transform_vector3(light.direction()), 0.0),
+        LightKind::Perspective => {
+            let position = light.position.into();
+            (position, to_index.transform_point3(position), 1.0)
+        }
+    };
+    uniforms::Light {
+        place: place.as_vec3().into(),
+        perspective,
+        color: light.color.map(|c| (linear(c) * light.intensity * balance) as f32),
+        extinction_scale: light.density_scale as f32,
+        lookup: volume.map_or([0.0; 3], |volume| volume.dims.map(|n| 1.0 / (n * volume.divisor) as f32)),
+        hood_inner: cone.cos_inner as f32,
+        hood_axis: cone.axis.as_vec3().into(),
+        hood_outer: cone.cos_outer as f32,
+        place_in_index: place_in_index.as_vec3().into(),
+        pad0: 0.0,
+    }
+}
+
+/// Bind group 2 of the passes that shade: the light volumes, in the order of their lights.
+pub(crate) fn light_bind_group(
+    gpu: Gpu<'_>,
+    pipeline: &Pipeline,
+    attenuation: &[&wgpu::TextureView],
+) -> wgpu::BindGroup {
+    let of_light = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
+    let views: Vec<_> = (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect();
+    gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
+}

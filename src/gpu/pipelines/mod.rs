@@ -1,0 +1,17 @@
+//! Shaders and what is made of them: their texts, pipelines and variants, bindings by name, uniforms.
+
+pub(super) mod binding;
+pub(super) mod layouts;
+mod pipeline_cache;
+pub(super) mod shader;
+pub(super) mod shader_files;
+#[cfg_attr(
+    not(feature = "testing"),
+    expect(
+        unreachable_pub,
+        clippy::struct_field_names,
+        reason = "the tests that compare them with the shaders' reach them; names are those of the shaders"
+    )
+)]
+pub mod uniforms;
+pub(super) mod variant;
