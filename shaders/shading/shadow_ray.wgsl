@@ -24,7 +24,8 @@ fn shadow_ray(
     frame.first_depth = select(0.0, 0.5 * ray_step, DEPOSIT_FRONT);
     frame.slab = ray_step;
     frame.voxel_edge = 1.0;
-    frame.slab_count = u32(clamp((reach - frame.first_depth) / ray_step + 0.5, 0.0, 65535.0));
+    // Whole slabs; what is left of the way after them is a shorter one.
+    frame.slab_count = u32(clamp((reach - frame.first_depth) / ray_step, 0.0, 65535.0));
     let ray = Ray(p, direction, 1.0);
     let span = span_within(cut, ray);
     let inside = slabs_within(frame, span, slabs_inside(frame, ray));
@@ -53,6 +54,13 @@ fn shadow_ray(
             break;
         }
         k += 1;
+    }
+    frame.first_depth += f32(frame.slab_count) * ray_step;
+    let end = p + direction * reach;
+    if (frame.first_depth < reach && all(end > vec3f(-2.0)) && all(end < grid.dims + 1.0)) {
+        frame.slab = reach - frame.first_depth;
+        let share = share_that_shades(cut, p + direction * depth_of(frame, 0.0));
+        depth += light_extinction(slab_density(frame, ray, 0.0)) * share * frame.slab * scale;
     }
     return exp(-depth);
 }

@@ -60,23 +60,27 @@ impl<'r> ShadowRays<'r> {
         // Beyond the grid is nothing.
         let across = 2.0 * reference.scene.support_radius()
             + (place.length() - reference.scene.support_radius()).max(0.0);
-        let count = (reach.min(across) / step - first + 1.0).floor().max(0.0) as u32;
+        let end = reach.min(across);
+        let begin_of = |k: u32| (f64::from(k) + first - 0.5) * step;
+        // The last piece of the way is as long as what is left of it.
+        let count = (end / step - first + 0.5).ceil().max(0.0) as u32;
         let support = reference.scene.support_in_index();
         let optical_depth: f64 = (0..count)
             .map(|k| {
-                let middle = (f64::from(k) + first) * step;
+                let length = step.min(end - begin_of(k));
+                let middle = begin_of(k) + 0.5 * length;
                 let at = point + forward * middle;
                 if !(at.cmpge(support.min).all() && at.cmple(support.max).all()) {
                     return 0.0;
                 }
                 let offsets = self.quadrature.offsets();
                 let density = |offset: &f64| {
-                    let at = point + forward * (middle + offset * step) + reference.kernel_shift();
+                    let at = point + forward * (middle + offset * length) + reference.kernel_shift();
                     gather::density(reference, &self.profile, at, 0.0)
                 };
                 let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
                 let share = reference.share_that_shades(&self.remaining, at);
-                share * self.table.sample(density)[3] * step * self.light.density_scale
+                share * self.table.sample(density)[3] * length * self.light.density_scale
             })
             .sum();
         (-optical_depth).exp() * cone.share(-cone.axis.dot(towards))

@@ -1,7 +1,7 @@
 //! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Camera, Engine, Kernel, LightKind, Settings};
+use chiaroscuro::model::{Camera, Engine, Kernel, LightKind, Settings, ShadowAlgorithm};
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
@@ -34,19 +34,23 @@ fn disagree(from: &str, to: &str, fault: Fault) -> bool {
 fn disagree_with(engine: Engine, from: &str, to: &str, fault: Fault) -> bool {
     let mut settings = look();
     settings.sampling.engine = engine;
-    let n = if engine == Engine::Scatter { 28 } else { 40 };
+    disagree_in(&settings, if engine == Engine::Scatter { 28 } else { 40 }, from, to, fault)
+}
+
+/// The same with a look of its own, of a creature of n³ voxels.
+fn disagree_in(settings: &Settings, n: usize, from: &str, to: &str, fault: Fault) -> bool {
     let loaded = Dataset::new(scenes::creature(n, DVec3::ONE));
     let context = context();
     let shaders = ShaderLibrary::with_mutation(&context, from, to);
     let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { fault, rounding: Some(rounding), ..Options::default() };
-    let reference = Reference::new(loaded.volume(), &settings, options);
+    let reference = Reference::new(loaded.volume(), settings, options);
     let expected = reference.attenuations();
-    let found = attenuation(&mut renderer, &loaded, &settings, 0);
+    let found = attenuation(&mut renderer, &loaded, settings, 0);
     let values = &expected[0].as_ref().expect("the light casts shadows").values;
     let light = compare("light volume", &wide(&found), values, SAME_WEIGHTS);
-    let found = render(&mut renderer, &loaded, &settings, SIZE);
+    let found = render(&mut renderer, &loaded, settings, SIZE);
     let picture =
         compare("picture", &flat32(&found.light), &flat64(&reference.picture(SIZE, &expected)), SAME_WEIGHTS);
     light.is_err() || picture.is_err()
@@ -72,6 +76,18 @@ macro_rules! gpu_mutation {
             assert!(disagree($from, $to, Fault::None), "the comparison does not notice");
         }
     };
+}
+
+#[test]
+fn rays_that_end_a_step_before_the_light() {
+    let (from, to) =
+        ("depth += light_extinction(slab_density(frame, ray, 0.0)) * share * frame.slab * scale;", "");
+    in_shader("light/raycast.wgsl", from);
+    let mut settings = look();
+    settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+    settings.lights[0].position = [0.11, -0.12, 0.2];
+    assert!(!disagree_in(&settings, 40, "\u{0}", "", Fault::None));
+    assert!(disagree_in(&settings, 40, from, to, Fault::None), "the comparison does not notice");
 }
 
 gpu_mutation!(

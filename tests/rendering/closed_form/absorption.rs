@@ -1,7 +1,7 @@
 //! What homogeneous material absorbs: Beer–Lambert, and the opacity of chords.
 
 use chiaroscuro::gpu::Picture;
-use chiaroscuro::model::{Camera, Engine, LightKind, Quadrature, ShadowAlgorithm};
+use chiaroscuro::model::{Camera, Deposit, Engine, LightKind, Quadrature, ShadowAlgorithm};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
@@ -84,6 +84,43 @@ fn beer_lambert_by_rays() {
                 let error = (found / expected - 1.0).abs();
                 assert!(error <= RAY_BEER_LAMBERT, "μ {per_voxel}: {found} not {expected} at depth {depth}");
             }
+        }
+    }
+}
+
+/// Rays end where the light is: amid homogeneous material a near light falls as e^(−μ·distance), however the distance
+/// divides into steps.
+#[test]
+fn beer_lambert_by_rays_to_a_light_inside() {
+    let n = 48;
+    let loaded = Dataset::new(scenes::block(n, |v| v.iter().all(|c| (4..n - 4).contains(c))));
+    let middle = (n as f64 - 1.0) / 2.0;
+    let light = DVec3::new(25.3, 22.1, 24.45);
+    let place = (light - middle) * 2.0 / n as f64;
+    let mut renderer = renderer();
+    for (per_voxel, deposit) in
+        [(0.1, Deposit::SlabMean), (0.3, Deposit::SlabMean), (0.1, Deposit::Front), (0.3, Deposit::Front)]
+    {
+        let mut settings = base(Engine::Gather, per_voxel);
+        settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+        settings.shadows.deposit = deposit;
+        settings.lights = vec![scenes::light(LightKind::Perspective, place.into())];
+        let volume = attenuation(&mut renderer, &loaded, &settings, 0);
+        // As the paper has it, the half step before the first sample is not counted.
+        let missing = if deposit == Deposit::Front { 0.5 } else { 0.0 };
+        for at in (0..n * n * n).step_by(7) {
+            let voxel = DVec3::new((at % n) as f64, (at / n % n) as f64, (at / n / n) as f64);
+            let distance = voxel.distance(light);
+            if !(missing..=12.0).contains(&distance) {
+                continue;
+            }
+            let expected = (-per_voxel * (distance - missing)).exp();
+            let found = f64::from(volume[at]);
+            let error = (found / expected - 1.0).abs();
+            assert!(
+                error <= RAY_BEER_LAMBERT,
+                "μ {per_voxel}, {deposit:?}: {found} not {expected} at {distance} voxels"
+            );
         }
     }
 }

@@ -62,6 +62,39 @@ fn beer_lambert_by_rays_from_samples() {
     }
 }
 
+/// The same with a light inside of the material, at distances that are no whole number of steps.
+#[test]
+fn beer_lambert_by_rays_from_samples_to_a_light_inside() {
+    let n = 48;
+    let loaded = Dataset::new(scenes::block(n, |v| v.iter().all(|c| (4..n - 4).contains(c))));
+    let mut renderer = renderer();
+    for (per_voxel, distance) in [(0.1, 3.3), (0.3, 3.3), (0.1, 7.8), (0.3, 7.8)] {
+        let height = 2.0 * distance / n as f64;
+        let mut settings = Settings {
+            transfer: linear_extinction(40.0),
+            lighting: LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(per_voxel) },
+            opacity_unit: Length::Voxels(1.0),
+            lights: vec![scenes::light(LightKind::Perspective, [0.0, 0.0, height])],
+            camera: Camera { distance: 0.3, fov_y_deg: 4.0, ..straight(-90.0, 0.0) },
+            ..Settings::default()
+        };
+        settings.camera.projection = Projection::Perspective;
+        // The eye sees what is right before it.
+        settings.camera.target = [0.0, 0.3, 0.0];
+        isotropic(&mut settings);
+        settings.shadows.algorithm = ShadowAlgorithm::Direct;
+        settings.sampling.slab = 0.25;
+        let picture = render(&mut renderer, &loaded, &settings, [9, 9]);
+        let expected = (-per_voxel * distance).exp();
+        let found = f64::from(picture.light[9 * 4 + 4][0]);
+        let error = (found / expected - 1.0).abs();
+        assert!(
+            error <= DIRECT_BEER_LAMBERT,
+            "μ {per_voxel}: {found} not {expected} at {distance} voxels: {error}"
+        );
+    }
+}
+
 /// A half-plane one voxel thick hangs over a receiver that the eye sees from above, through the
 /// half-plane, which only light meets: the profile of the shadow's optical depth across the edge.
 fn shadow_profile(algorithm: ShadowAlgorithm, engine: Engine) -> Vec<f64> {
