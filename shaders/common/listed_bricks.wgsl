@@ -1,4 +1,4 @@
-// Passes over the light voxels of listed bricks (src/gpu/resources/listed_bricks.rs): two workgroups of
+// Passes over the light voxels of listed bricks (src/gpu/volume/listed_bricks.rs): two workgroups of
 // 8 × 8 × 4 to a brick of 8³, in rows of 16384 bricks because a dispatch has at most 65535 groups along an axis.
 // A listed brick is its coordinates, of ten bits each, and a bit for each of its 4³ cells that is meant.
 #import "common/sizes.wgsl"

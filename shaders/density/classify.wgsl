@@ -45,11 +45,23 @@ fn material_at(p: vec3f, level: f32) -> vec4f {
     return mix(material_by_kernel(p), blurred, level);
 }
 
-// The material of slab k where the ray crosses it.
-fn slab_material(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
-    if (!PRECLASSIFY) {
-        return classify(slab_density(frame, ray, k));
+// What a slab holds where a ray crosses it.
+struct SlabSample {
+    material: vec4f,
+    // 0 where voxels are classified.
+    density: f32,
+}
+
+fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
+    if (PRECLASSIFY) {
+        return SlabSample(spread_material(frame, ray, k), 0.0);
     }
+    let density = slab_density(frame, ray, k);
+    return SlabSample(classify(density), density);
+}
+
+// The material of classified voxels in slab k where the ray crosses it.
+fn spread_material(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
     let depth = depth_of(frame, k);
     let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
     var sum = material_at(ray.origin + ray.direction * (depth - offset), kernel_level(frame, depth - offset));
@@ -65,5 +77,5 @@ fn slab_extinction(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
     if (!PRECLASSIFY) {
         return classified_extinction(slab_density(frame, ray, k));
     }
-    return slab_material(frame, ray, k).a;
+    return spread_material(frame, ray, k).a;
 }

@@ -1,7 +1,13 @@
 // A baked transfer function: linear RGB and extinction per scene unit over densities 0 … 1.
 const TABLE_SIZE = 1024u;
 
-@group(0) @binding(1) var<storage, read> table: array<vec4f, 1024>;
+struct TransferTable {
+    entries: array<vec4f, 1024>,
+    // Where opacity rises with density, 1; where it falls, −1.
+    sides: array<f32, 1024>,
+}
+
+@group(0) @binding(1) var<storage, read> table: TransferTable;
 
 struct TableEntry {
     low: u32,
@@ -17,11 +23,21 @@ fn table_entry(density: f32) -> TableEntry {
 
 fn classify(density: f32) -> vec4f {
     let at = table_entry(density);
-    return mix(table[at.low], table[at.low + 1u], at.fraction);
+    return mix(table.entries[at.low], table.entries[at.low + 1u], at.fraction);
 }
 
 // The same without colour.
 fn classified_extinction(density: f32) -> f32 {
     let at = table_entry(density);
-    return mix(table[at.low].a, table[at.low + 1u].a, at.fraction);
+    return mix(table.entries[at.low].a, table.entries[at.low + 1u].a, at.fraction);
+}
+
+// The entry next to a density, where one will do.
+fn nearest_entry(density: f32) -> u32 {
+    return u32(clamp(density, 0.0, 1.0) * f32(TABLE_SIZE - 1u) + 0.5);
+}
+
+// To which side of a surface opacity falls: 1 where density falls, −1 where it rises, and between them amid a change.
+fn side_of(density: f32) -> f32 {
+    return table.sides[nearest_entry(density)];
 }

@@ -14,7 +14,7 @@
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
 // For rays to lights: the lighting transfer function, and in g the distance in cells to the nearest that
 // it makes attenuate light.
-@group(0) @binding(4) var<storage, read> lighting_table: array<vec4f, 1024>;
+@group(0) @binding(4) var<storage, read> lighting_table: TransferTable;
 @group(0) @binding(5) var light_distances: texture_3d<f32>;
 
 // Cast rays to the lights instead of looking into volumes (P §3.3).
@@ -29,14 +29,50 @@ override SHEET_GRADIENTS: bool = false;
 
 fn light_extinction(density: f32) -> f32 {
     let at = table_entry(density);
-    return mix(lighting_table[at.low].a, lighting_table[at.low + 1u].a, at.fraction);
+    return mix(lighting_table.entries[at.low].a, lighting_table.entries[at.low + 1u].a, at.fraction);
 }
 
 fn light_distance(cell: vec3f) -> i32 {
     return near(light_distances, cell).y;
 }
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
+// Steps of the near field (src/model/settings/shadows.rs), or none.
+override NEAR_STEPS: u32 = 0u;
+// Samples whose share in the picture is less look light up where they are: a few such shares make a step of 8 bits,
+// and light differs by a part of itself.
+const NEAR_LEAST = 1.0 / 128.0;
+
+// Light as a ray finds it close by, and as its volume knows it from there on: a volume blurs what lies within a voxel
+// or two, which is where a surface shades itself. The last step goes half a voxel of the light volume further, to where
+// the trilinear fetch sees little of what the ray has met already; no piece of the way is left out.
+fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
+    let forward = (light.place_in_index - surface.point * light.perspective) * towards.per_length;
+    var way = 0.0;
+    var depth = 0.0;
+    var step = select(NEAR_STEPS, 0u, weight > NEAR_LEAST);
+    loop {
+        if (step >= NEAR_STEPS) {
+            break;
+        }
+        let width = near_width(step) * eye.near_edge + select(0.0, eye.near_ahead, step + 1u == NEAR_STEPS);
+        let length = min(width, max(towards.distance - way, 0.0));
+        let p = surface.point + forward * (way + 0.5 * length);
+        let extinction = lighting_table.entries[nearest_entry(pyramid(p, surface.level))].a;
+        depth += extinction * share_that_shades(eye.shading_cut, p) * length;
+        way += length;
+        step += 1u;
+        if (step >= NEAR_STEPS) {
+            break;
+        }
+    }
+    let end = surface.point + forward * way;
+    return exp(-depth * light.extinction_scale) * looked_up(light, volume, end);
+}
+
+fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
+    if (!DIRECT && NEAR_STEPS > 0u) {
+        return near_light(light, volume, surface, towards, weight);
+    }
     let p = biased(light, surface, towards);
     if (!DIRECT) {
         return looked_up(light, volume, p);
@@ -69,7 +105,7 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
 }
 
 // The light from the material of slab k where the ray crosses it.
-fn shaded(ray: Ray, pixel: vec2u, k: i32, material: vec3f) -> vec3f {
+fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample, weight: f32) -> vec3f {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
     let level = kernel_level(eye.frame, depth);
@@ -85,8 +121,12 @@ fn shaded(ray: Ray, pixel: vec2u, k: i32, material: vec3f) -> vec3f {
         }
         slope = gradient_to_scene(eye.space, slope);
     }
-    slope += gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
-    return shade(p, slope, material);
+    var density = found.density;
+    if (PRECLASSIFY && ONE_SIDED) {
+        density = pyramid(p, level);
+    }
+    slope += face_slope(p, level, density);
+    return shade(Sampled(p, slope, density, level, weight), found.material.rgb);
 }
 
 // The next slab, from `first` on, in a cell that may show something; or one beyond the last.
@@ -107,28 +147,29 @@ fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
 }
 
 // What slab k shows where the ray crosses it.
-fn material_of(ray: Ray, span: vec2f, k: i32) -> vec4f {
-    let material = slab_material(eye.frame, ray, f32(k));
-    return vec4f(material.rgb, material.a * share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab));
+fn slab_seen(ray: Ray, span: vec2f, k: i32) -> SlabSample {
+    var found = slab_sample(eye.frame, ray, f32(k));
+    found.material.a *= share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab);
+    return found;
 }
 
 struct Sample {
     k: i32,
-    material: vec4f,
+    found: SlabSample,
 }
 
 // The next slab, from `first` on, that is worth sampling. Stretched kernels are sampled far around the cells
 // that show something, and mostly find nothing: the search goes on until they do, though all lanes of a vector
 // wait for the slowest. Otherwise that would take longer than shading what is not there.
 fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Sample {
-    var at = Sample(next_seen(walk, first, last), vec4f(0.0));
+    var at = Sample(next_seen(walk, first, last), SlabSample(vec4f(0.0), 0.0));
     if (STRETCH) {
         loop {
             if (at.k > last) {
                 break;
             }
-            at.material = material_of(ray, span, at.k);
-            if (at.material.a > 0.0) {
+            at.found = slab_seen(ray, span, at.k);
+            if (at.found.material.a > 0.0) {
                 break;
             }
             at.k = next_seen(walk, at.k + 1, last);
@@ -166,12 +207,12 @@ fn main(
             break;
         }
         if (!STRETCH) {
-            at.material = material_of(ray, span, at.k);
+            at.found = slab_seen(ray, span, at.k);
         }
-        if (at.material.a > 0.0) {
-            let rgb = shaded(ray, pixel, at.k, at.material.rgb);
-            let passed = exp(-at.material.a * eye.frame.slab * ray.obliquity);
-            color += t * (1.0 - passed) * rgb;
+        if (at.found.material.a > 0.0) {
+            let passed = exp(-at.found.material.a * eye.frame.slab * ray.obliquity);
+            let weight = t * (1.0 - passed);
+            color += weight * shaded(ray, pixel, at.k, at.found, weight);
             t *= passed;
         }
         if (t < eye.dark) {

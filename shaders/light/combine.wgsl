@@ -17,7 +17,7 @@ struct Combine {
     pad2: f32,
 }
 
-@group(0) @binding(1) var<uniform> bound_combine: Combine;
+@group(0) @binding(2) var<uniform> bound_combine: Combine;
 var<private> combine: Combine;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var combined: texture_storage_3d<rgba16float, write>;
@@ -36,6 +36,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     let p = (vec3f(voxel) + 0.5) * combine.voxel_step - 0.5;
-    let slope = gradient_to_scene(eye.space, index_gradient(p, 0.0) + face_gradient(eye.seen, p, 0.0));
-    textureStore(combined, voxel, vec4f(lit_through_material(surface_at(p, slope)).diffuse, 1.0));
+    let density = pyramid(p, 0.0);
+    let slope = gradient_to_scene(eye.space, index_gradient(p, 0.0)) + face_slope(p, 0.0, density);
+    let found = Sampled(p, slope, density, 0.0, 1.0);
+    textureStore(combined, voxel, vec4f(lit_through_material(surface_of(found)).diffuse, 1.0));
 }

@@ -70,8 +70,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         // Sums are complete only where the transfer function shows something at all.
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
             let level = stretch_level(eye.frame, met.depth);
-            let faces = gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
-            let rgb = shade(p, gradient_between_sheets(pixel, k, met) + faces, material.rgb);
+            let density = sheet(pixel, k);
+            let slope = gradient_between_sheets(pixel, k, met) + face_slope(p, level, density);
+            let rgb = shade(Sampled(p, slope, density, level, 1.0), material.rgb);
             let share = share_within(span_within(eye.seen, ray), met.depth, met.thickness);
             let opacity = 1.0 - exp(-share * material.a * met.thickness * ray.obliquity);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);

@@ -75,7 +75,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let slice = u32(slice_of(f32(scatter.k)));
     let voxel = brick * BRICK_EDGE * (u_axis + v_axis) + u_axis * phase.u + v_axis * phase.v + along * slice;
-    let material = classify(voxel_density(listed.y, voxel % BRICK_EDGE));
+    let density = voxel_density(listed.y, voxel % BRICK_EDGE);
+    let material = classify(density);
     if (material.a <= 0.0 || any(vec3f(voxel) >= scatter.dims)) {
         return;
     }
@@ -91,8 +92,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     atomicAdd(&splats, 1u);
     let stretch = stretch_of(at.z);
-    let faces = gradient_to_scene(eye.space, face_gradient(eye.seen, centre, log2(max(stretch, 1.0))));
-    let rgb = shade(centre, gradient_of(vec3i(voxel)) + faces, material.rgb);
+    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, log2(max(stretch, 1.0)), density);
+    let rgb = shade(Sampled(centre, slope, density, 0.0, 1.0), material.rgb);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {
             let ray = ray_of(scatter.frame, vec2f(i, j));

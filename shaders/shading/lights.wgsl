@@ -19,7 +19,8 @@ struct Light {
     hood_outer: f32,
     // The place in index space: a direction, as long as it is there, or a position.
     place_in_index: vec3f,
-    pad0: f32,
+    // 1: surfaces take its diffuse light from both sides.
+    two_sided: f32,
 }
 
 struct Towards {
@@ -73,6 +74,20 @@ struct Surface {
     surfaceness: f32,
     // Unit vector to the eye.
     to_eye: vec3f,
+    // 1 where opacity falls along the normal, −1 where it falls against it, and between them amid a change.
+    side: f32,
+    // Of the pyramid, as stretched as the kernel of the sample.
+    level: f32,
+    // Its share in the picture.
+    weight: f32,
+}
+
+// Lights that cast shadows light the side of a surface to which opacity falls, and highlights lie there, too.
+override ONE_SIDED: bool = false;
+
+// Widths of the steps towards a light, in smallest edges of voxels: ½ ½ 1 1 1½ 1½ 2.
+fn near_width(step: u32) -> f32 {
+    return 0.5 * f32(1u + (step >> 1u));
 }
 
 struct Lit {
@@ -86,15 +101,27 @@ fn received(shading: Shading, attenuation: f32) -> f32 {
     return 1.0 - shading.strength * (1.0 - light);
 }
 
+// The share of a light that diffuse reflection gives back: even from all sides where there is no surface.
+fn diffuse_share(light: Light, surface: Surface, facing: f32) -> f32 {
+    var reflected = abs(facing);
+    if (ONE_SIDED) {
+        let outward = mix(max(-facing, 0.0), max(facing, 0.0), 0.5 + 0.5 * surface.side);
+        reflected = mix(outward, reflected, light.two_sided);
+    }
+    return mix(1.0, reflected, surface.surfaceness);
+}
+
 // What one light adds of which a given share arrives.
 fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, share: f32) -> Lit {
     let arriving = light.color * share;
+    // Highlights have one side: that to which density falls, or opacity.
+    let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
+    let clear = select(1.0, abs(surface.side), ONE_SIDED);
     let facing = dot(surface.normal, to_light);
-    // Two-sided diffuse; even from all sides where there is no surface.
-    let diffuse = mix(1.0, abs(facing), surface.surfaceness);
+    let diffuse = diffuse_share(light, surface, facing);
     let half_vector = to_light + surface.to_eye;
-    // One-sided specular. pow(0, x) is spared: some drivers make it NaN.
-    let aligned = max(dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);
-    let highlight = select(0.0, pow(aligned, shading.shininess), facing > 0.0) * surface.surfaceness;
+    // pow(0, x) is spared: some drivers make it NaN.
+    let aligned = max(turned * dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);
+    let highlight = select(0.0, pow(aligned, shading.shininess), turned * facing > 0.0) * surface.surfaceness * clear;
     return Lit(arriving * diffuse, arriving * highlight);
 }

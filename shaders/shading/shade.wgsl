@@ -2,6 +2,7 @@
 //
 // The shader that imports this says what is left of a shadowed light, by attenuation_at(), and has a
 // sampler `clamped`.
+#import "density/table.wgsl"
 #import "shading/lights.wgsl"
 #import "common/space.wgsl"
 #import "sheets/sheet_frame.wgsl"
@@ -26,10 +27,12 @@ struct Eye {
     gradient_slabs: i32,
     // Runs of rows of tiles (sheets/tiles.wgsl).
     runs: u32,
-    pad1: i32,
+    // Smallest edge of a voxel, in scene units: the widths of the near field are in these.
+    near_edge: f32,
     // Index space to texture coordinates of the volume into which lights have been combined.
     combined_lookup: vec3f,
-    pad2: f32,
+    // By how much the last step of rays nearby is longer: half a voxel of the light volumes, in scene units.
+    near_ahead: f32,
     // What is seen.
     seen: Cut,
     // What attenuates light.
@@ -69,7 +72,8 @@ fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> f32 {
 fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
     let towards = to_light(light, surface.position);
-    let share = received(eye.shading, attenuation_at(light, volume, surface, towards));
+    let weight = surface.weight * diffuse_share(light, surface, dot(surface.normal, towards.direction));
+    let share = received(eye.shading, attenuation_at(light, volume, surface, towards, weight));
     return reflect_light(eye.shading, light, surface, towards.direction, share);
 }
 
@@ -77,8 +81,29 @@ fn add(a: Lit, b: Lit) -> Lit {
     return Lit(a.diffuse + b.diffuse, a.specular + b.specular);
 }
 
-// A sample at p (index space) with a gradient in scene space.
-fn surface_at(p: vec3f, slope: vec3f) -> Surface {
+// A sample of the volume.
+struct Sampled {
+    // In index space.
+    point: vec3f,
+    // Gradient in scene space.
+    slope: vec3f,
+    density: f32,
+    // Of the pyramid, as stretched as its kernel.
+    level: f32,
+    // Its share in the picture.
+    weight: f32,
+}
+
+// The gradient, in scene space, that faces of what is seen have of their own: into the solid that ends there, in
+// which opacity rises, as density does or against it.
+fn face_slope(p: vec3f, level: f32, density: f32) -> vec3f {
+    let turned = select(1.0, -1.0, ONE_SIDED && side_of(density) < 0.0);
+    return turned * gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
+}
+
+fn surface_of(found: Sampled) -> Surface {
+    let p = found.point;
+    let slope = found.slope;
     let steepness = length(slope);
     let s = eye.shading;
     let steep2 = steepness * steepness;
@@ -90,6 +115,9 @@ fn surface_at(p: vec3f, slope: vec3f) -> Surface {
         slope * (-1.0 / max(steepness, 1e-9)),
         steep2 / (steep2 + s.surface_gradient * s.surface_gradient),
         away * (1.0 / max(length(away), 1e-9)),
+        select(1.0, side_of(found.density), ONE_SIDED),
+        found.level,
+        found.weight,
     );
 }
 
@@ -107,10 +135,11 @@ fn lit_through_material(surface: Surface) -> Lit {
     return lit;
 }
 
-// The light from a sample at p (index space) with a gradient in scene space.
-fn shade(p: vec3f, slope: vec3f, material: vec3f) -> vec3f {
+// The light from a sample.
+fn shade(found: Sampled, material: vec3f) -> vec3f {
     let s = eye.shading;
-    let surface = surface_at(p, slope);
+    let p = found.point;
+    let surface = surface_of(found);
     var lit: Lit;
     if (COMBINED) {
         lit = Lit(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));

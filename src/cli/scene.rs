@@ -10,7 +10,9 @@ use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance, fitted};
-use crate::model::{Engine, MAX_EDGE, Preset, Settings, ShadowAlgorithm, apply_path, apply_relative, auto};
+use crate::model::{
+    Engine, MAX_EDGE, Preset, Quality, Settings, ShadowAlgorithm, apply_path, apply_relative, auto,
+};
 
 /// How a volume is read.
 #[derive(Debug, Clone, Args)]
@@ -137,6 +139,30 @@ enum EngineArg {
     Scatter,
 }
 
+/// How truly light is computed.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum QualityArg {
+    /// Light volumes alone: soft shadows, quickest
+    Fast,
+    /// Light volumes, and short rays near what is seen
+    Standard,
+    /// Longer rays and thinner slabs: for figures
+    Fine,
+    /// Rays all the way and the thinnest slabs: slow
+    Exact,
+}
+
+impl From<QualityArg> for Quality {
+    fn from(level: QualityArg) -> Self {
+        match level {
+            QualityArg::Fast => Self::Fast,
+            QualityArg::Standard => Self::Standard,
+            QualityArg::Fine => Self::Fine,
+            QualityArg::Exact => Self::Exact,
+        }
+    }
+}
+
 /// The look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
@@ -146,6 +172,9 @@ pub(super) struct LookArgs {
     /// Session to restore: a JSON file, or a picture that was exported
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
+    /// How truly light is computed; single settings and --shadows are laid over it
+    #[arg(long, value_enum)]
+    quality: Option<QualityArg>,
     /// One setting by its path, for instance shadows.strength=0.5; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
@@ -204,7 +233,7 @@ impl LookArgs {
         Ok(checked(downsampled_to_fit(source, whole, context)?))
     }
 
-    /// The automatic look, with preset and session laid over it, and the single settings to come.
+    /// The automatic look, with preset, session and single settings laid over it.
     /// All of them are checked here, before anything slow begins.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
         let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
@@ -223,10 +252,13 @@ impl LookArgs {
             }
             settings = next;
         }
-        let look =
-            Look { settings, balanced, set: self.set.clone(), shadows: self.shadows, engine: self.engine };
-        look.with_single_settings(look.settings.clone())?;
-        Ok(look)
+        let single = self.single_settings(settings)?;
+        // Whoever names the factor means it.
+        let is_named = |assignment: &String| {
+            let path = assignment.split('=').next().unwrap_or_default().trim();
+            path == "shadows" || path == "shadows.balance"
+        };
+        Ok(Look { settings: single, balanced: balanced || self.set.iter().any(is_named) })
     }
 }
 
@@ -235,23 +267,32 @@ impl LookArgs {
 pub(super) struct Look {
     settings: Settings,
     balanced: bool,
-    set: Vec<String>,
-    shadows: Option<ShadowArg>,
-    engine: Option<EngineArg>,
 }
 
 impl Look {
-    /// The settings. Lights are balanced as the viewer does on load, unless preset or session say
-    /// how; single settings are laid over the result.
+    /// The settings. Lights are balanced as the viewer does on load, unless preset, session or a single setting say
+    /// how.
     pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Dataset) -> Result<Settings, CliError> {
         let mut settings = self.settings.clone();
         if !self.balanced {
-            settings.shadows.balance = balance(renderer, loaded, &settings)?;
+            let mut measured = settings.clone();
+            // How bright a picture is hardly depends on the way to it: the quickest will do.
+            measured.sampling.engine = Engine::Gather;
+            if !measured.shadows.algorithm.has_volume() {
+                measured.shadows.algorithm = ShadowAlgorithm::Splat;
+            }
+            settings.shadows.balance = balance(renderer, loaded, &measured)?;
         }
-        self.with_single_settings(settings)
+        Ok(settings)
     }
+}
 
-    fn with_single_settings(&self, mut settings: Settings) -> Result<Settings, CliError> {
+impl LookArgs {
+    /// Lays over settings what the command line says of single ones.
+    fn single_settings(&self, mut settings: Settings) -> Result<Settings, CliError> {
+        if let Some(level) = self.quality {
+            Quality::from(level).apply(&mut settings);
+        }
         for assignment in &self.set {
             let (path, value) = assignment.split_once('=').ok_or_else(|| {
                 CliError::Usage(format!(

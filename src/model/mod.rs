@@ -17,24 +17,27 @@ pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFF
 pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::length::Length;
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, SceneLight};
+pub use self::settings::quality::Quality;
 pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder,
 };
 pub use self::settings::shadows::{
-    Deposit, LightStorage, MAX_BIAS_VOXELS, Precision, Resolution, ShadowAlgorithm, Shadows,
+    Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,
+    Shadows,
 };
 pub use self::settings::variant::Variant;
 pub use self::settings::view::StandardView;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
 pub use self::stored::preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use self::stored::record::{PictureRecord, Record, VolumeRecord};
+pub use self::transfer::baked::BakedTransfer;
 pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear};
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
 pub use rig::Rig;
-pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, ToneMap};
+pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, Sides, ToneMap};
 pub use transfer::{
-    BakedTransfer, ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, Mixing, STEPS,
-    TransferFunction, linear_from_srgb, srgb_from_linear,
+    ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, Mixing, STEPS, TransferFunction,
+    linear_from_srgb, srgb_from_linear,
 };

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::data::Volume;
 use crate::math::{Bounds, Region, SceneSpace};
-use crate::model::{BakedTransfer, LightKind, Settings};
+use crate::model::{BakedTransfer, LightKind, Settings, Sides};
 
 /// Share of the light to the eye that must have been met for something to count as seen: half.
 const SEEN: f64 = 0.5;
@@ -40,7 +40,8 @@ pub struct Arrival {
     pub transmittance: f64,
     /// Share that the hood lets through.
     pub hood: f64,
-    /// Cosine between the surface's normal and the direction to the light; `None` where nothing is a surface.
+    /// Cosine between the surface's normal and the direction to the light, never less than 0 where both sides are lit;
+    /// `None` where nothing is a surface.
     pub facing: Option<f64>,
 }
 
@@ -60,7 +61,11 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     let index = scene.index_from_scene.transform_point3(point);
     let value = volume.value_of(rays.density(index));
     let lighting = settings.baked_lighting(volume.value_range(), scene);
-    let normal = -rays.gradient(point, &seen).normalize_or_zero();
+    let is_one_sided = settings.shading.sides == Sides::One;
+    // Opacity falls towards high densities: the outside is there.
+    let is_turned = is_one_sided && eye.side(rays.density(index)) < 0.0;
+    let (outside, sign) = if is_turned { (1.0, 1.0) } else { (0.0, -1.0) };
+    let normal = rays.gradient(point, &seen, outside).normalize_or_zero() * sign;
     let shading_cut = settings.cuts.shading().region(scene);
     let lights = settings
         .lights
@@ -80,10 +85,12 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             } else {
                 0.0
             };
+            let facing = normal.dot(towards);
+            let facing = if is_one_sided && light.casts_shadows { facing } else { facing.abs() };
             Arrival {
                 transmittance: (-depth).exp(),
                 hood: cone.share(cone.axis.dot(-towards)),
-                facing: (normal != DVec3::ZERO).then(|| normal.dot(towards)),
+                facing: (normal != DVec3::ZERO).then_some(facing),
             }
         })
         .collect();
@@ -182,12 +189,12 @@ impl Rays<'_> {
         (0..8).map(voxel).sum()
     }
 
-    /// ∇ density in scene space, by central differences over a voxel; what is cut away has none.
-    fn gradient(&self, point: DVec3, seen: &Region) -> DVec3 {
+    /// ∇ density in scene space, by central differences over a voxel; what is cut away has the density `outside`.
+    fn gradient(&self, point: DVec3, seen: &Region, outside: f64) -> DVec3 {
         let edge = self.scene.smallest_edge();
         let at = |offset: DVec3| {
             let index = self.scene.index_from_scene.transform_point3(point + offset * edge);
-            if seen.contains(index) { self.density(index) } else { 0.0 }
+            if seen.contains(index) { self.density(index) } else { outside }
         };
         DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)
     }
@@ -267,6 +274,34 @@ mod tests {
             ClipPlane { on: true, normal: [0.0, 0.6, 0.8], offset: -0.5, ..ClipPlane::default() };
         let facing = look(&settings).lights[0].facing.expect("a face");
         assert!((facing - 0.8).abs() < 0.2, "{facing}");
+    }
+
+    /// The same layers with values turned around, under the curve turned around, face the same way.
+    #[test]
+    fn surfaces_face_where_opacity_falls() {
+        let (volume, mut settings) = slab_over_block();
+        // What is seen is the slab's face, not its middle.
+        settings.transfer.points[1].opacity = 0.99;
+        let from_above = |volume: &Volume, settings: &Settings| {
+            let seen = probe(volume, settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
+            seen.expect("the slab").lights[0].facing.expect("a surface")
+        };
+        let rising = from_above(&volume, &settings);
+        assert!(rising > 0.9, "{rising}");
+        let n = volume.dims()[0];
+        let values = (0..n * n * n).map(|at| 1.0 - volume.value(at % n, at / n % n, at / (n * n)) as f32);
+        let samples = Samples::F32(values.collect());
+        let turned = Volume::with_spacing("turned", volume.dims(), DVec3::ONE, samples).unwrap();
+        settings.transfer.points.reverse();
+        for point in &mut settings.transfer.points {
+            point.value = 1.0 - point.value;
+        }
+        assert!((from_above(&turned, &settings) - rising).abs() < 1e-6);
+        // Lit from below it faces away, unless both sides are lit.
+        settings.lights[0].position = [0.0, 0.0, -3.0];
+        assert!(from_above(&turned, &settings) < -0.9);
+        settings.shading.sides = Sides::Two;
+        assert!(from_above(&turned, &settings) > 0.9);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::footprint::SlabSlice;
 use super::kernel::Profile;
 use super::light::ViewSheets;
 use super::{Fault, Reference, Weights};
-use crate::model::ShadowAlgorithm;
+use crate::model::{Kernel, ReverseKernel, ShadowAlgorithm};
 use crate::plan::SheetPosition;
 
 /// How much of a light arrives where: the paper's attenuation volume.
@@ -90,7 +90,11 @@ impl Reference<'_> {
         if self.settings.shadows.first_touch {
             return Some(first_touch(sheets, &at));
         }
-        let profile = self.profile(self.settings.shadows.kernel);
+        let kernel = match self.settings.shadows.reverse_kernel {
+            ReverseKernel::Tent => Kernel::Prefiltered,
+            ReverseKernel::Forward => self.settings.shadows.kernel,
+        };
+        let profile = self.profile(kernel);
         let [columns, rows] = sheets.view.frame.size;
         let across = taps(&profile, at.pixel.x, at.kernel_pixels, columns as usize, &[0.0]);
         let down = taps(&profile, at.pixel.y, at.kernel_pixels, rows as usize, &[0.0]);

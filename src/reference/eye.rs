@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 use super::Reference;
 use super::back_project::Attenuation;
-use super::shade::Shader;
+use super::shade::{Sampled, Shader};
 use super::sheet::{Cutting, Stack};
+use crate::model::Classification;
 use crate::plan::SheetFrame;
 use crate::plan::eye_frame;
 
@@ -42,6 +43,12 @@ impl Reference<'_> {
             let slabs = first..(first + SLABS_AT_ONCE).min(frame.slab_count);
             let sheets = Sheets::new(&stack, slabs.start.saturating_sub(margin)..slabs.end + margin);
             let materials: Vec<_> = slabs.clone().into_par_iter().map(|k| stack.materials(k)).collect();
+            // Classified voxels have a density of their own only where it is reconstructed beside them.
+            let density = |pixel: usize, k: u32, point: DVec3, level: f64| {
+                let is_beside =
+                    self.settings.sampling.classification == Classification::Pre && !self.settings.scatters();
+                if is_beside { self.pyramid.fetch(point, level) } else { sheets.at(k)[pixel] }
+            };
             rays.par_iter_mut().enumerate().for_each(|(pixel, ray)| {
                 for k in slabs.clone() {
                     let Some(sample) =
@@ -56,8 +63,12 @@ impl Reference<'_> {
                     } else {
                         shader.gradient(sample.point, level)
                     };
-                    let gradient = gradient + self.face_gradient(&seen, sample.point, level);
-                    let color = shader.color(sample.point, sample.rgb, gradient);
+                    let density = density(pixel, k, sample.point, level);
+                    // Faces look to where the solid ends, whichever way its opacity runs.
+                    let gradient =
+                        gradient + self.face_gradient(&seen, sample.point, level) * shader.turned(density);
+                    let color =
+                        shader.color(&Sampled { point: sample.point, density, gradient, level }, sample.rgb);
                     let opacity = -(-sample.optical_depth).exp_m1();
                     for channel in 0..3 {
                         ray[channel] += ray[3] * opacity * color[channel];

@@ -1,12 +1,16 @@
 //! The colour of a sample: P eq. 2 – 4 with the light of the attenuation volumes.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::back_project::Attenuation;
+use super::cut::Remaining;
 use super::pyramid::MAX_LEVEL;
 use super::shadow_ray::ShadowRays;
 use super::{Fault, Reference};
-use crate::model::{Light, LightKind, Projection, SceneLight, ShadowAlgorithm};
+use crate::model::{
+    BakedTransfer, Light, LightKind, NearField, Projection, SceneLight, ShadowAlgorithm, Sides,
+};
 
 /// The lights and the eye of one picture.
 pub(super) struct Shader<'r> {
@@ -14,6 +18,22 @@ pub(super) struct Shader<'r> {
     lamps: Vec<Lamp<'r>>,
     /// Length to which gradients refer, in scene units.
     opacity_unit: f64,
+    /// What light meets.
+    lighting: BakedTransfer,
+    remaining: Remaining,
+    /// See [`sides`]; evenly over densities 0 … 1.
+    sides: Vec<f64>,
+}
+
+/// A point of the volume that is shaded.
+pub(super) struct Sampled {
+    /// In index space.
+    pub(super) point: DVec3,
+    pub(super) density: f64,
+    /// In scene space.
+    pub(super) gradient: DVec3,
+    /// Of the pyramid, as far as the kernel is stretched.
+    pub(super) level: f64,
 }
 
 /// A light that is on.
@@ -74,16 +94,24 @@ impl<'r> Shader<'r> {
             reference,
             lamps: settings.lights.iter().enumerate().filter(|(_, light)| light.on).map(lamp).collect(),
             opacity_unit: settings.opacity_unit.in_scene(&reference.scene).max(1e-9),
+            lighting: settings.baked_lighting(reference.range, &reference.scene),
+            remaining: reference.shading(),
+            sides: sides(&settings.baked_eye(reference.range, &reference.scene)),
         }
     }
 
-    /// C(s) of P eq. 2 at an index-space point with the transfer function's colour `C_o` and the
-    /// density's gradient in scene space:
-    /// `C_o · (emission + k_a + Σ C_l·k_d·|N·L|) + Σ C_l·k_s·(N·H)^n_s`.
-    pub(super) fn color(&self, point: DVec3, base: [f64; 3], gradient: DVec3) -> [f64; 3] {
+    /// C(s) of P eq. 2 at a sample with the transfer function's colour `C_o`:
+    /// `C_o · (emission + k_a + Σ C_l·k_d·r) + Σ C_l·k_s·(N·H)^n_s`, where r is |N·L| of surfaces that are lit from both
+    /// sides, and max(N·L, 0) for a normal to where opacity falls.
+    pub(super) fn color(&self, sample: &Sampled, base: [f64; 3]) -> [f64; 3] {
+        let &Sampled { point, density, gradient, .. } = sample;
         let shading = &self.reference.settings.shading;
         let scene = &self.reference.scene;
         let surface = self.surface(gradient);
+        let is_one_sided = shading.sides == Sides::One;
+        // Where opacity falls against the gradient's descent, the other side is the outside.
+        let side = if is_one_sided { self.side_of(density) } else { 1.0 };
+        let outward = surface.normal * self.turned(density);
         let place = scene.scene_from_index.transform_point3(point);
         let to_eye = self.towards_eye(place);
         let mut diffuse = [shading.emission + shading.ambient; 3];
@@ -93,13 +121,19 @@ impl<'r> Shader<'r> {
                 LightKind::Parallel => lamp.light.direction(),
                 LightKind::Perspective => (DVec3::from(lamp.light.position) - place).normalize_or(DVec3::Z),
             };
-            let arriving = self.arriving(lamp, point, to_light);
+            let arriving = self.arriving(lamp, sample, to_light);
             let facing = surface.normal.dot(to_light);
-            // Two-sided, and 1 where there is no surface.
-            let reflected = 1.0 + (facing.abs() - 1.0) * surface.weight;
+            let reflected = if is_one_sided && lamp.light.casts_shadows {
+                let rising = 0.5 + 0.5 * side;
+                rising * facing.max(0.0) + (1.0 - rising) * (-facing).max(0.0)
+            } else {
+                facing.abs()
+            };
+            // 1 where there is no surface.
+            let reflected = 1.0 + (reflected - 1.0) * surface.weight;
             let half_way = (to_light + to_eye).normalize_or_zero();
-            let mirrored = if facing > 0.0 {
-                surface.weight * surface.normal.dot(half_way).max(0.0).powf(shading.shininess)
+            let mirrored = if outward.dot(to_light) > 0.0 {
+                side.abs() * surface.weight * outward.dot(half_way).max(0.0).powf(shading.shininess)
             } else {
                 0.0
             };
@@ -112,7 +146,8 @@ impl<'r> Shader<'r> {
     }
 
     /// The share of a light that arrives: its attenuation with the cures for darkness (P §4).
-    fn arriving(&self, lamp: &Lamp<'_>, point: DVec3, to_light: DVec3) -> f64 {
+    fn arriving(&self, lamp: &Lamp<'_>, sample: &Sampled, to_light: DVec3) -> f64 {
+        let point = sample.point;
         let shadows = &self.reference.settings.shadows;
         let scene = &self.reference.scene;
         let bias = to_light * (scene.smallest_edge() * shadows.bias_voxels);
@@ -122,10 +157,53 @@ impl<'r> Shader<'r> {
                 let cone = lamp.light.cone();
                 return cone.share(-cone.axis.dot(to_light));
             }
+            Attenuated::Volume(volume) if self.reference.settings.near_field() != NearField::Off => {
+                self.near(lamp, volume, sample, to_light)
+            }
             Attenuated::Volume(volume) => volume.at(place),
             Attenuated::Rays(rays) => rays.attenuation(place),
         };
         self.reference.cured(looked_up)
+    }
+
+    /// e^(−τ) over the steps of the rays nearby, the last of which goes half a voxel of the light volume further, times
+    /// what the volume says there. No step goes beyond the light.
+    fn near(&self, lamp: &Lamp<'_>, volume: &Attenuation, sample: &Sampled, to_light: DVec3) -> f64 {
+        let scene = &self.reference.scene;
+        let distance = match lamp.light.kind {
+            LightKind::Parallel => f64::INFINITY,
+            LightKind::Perspective => DVec3::from(lamp.light.position)
+                .distance(scene.scene_from_index.transform_point3(sample.point)),
+        };
+        let at = |way: f64| sample.point + scene.index_from_scene.transform_vector3(to_light * way);
+        let steps = self.reference.settings.near_field().steps();
+        let mut way = 0.0;
+        let mut depth = 0.0;
+        for step in 0..steps {
+            let ahead = if step + 1 == steps { 0.5 * volume.divisor as f64 } else { 0.0 };
+            let width = (NearField::width_voxels(step) + ahead) * scene.smallest_edge();
+            let length = width.min(distance - way);
+            let middle = at(way + 0.5 * length);
+            let extinction = self.lighting.sample(self.reference.pyramid.fetch(middle, sample.level))[3];
+            depth += extinction * self.reference.share_that_shades(&self.remaining, middle) * length;
+            way += length;
+        }
+        (-depth * lamp.light.density_scale).exp() * volume.at(at(way))
+    }
+
+    /// −1 where opacity falls as density rises, and the side counts; else 1.
+    pub(super) fn turned(&self, density: f64) -> f64 {
+        let is_one_sided = self.reference.settings.shading.sides == Sides::One;
+        if is_one_sided && self.side_of(density) < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// To which side of a surface opacity falls at a density, interpolated in [`sides`].
+    fn side_of(&self, density: f64) -> f64 {
+        let last = self.sides.len() - 1;
+        let at = density.clamp(0.0, 1.0) * last as f64;
+        let low = (at as usize).min(last - 1);
+        let t = at - low as f64;
+        self.sides[low] * (1.0 - t) + self.sides[low + 1] * t
     }
 
     /// Central differences of the prefiltered density, one voxel (or one stretched voxel) to either
@@ -161,6 +239,24 @@ impl<'r> Shader<'r> {
             Projection::Perspective => (camera.eye() - place).normalize_or(backward),
         }
     }
+}
+
+/// For each entry of a table the balance of rises and falls of extinction around it, each weighted by
+/// e^(−distance / 4 entries): 1 where it rises, −1 where it falls.
+fn sides(table: &BakedTransfer) -> Vec<f64> {
+    let balance = |entry: usize| {
+        let (mut rises, mut falls) = (0.0, 0.0);
+        for (at, pair) in table.entries.windows(2).enumerate() {
+            // Whole entries between this and the nearer end of the step.
+            let distance = if at >= entry { at - entry } else { entry - at - 1 };
+            let step = f64::from(pair[1][3]) - f64::from(pair[0][3]);
+            let share = (-(distance as f64) / 4.0).exp();
+            rises += share * step.max(0.0);
+            falls += share * (-step).max(0.0);
+        }
+        if rises + falls > 0.0 { (rises - falls) / (rises + falls) } else { 1.0 }
+    };
+    (0..table.entries.len()).into_par_iter().map(balance).collect()
 }
 
 impl Reference<'_> {
@@ -207,7 +303,9 @@ mod tests {
         for (attenuations, arriving) in [(vec![], 1.0), (vec![Some(half)], 0.5)] {
             let shader = Shader::new(&reference, &attenuations);
             let middle = DVec3::splat(7.5);
-            let found = shader.color(middle, [1.0, 0.5, 0.0], shader.gradient(middle, 0.0));
+            let gradient = shader.gradient(middle, 0.0);
+            let sample = Sampled { point: middle, density: 0.5, gradient, level: 0.0 };
+            let found = shader.color(&sample, [1.0, 0.5, 0.0]);
             let diffuse = 0.1 + 0.15 + 2.0 * arriving * 0.85 * (1.0 - weight + weight * 0.6);
             // The half-vector of (0.6, 0.8, 0) and (1, 0, 0): cos² = (1 + 0.6)/2.
             let specular = 2.0 * arriving * 0.25 * weight * 0.8;

@@ -2,7 +2,8 @@
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
-    Camera, ControlPoint, Interpolation, Length, Light, LightKind, Projection, Settings, TransferFunction,
+    Camera, ControlPoint, Interpolation, Length, Light, LightKind, NearField, Projection, ReverseKernel,
+    Settings, Sides, TransferFunction,
 };
 use glam::DVec3;
 
@@ -111,6 +112,13 @@ pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
         distance: 4.0,
         ..Camera::default()
     }
+}
+
+/// Light as the paper has it: the light volume alone, splatted back with the kernel of the light pass.
+pub(crate) fn paper(settings: &mut Settings) {
+    settings.shading.sides = Sides::Two;
+    settings.shadows.reverse_kernel = ReverseKernel::Forward;
+    settings.shadows.near_field = NearField::Off;
 }
 
 /// Material that answers to light evenly from all sides: no normals, no ambient.

@@ -119,6 +119,9 @@ pub(crate) const FLOOR_SHADOW: f64 = 2e-3;
 /// of rays are rounded to 32 bits, the floor's light to 16, and sRGB is 13 times as steep near black.
 pub(crate) const PARTS: f64 = 1.0 / 255.0 / 8.0;
 
+/// The same sum in another order: eight steps of a 32-bit number near 1.
+pub(crate) const ADDED_OTHERWISE: Limit = Limit { max: 1e-6, rmse: 1e-7 };
+
 /// Half as many voxels along each axis against all of them, RMSE: edges are a voxel softer.
 pub(crate) const AVERAGED: f64 = 4.0 / 255.0;
 /// Half as many voxels along each axis: the mean, relative. What is thinner than a voxel gets thinner still.
@@ -174,3 +177,13 @@ pub(crate) const REFILLED: f64 = 0.95;
 
 /// How far from a step of 1/255 a value of bytes may be, in steps: f32.
 pub(crate) const BYTE_STEP: f32 = 1e-3;
+
+/// A picture against that of the mirrored values under the mirrored curve: entries of the table lie at other places
+/// among the values, and densities are rounded to 16 bits.
+pub(crate) const MIRRORED: Limit = Limit { max: 4.0 / 255.0, rmse: 0.25 / 255.0 };
+
+/// Light just below a lit face with rays nearby, RMSE: steps of ½ to 1½ voxels through densities that are prefiltered at
+/// voxels and interpolated between them; where τ is about 1, a tenth of a voxel is 0.02.
+pub(crate) const NEAR_A_FACE: f64 = 0.015;
+/// That of a light volume alone, at least, which is blurred three times: by more than twice as much.
+pub(crate) const LOOKED_UP_BELOW_A_FACE: f64 = 0.03;

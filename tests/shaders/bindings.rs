@@ -117,7 +117,7 @@ fn every_compute_shader_has_a_layout() {
     let (storage, _) = FORMATS[0];
     let layouts = shader_bindings(storage, storage);
     let has_layout = |name: &str| layouts.iter().any(|(shader, _)| *shader == name);
-    for (name, text) in SHADERS {
+    for &(name, text) in SHADERS {
         assert_eq!(text.contains("@compute"), has_layout(name), "{name}");
     }
 }

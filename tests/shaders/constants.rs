@@ -47,11 +47,16 @@ fn the_table_has_room_for_all_entries() {
             .iter()
             .find(|(_, global)| global.name.as_deref() == Some("table"))
             .expect("the shader has a table");
-        let naga::TypeInner::Array { size, stride, .. } = module.types[table.ty].inner else {
-            panic!("the table is an array")
+        let naga::TypeInner::Struct { members, .. } = &module.types[table.ty].inner else {
+            panic!("the table is a struct")
         };
-        assert_eq!(size, naga::ArraySize::Constant((LUT_SIZE as u32).try_into().expect("not 0")), "{shader}");
-        assert_eq!(stride, 16, "{shader}");
+        for (member, bytes) in members.iter().zip([16, 4]) {
+            let naga::TypeInner::Array { size, stride, .. } = module.types[member.ty].inner else {
+                panic!("{member:?} is an array")
+            };
+            let entries = naga::ArraySize::Constant((LUT_SIZE as u32).try_into().expect("not 0"));
+            assert_eq!((size, stride), (entries, bytes), "{member:?} in {shader}");
+        }
     }
 }
 

@@ -28,7 +28,7 @@ fn every_shader_file_is_embedded_and_used() {
 
     let imported: BTreeSet<_> = SHADERS.iter().flat_map(|(_, text)| imports_of(text)).collect();
     let entries = entry_shaders();
-    for (name, _) in SHADERS {
+    for &(name, _) in SHADERS {
         assert!(entries.contains(&name) || imported.contains(name), "{name} is in no shader");
     }
 }

@@ -74,7 +74,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         hood_axis,
         hood_outer,
         place_in_index,
-        pad0,
+        two_sided,
     });
     vec![
         ("eye/gather.wgsl", frame.clone()),
@@ -169,9 +169,9 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 gradient_pixels,
                 gradient_slabs,
                 runs,
-                pad1,
+                near_edge,
                 combined_lookup,
-                pad2,
+                near_ahead,
                 seen,
                 shading_cut,
                 lights

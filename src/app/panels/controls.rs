@@ -114,6 +114,10 @@ pub(super) fn choice<T: PartialEq + Copy>(
 ) -> bool {
     row(ui, named, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
+        if options.len() > 3 {
+            // Four words would be wider than the panel otherwise.
+            ui.spacing_mut().button_padding.x *= 0.7;
+        }
         let mut changed = false;
         for (option, of_option) in options {
             let response = ui.selectable_label(value == option, of_option.name).on_hover_text(of_option.tip);

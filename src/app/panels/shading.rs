@@ -5,10 +5,13 @@ use eframe::egui::Ui;
 use super::super::text::{self, Named};
 use super::Panels;
 use super::controls::{Number, choice, color, row};
-use crate::model::ToneMap;
+use crate::model::{Sides, ToneMap};
 
 const TONE_MAPS: [(ToneMap, Named); 2] =
     [(ToneMap::Neutral, text::shading::NEUTRAL), (ToneMap::Clip, text::shading::CLIP)];
+
+const SIDES: [(Sides, Named); 2] =
+    [(Sides::One, text::shading::ONE_SIDE), (Sides::Two, text::shading::BOTH_SIDES)];
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -25,6 +28,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     shininess.show(ui, &mut shading.shininess, defaults.shininess);
     let gradient = Number::new(text::shading::SURFACE_GRADIENT, 1e-3..=1.0).log().decimals(4);
     gradient.show(ui, &mut shading.surface_gradient, defaults.surface_gradient);
+    choice(ui, text::shading::SIDES, &mut shading.sides, &SIDES);
     let output = &mut panels.settings.output;
     choice(ui, text::shading::TONE_MAP, &mut output.tone_map, &TONE_MAPS);
     row(ui, text::shading::BACKGROUND, |ui| {

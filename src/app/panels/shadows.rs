@@ -8,7 +8,9 @@ use super::controls::{Number, advanced, choice, row, switch, unlabelled};
 use super::{Panels, sampling};
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
-use crate::model::{Deposit, LightStorage, Precision, Resolution, ShadowAlgorithm};
+use crate::model::{
+    Deposit, LightStorage, NearField, Precision, Quality, Resolution, ReverseKernel, ShadowAlgorithm,
+};
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
 const MUCH_DARKNESS: f64 = 0.3;
@@ -38,15 +40,39 @@ const STORAGES: [(LightStorage, Named); 3] = [
 const DEPOSITS: [(Deposit, Named); 2] =
     [(Deposit::SlabMean, text::shadows::SLAB_MEAN), (Deposit::Front, text::shadows::FRONT)];
 
+/// None of them is chosen while settings are at no level.
+const LEVELS: [(Option<Quality>, Named); 4] = [
+    (Some(Quality::Fast), text::shadows::FAST),
+    (Some(Quality::Standard), text::shadows::STANDARD),
+    (Some(Quality::Fine), text::shadows::FINE),
+    (Some(Quality::Exact), text::shadows::EXACT),
+];
+
+const NEAR_FIELDS: [(NearField, Named); 3] = [
+    (NearField::Off, text::shadows::NEAR_OFF),
+    (NearField::Short, text::shadows::NEAR_SHORT),
+    (NearField::Long, text::shadows::NEAR_LONG),
+];
+
+const REVERSE_KERNELS: [(ReverseKernel, Named); 2] =
+    [(ReverseKernel::Tent, text::shadows::TENT), (ReverseKernel::Forward, text::shadows::FORWARD)];
+
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     choice(ui, text::shadows::ALGORITHM, &mut panels.settings.shadows.algorithm, &ALGORITHMS);
+    let mut level = Quality::of(panels.settings);
+    if choice(ui, text::shadows::QUALITY, &mut level, &LEVELS)
+        && let Some(level) = level
+    {
+        level.apply(panels.settings);
+    }
     let on = panels.settings.shadows.algorithm.is_on();
     ui.add_enabled_ui(on, |ui| {
         live(ui, panels);
         balance(ui, panels);
         darkness(ui, panels.facts.dark_share);
         opacity(ui, panels);
+        choice(ui, text::shadows::NEAR_FIELD, &mut panels.settings.shadows.near_field, &NEAR_FIELDS);
         choice(ui, text::shadows::RESOLUTION, &mut panels.settings.shadows.resolution, &RESOLUTIONS);
         advanced(ui, "advanced shadows", |ui| {
             let combines = panels.settings.combines_lights();
@@ -54,6 +80,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             switch(ui, text::shadows::FIRST_TOUCH, &mut shadows.first_touch);
             let default_slab = panels.defaults.shadows.slab;
             sampling::show(ui, &mut shadows.kernel, &mut shadows.slab, default_slab, &mut shadows.quadrature);
+            choice(ui, text::shadows::REVERSE_KERNEL, &mut shadows.reverse_kernel, &REVERSE_KERNELS);
             choice(ui, text::shadows::PRECISION, &mut shadows.precision, &PRECISIONS);
             choice(ui, text::shadows::STORAGE, &mut shadows.storage, &STORAGES);
             ui.weak(text::shadows::light_volumes(panels.facts.light_mebibytes, combines));
@@ -64,6 +91,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
 
 /// What takes effect without refilling a light volume.
 fn live(ui: &mut Ui, panels: &mut Panels<'_>) {
+    let rays_nearby = panels.settings.near_field() != NearField::Off;
     let (shadows, defaults) = (&mut panels.settings.shadows, &panels.defaults.shadows);
     let strength = Number::new(text::shadows::STRENGTH, 0.0..=1.0);
     strength.show(ui, &mut shadows.strength, defaults.strength);
@@ -72,7 +100,8 @@ fn live(ui: &mut Ui, panels: &mut Panels<'_>) {
     let gain = Number::new(text::shadows::GAIN, 0.1..=10.0).log();
     gain.show(ui, &mut shadows.gain, defaults.gain);
     let bias = Number::new(text::shadows::LIGHT_BIAS, 0.0..=2.0).unit(text::common::VOX);
-    bias.show(ui, &mut shadows.bias_voxels, defaults.bias_voxels);
+    // Rays nearby take its place.
+    ui.add_enabled_ui(!rays_nearby, |ui| bias.show(ui, &mut shadows.bias_voxels, defaults.bias_voxels));
 }
 
 fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {

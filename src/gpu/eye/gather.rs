@@ -67,9 +67,9 @@ impl EyePass {
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
             runs: 1,
-            pad1: 0,
+            near_edge: scene.smallest_edge() as f32,
             combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
-            pad2: 0.0,
+            near_ahead: near_ahead(lights, scene),
             seen: uniforms::Cut::new(&remains.region(scene)),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
             lights: packed,
@@ -167,14 +167,17 @@ pub(crate) struct GatherVariant {
     rays: Option<Deposit>,
     /// Normals come from the texture of gradients.
     has_gradients: bool,
+    /// Steps of the rays nearby.
+    near_steps: u32,
 }
 
 impl GatherVariant {
     /// The eye pass under so many lights, with pixels that are wider than voxels somewhere or not, and without the
     /// texture of gradients.
     pub(crate) fn of(settings: &Settings, lights: LightCount, is_stretched: bool) -> Self {
-        let Settings { sampling, shadows, cuts, .. } = settings;
+        let Settings { sampling, shadows, cuts, shading, .. } = settings;
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
+        let near_steps = if lights.shadowed > 0 { settings.near_field().steps() } else { 0 };
         Self {
             reconstruction: Reconstruction::new(sampling.kernel, sampling.quadrature),
             classification: sampling.classification,
@@ -184,10 +187,12 @@ impl GatherVariant {
                 lights,
                 is_combined: false,
                 // Rays to lights are the eye pass's own.
-                is_cut: is_cut(cuts.seen()) || casts_rays && is_cut(cuts.shading()),
+                is_cut: is_cut(cuts.seen()) || (casts_rays || near_steps > 0) && is_cut(cuts.shading()),
+                sides: shading.sides,
             },
             rays: casts_rays.then_some(shadows.deposit),
             has_gradients: false,
+            near_steps,
         }
     }
 
@@ -216,12 +221,19 @@ impl Variant for GatherVariant {
             flag("STRETCH", self.is_stretched),
             flag("SHEET_GRADIENTS", self.sheet_gradients),
             flag("GRADIENT_TEXTURE", self.has_gradients),
+            ("NEAR_STEPS", f64::from(self.near_steps)),
         ]);
         if let Some(deposit) = self.rays {
             constants.extend([("DIRECT", 1.0), deposit_constant(deposit)]);
         }
         constants
     }
+}
+
+/// By how much the last step of rays nearby is longer, in scene units: half a voxel of the coarsest light volume.
+fn near_ahead(lights: &[LightInput<'_>], scene: &SceneSpace) -> f32 {
+    let divisor = lights.iter().filter_map(|input| input.volume).map(|volume| volume.divisor).max();
+    (0.5 * divisor.unwrap_or(1) as f64 * scene.smallest_edge()) as f32
 }
 
 /// How surfaces and shadows look, for the shaders.

@@ -269,7 +269,7 @@ impl Job<'_> {
         let list: Vec<_> = target.value.filled.bricks().map(listed).collect();
         let gpu = Gpu::new(self.tools, &loaded.volume);
         let shading = (pass.uniform(), pass.shading_variant());
-        target.value.fill(gpu, shading, &lights, &list[bricks.clone()], encoder)
+        target.value.fill(gpu, &loaded.tables.value, shading, &lights, &list[bricks.clone()], encoder)
     }
 
     /// Views of the light volumes that the picture looks up, in the order of its lights.

@@ -10,10 +10,10 @@ use crate::gpu::resources::cached::Cached;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{GpuVolume, brick_dims};
 use crate::gpu::{Context, GpuError, RenderOptions};
-use crate::model::MAX_BIAS_VOXELS;
+use crate::model::{MAX_BIAS_VOXELS, NearField};
 use crate::plan::{
     CellSet, FARTHEST, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, eye_frame, lookup_reach,
-    slab_reach, stretch_reach,
+    near_reach, slab_reach, stretch_reach,
 };
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
@@ -48,7 +48,7 @@ pub(super) struct Wanted<'a> {
 }
 
 /// How many cells from what the transfer functions show a picture looks up light: as far as its samples
-/// see, and a light bias further. Every direction to look from has the same, so that orbiting refills nothing.
+/// see, and the rays nearby or a light bias further. Every direction to look from has the same, so that orbiting refills nothing.
 fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let Request { settings, size, .. } = request;
     let size = size.map(|n| n * samples);
@@ -58,9 +58,13 @@ fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let [width, height] = size.map(f64::from);
     let obliquity = frame.obliquity(0.0, 0.0).max(frame.obliquity(width, height));
     let slab = slab_reach(scene, frame.slab, obliquity, settings.sampling.quadrature);
-    // Any bias fills for the largest, so that the next needs nothing.
-    let bias = if settings.shadows.bias_voxels > 0.0 { bias_reach(MAX_BIAS_VOXELS) } else { 0 };
-    stretch_reach(stretch).saturating_add(slab).saturating_add(bias)
+    let towards_light = match settings.near_field() {
+        // Any bias fills for the largest, so that the next needs nothing.
+        NearField::Off if settings.shadows.bias_voxels > 0.0 => bias_reach(MAX_BIAS_VOXELS),
+        NearField::Off => 0,
+        near => near_reach(near, settings.shadows.resolution.divisor()),
+    };
+    stretch_reach(stretch).saturating_add(slab).saturating_add(towards_light)
 }
 
 /// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples

@@ -17,7 +17,7 @@ use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::EVERYWHERE;
 use crate::gpu::{Context, GpuError};
 use crate::math::SceneSpace;
-use crate::model::{Quadrature, Shadows};
+use crate::model::{Kernel, Quadrature, ReverseKernel, Shadows};
 use crate::plan::{LightView, MarchTiles};
 
 /// What each chunk of slabs has to do.
@@ -116,8 +116,13 @@ pub(crate) struct BackprojectVariant {
 impl BackprojectVariant {
     /// The back-projection with kernels that are wider than a pixel or a slab somewhere or not.
     pub(crate) fn of(context: &Context, shadows: &Shadows, is_wide: bool) -> Self {
+        // The prefiltered kernel is a tent where it spreads.
+        let kernel = match shadows.reverse_kernel {
+            ReverseKernel::Tent => Kernel::Prefiltered,
+            ReverseKernel::Forward => shadows.kernel,
+        };
         Self {
-            reconstruction: Reconstruction::new(shadows.kernel, shadows.quadrature),
+            reconstruction: Reconstruction::new(kernel, shadows.quadrature),
             first_touch: shadows.first_touch,
             is_wide,
             lanes: if context.is_software() { 8 } else { 64 },

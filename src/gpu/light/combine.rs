@@ -9,6 +9,7 @@ use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::listed_bricks::{self, Listed};
+use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError};
 use crate::plan::CellSet;
@@ -71,6 +72,7 @@ impl CombinedLight {
     pub(crate) fn fill(
         &self,
         gpu: Gpu<'_>,
+        tables: &Tables,
         (eye, shading): (uniforms::Eye, ShadingVariant),
         lights: &[LightInput<'_>],
         bricks: &[Listed],
@@ -100,6 +102,7 @@ impl CombinedLight {
             0,
             &[
                 buffer("bound_eye", &eye),
+                buffer("table", &tables.eye.buffer),
                 buffer("bound_combine", &uniform),
                 buffer("bricks", &list),
                 view_of("combined", &self.view),

@@ -46,7 +46,7 @@ pub(crate) fn pack_light(
         hood_axis: cone.axis.as_vec3().into(),
         hood_outer: cone.cos_outer as f32,
         place_in_index: place_in_index.as_vec3().into(),
-        pad0: 0.0,
+        two_sided: f32::from(u8::from(!light.casts_shadows)),
     }
 }
 

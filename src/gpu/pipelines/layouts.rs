@@ -4,8 +4,8 @@
 use super::binding::{Access, Format, Shape, Slot};
 use super::uniforms;
 
-/// Entries of a lookup table: [`crate::model::LUT_SIZE`] times four floats.
-const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 16;
+/// Entries of a lookup table: [`crate::model::LUT_SIZE`] times five floats.
+const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 20;
 
 /// Pairs of floats in a table of footprints, as `scatter/footprint.wgsl` declares it.
 const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;
@@ -136,7 +136,8 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
         &[
             &[
                 EYE,
-                Slot::uniform::<uniforms::Combine>(1, "bound_combine"),
+                TABLE,
+                Slot::uniform::<uniforms::Combine>(2, "bound_combine"),
                 Slot::list(3, "bricks", 16, Access::Read),
                 Slot::target(4, "combined", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
             ],

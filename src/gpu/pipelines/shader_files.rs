@@ -3,13 +3,13 @@
 /// Names and texts of files below `shaders/`.
 macro_rules! shader_files {
     ($($name:literal),+ $(,)?) => {
-        [$(($name, include_str!(concat!("../../../shaders/", $name)))),+]
+        &[$(($name, include_str!(concat!("../../../shaders/", $name)))),+]
     };
 }
 
 /// Every shader file: its path below `shaders/`, and its text.
 #[cfg_attr(not(feature = "testing"), expect(unreachable_pub, reason = "the tests of shaders reach it"))]
-pub const SHADERS: [(&str, &str); 44] = shader_files![
+pub const SHADERS: &[(&str, &str)] = shader_files![
     "common/listed_bricks.wgsl",
     "common/sizes.wgsl",
     "common/space.wgsl",

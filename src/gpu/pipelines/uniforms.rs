@@ -281,7 +281,7 @@ pub struct Light {
     pub hood_axis: [f32; 3],
     pub hood_outer: f32,
     pub place_in_index: [f32; 3],
-    pub pad0: f32,
+    pub two_sided: f32,
 }
 
 /// `shading/lights.wgsl`.
@@ -317,9 +317,9 @@ pub struct Eye {
     pub gradient_pixels: i32,
     pub gradient_slabs: i32,
     pub runs: u32,
-    pub pad1: i32,
+    pub near_edge: f32,
     pub combined_lookup: [f32; 3],
-    pub pad2: f32,
+    pub near_ahead: f32,
     pub seen: Cut,
     pub shading_cut: Cut,
     pub lights: [Light; crate::model::MAX_LIGHTS],
@@ -347,7 +347,7 @@ pub struct Floor {
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 
-/// `output/display.wgsl`.
+/// `output/tone_map.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Display {

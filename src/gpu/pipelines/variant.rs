@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use crate::model::{Classification, Deposit, Kernel, Quadrature, Remains};
+use crate::model::{Classification, Deposit, Kernel, Quadrature, Remains, Sides};
 
 /// Override constants of a shader, by name.
 pub(crate) type Constants = Vec<(&'static str, f64)>;
@@ -98,6 +98,7 @@ pub(crate) struct ShadingVariant {
     /// The diffuse light of shadowed lights is in one volume.
     pub is_combined: bool,
     pub is_cut: bool,
+    pub sides: Sides,
 }
 
 impl ShadingVariant {
@@ -105,6 +106,7 @@ impl ShadingVariant {
     pub(crate) fn constants(self) -> Constants {
         let mut constants = self.lights.constants();
         constants.push(flag("CUT", self.is_cut));
+        constants.push(flag("ONE_SIDED", self.sides == Sides::One));
         if self.is_combined {
             constants.push(("COMBINED", 1.0));
         }

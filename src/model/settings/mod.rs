@@ -5,6 +5,7 @@ pub(super) mod cut;
 pub(super) mod floor;
 pub(super) mod length;
 pub(super) mod light;
+pub(super) mod quality;
 pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod shadows;
@@ -17,14 +18,14 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     BakedTransfer, Camera, Classification, Cuts, Engine, Floor, Gradients, Kernel, Length, Light,
-    LightStorage, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
+    LightStorage, NearField, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
 
 /// Version of the JSON form. Files of every version are read as far as possible: what they lack keeps its
 /// default, and what is not known here is reported.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Everything that decides what a picture of a volume looks like.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -97,6 +98,16 @@ impl Default for LightingTransfer {
     }
 }
 
+/// Which side of a surface takes the diffuse light of a light that casts shadows. What casts none lights both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sides {
+    /// The one to which opacity falls; highlights lie there, too.
+    One,
+    /// Both, as if light came through; highlights lie where density falls.
+    Two,
+}
+
 /// Phong's illumination equation (P eq. 2–4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -114,6 +125,8 @@ pub struct Shading {
     /// The density change per opacity unit at which a sample counts half as a surface: below it
     /// the direction of the gradient is noise, and the sample is lit evenly from all sides.
     pub surface_gradient: f64,
+    /// Which sides of surfaces are lit.
+    pub sides: Sides,
 }
 
 impl Default for Shading {
@@ -125,6 +138,7 @@ impl Default for Shading {
             specular: 0.25,
             shininess: 32.0,
             surface_gradient: 0.02,
+            sides: Sides::One,
         }
     }
 }
@@ -175,17 +189,27 @@ impl Settings {
     }
 
     /// Whether all light that material has attenuated is kept in one volume of colours. Left to
-    /// itself: when that takes less memory than a volume for each light, and no highlights would be
-    /// lost.
+    /// itself: when that takes less memory than a volume for each light, and neither highlights nor rays nearby
+    /// would be lost.
     pub fn combines_lights(&self) -> bool {
         let shadowed = self.lights.iter().filter(|light| light.needs_volume()).count();
         let wanted = match self.shadows.storage {
             LightStorage::PerLight => false,
             LightStorage::Combined => true,
             // Four 16-bit colours and weights against one number for each light.
-            LightStorage::Auto => self.shading.specular == 0.0 && shadowed > 4,
+            LightStorage::Auto => {
+                self.shading.specular == 0.0 && self.shadows.near_field == NearField::Off && shadowed > 4
+            }
         };
         wanted && shadowed > 0 && self.shadows.algorithm.has_volume()
+    }
+
+    /// Where rays from samples say how much light arrives. Only where light volumes of their own do from there on, and
+    /// only of gathered pictures: the scattering engine keeps to the paper, and in a combined volume of light its own
+    /// voxels blur what rays would tell.
+    pub fn near_field(&self) -> NearField {
+        let looks_up = self.shadows.algorithm.has_volume() && !self.combines_lights() && !self.scatters();
+        if looks_up { self.shadows.near_field } else { NearField::Off }
     }
 
     /// Whether what is reconstructed in a cell of 2³ voxels stays within the bounds that are known of it

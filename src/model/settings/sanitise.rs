@@ -92,7 +92,8 @@ impl Settings {
         if !(length.is_finite() && length > 0.0) {
             self.opacity_unit = default.opacity_unit;
         }
-        let Shading { emission, ambient, diffuse, specular, shininess, surface_gradient } = &mut self.shading;
+        let Shading { emission, ambient, diffuse, specular, shininess, surface_gradient, sides: _ } =
+            &mut self.shading;
         number(emission, 0.0, 100.0, default.shading.emission);
         number(ambient, 0.0, 10.0, default.shading.ambient);
         number(diffuse, 0.0, 10.0, default.shading.diffuse);
@@ -114,6 +115,8 @@ impl Settings {
             resolution: _,
             precision: _,
             storage: _,
+            reverse_kernel: _,
+            near_field: _,
         } = &mut self.shadows;
         number(strength, 0.0, 1.0, default.shadows.strength);
         number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);

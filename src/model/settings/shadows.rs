@@ -91,6 +91,50 @@ pub enum LightStorage {
     Combined,
 }
 
+/// The kernel with which sheets are splatted back into a light volume that is gathered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReverseKernel {
+    /// A tent, one voxel to either side: as narrow as the look-up allows.
+    Tent,
+    /// That of the light pass (P §3.5).
+    Forward,
+}
+
+/// The last voxels before a sample, where a ray finds its light and not the light volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NearField {
+    /// The light volume alone (P §3.5).
+    Off,
+    /// Three voxels.
+    Short,
+    /// Eight.
+    Long,
+}
+
+impl NearField {
+    /// How many steps the ray has; the widths are ½ ½ 1 1 1½ 1½ 2 smallest edges of voxels, and the last is longer by
+    /// half a voxel of the light volume. What lies nearest to a sample shades it most, and is blurred least.
+    pub fn steps(self) -> u32 {
+        match self {
+            Self::Off => 0,
+            Self::Short => 4,
+            Self::Long => 7,
+        }
+    }
+
+    /// How long it is, in smallest edges of voxels, but for what the last step has more.
+    pub fn length_voxels(self) -> f64 {
+        (0..self.steps()).map(Self::width_voxels).sum()
+    }
+
+    /// Width of a step, in smallest edges of voxels, but for what the last has more.
+    pub fn width_voxels(step: u32) -> f64 {
+        0.5 * f64::from(1 + step / 2)
+    }
+}
+
 /// How light is attenuated on its way, and the cures for darkness (P §4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -124,6 +168,10 @@ pub struct Shadows {
     pub precision: Precision,
     /// One for each light, or one for all.
     pub storage: LightStorage,
+    /// Kernel of the way back from sheets to voxels.
+    pub reverse_kernel: ReverseKernel,
+    /// Where rays say how much light arrives, and not the light volume. The bias has no effect then.
+    pub near_field: NearField,
 }
 
 impl Default for Shadows {
@@ -143,6 +191,8 @@ impl Default for Shadows {
             resolution: Resolution::Full,
             precision: Precision::Half,
             storage: LightStorage::Auto,
+            reverse_kernel: ReverseKernel::Tent,
+            near_field: NearField::Short,
         }
     }
 }

@@ -4,3 +4,4 @@ pub(super) mod library;
 pub(super) mod preset;
 pub(super) mod record;
 mod renames;
+mod schemas;

@@ -5,6 +5,7 @@
 use serde_json::Value;
 
 use super::renames::{current_path, rename};
+use super::schemas::complete;
 use crate::model::{SCHEMA, Settings};
 
 /// Why JSON does not become settings.
@@ -47,6 +48,7 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     }
     let mut overlay = overlay.clone();
     rename("", &mut overlay);
+    complete(&mut overlay);
     let mut merged = serde_json::to_value(settings).map_err(PresetError::Form)?;
     merge(&mut merged, &overlay);
     let mut result: Settings = serde_json::from_value(merged).map_err(PresetError::Form)?;

@@ -3,12 +3,13 @@
 //! Opacity is per opacity unit (a length in `Settings`): the extinction is
 //! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
 
+pub(super) mod baked;
 pub(super) mod color_map;
 pub(super) mod oklab;
 
 use serde::{Deserialize, Serialize};
 
-use super::{linear_from_oklab, oklab_from_linear};
+use super::{BakedTransfer, linear_from_oklab, oklab_from_linear};
 use crate::data::ValueRange;
 
 /// Entries of a baked table; values between are interpolated.
@@ -104,13 +105,6 @@ pub struct TransferFunction {
     /// How colours between the points are mixed.
     #[serde(default)]
     pub mixing: Mixing,
-}
-
-/// A transfer function as a table over a value range: linear RGB and extinction per scene unit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BakedTransfer {
-    /// [`LUT_SIZE`] entries, evenly spaced over densities 0 … 1, both ends included.
-    pub entries: Vec<[f32; 4]>,
 }
 
 /// One sRGB component to linear light (IEC 61966-2-1).
@@ -220,53 +214,14 @@ impl TransferFunction {
     /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene
     /// units, `scale` multiplies the extinction.
     pub fn bake(&self, range: ValueRange, unit: f64, scale: f64) -> BakedTransfer {
-        let entries = (0..LUT_SIZE)
+        let entries: Vec<_> = (0..LUT_SIZE)
             .map(|i| {
                 let value = range.low + range.span() * i as f64 / (LUT_SIZE - 1) as f64;
                 let (rgb, depth) = self.at(value);
                 [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, (depth * scale / unit) as f32]
             })
             .collect();
-        BakedTransfer { entries }
-    }
-}
-
-impl BakedTransfer {
-    /// Whether both have extinction at the same densities: only how much, and of which colour, differs.
-    pub fn shows_like(&self, other: &Self) -> bool {
-        let pairs = self.entries.iter().zip(&other.entries);
-        self.entries.len() == other.entries.len()
-            && pairs.into_iter().all(|(a, b)| (a[3] > 0.0) == (b[3] > 0.0))
-    }
-
-    /// Whether any density in `[min, max]` has extinction. Looks at the table entries around the
-    /// range too, since values between entries are interpolated.
-    pub fn visibility(&self) -> impl Fn(f32, f32) -> bool + Sync + use<> {
-        // visible[i] counts the entries below i that have extinction.
-        let counts: Vec<u32> = std::iter::once(0)
-            .chain(self.entries.iter().scan(0, |seen, entry| {
-                *seen += u32::from(entry[3] > 0.0);
-                Some(*seen)
-            }))
-            .collect();
-        let last = LUT_SIZE - 1;
-        move |min, max| {
-            // One entry of slack on either side: densities are rounded when they are uploaded.
-            let low = ((min * last as f32).floor() as usize).saturating_sub(1).min(last);
-            let high = ((max * last as f32).ceil() as usize + 1).min(last);
-            counts[high + 1] > counts[low]
-        }
-    }
-
-    /// Linear RGB and extinction per scene unit at a density, interpolated in f64.
-    pub fn sample(&self, density: f64) -> [f64; 4] {
-        let at = density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
-        let low = (at as usize).min(LUT_SIZE - 2);
-        let t = at - low as f64;
-        std::array::from_fn(|i| {
-            let (a, b) = (f64::from(self.entries[low][i]), f64::from(self.entries[low + 1][i]));
-            a + (b - a) * t
-        })
+        BakedTransfer::new(entries)
     }
 }
 

@@ -3,7 +3,8 @@
 use super::light::LightKey;
 use super::lit_lights::LitLights;
 use super::received::{LightLook, ReceivedLight};
-use crate::model::{Length, Remains, Settings};
+use super::table::EyeTableKey;
+use crate::model::{Length, Remains, Settings, Sides};
 use crate::plan::{RenderOptions, Request};
 
 /// Everything that the volume is made from that holds the diffuse light of all shadowed lights (P §4).
@@ -14,6 +15,8 @@ pub struct CombinedKey {
     /// Density step from which a sample counts as a surface, and the length to which it refers.
     surface_gradient: f64,
     unit: Length,
+    /// To which side of a surface opacity falls, where only that is lit.
+    sides: Option<EyeTableKey>,
     /// Faces that are seen have normals of their own.
     seen: Remains,
     /// What is left of light that counts as none.
@@ -31,9 +34,10 @@ impl CombinedKey {
                 .iter()
                 .map(|lit| (LightLook::of(&lit.light), LightKey::of(request, lit.index)))
                 .collect(),
-            received: ReceivedLight::of(&settings.shadows),
+            received: ReceivedLight::of(settings),
             surface_gradient: settings.shading.surface_gradient,
             unit: settings.opacity_unit,
+            sides: (settings.shading.sides == Sides::One).then(|| EyeTableKey::of(settings)),
             seen: settings.cuts.seen(),
             min_transmittance: options.min_transmittance,
         })

@@ -119,7 +119,7 @@ impl EyeKey {
             sampling: SamplingKey::of(settings),
             seen: cuts.seen(),
             shading_cut: cuts.shading(),
-            received: ReceivedLight::of(shadows),
+            received: ReceivedLight::of(settings),
             lights: lights.collect(),
             combined: combined.cloned(),
             rays: casts_rays.then(|| RaysKey::of(settings)),

@@ -3,7 +3,7 @@
 use super::table::OpacityKey;
 use crate::model::{
     Classification, Deposit, Engine, Hood, Kernel, LightKind, Precision, Quadrature, Remains, Resolution,
-    Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
+    ReverseKernel, Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
 };
 use crate::plan::Request;
 
@@ -24,6 +24,8 @@ pub struct LightKey {
     first_touch: bool,
     deposit: Deposit,
     kernel: Kernel,
+    /// Only what is gathered back has one of its own.
+    reverse_kernel: ReverseKernel,
     slab: f64,
     quadrature: Quadrature,
     resolution: Resolution,
@@ -94,6 +96,9 @@ impl LightKey {
             resolution,
             precision,
             storage: _,
+            reverse_kernel,
+            // Where it is looked up.
+            near_field: _,
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
         wanted.then(|| Self {
@@ -117,6 +122,14 @@ impl LightKey {
             first_touch: *first_touch,
             deposit: *deposit,
             kernel: *kernel,
+            reverse_kernel: if *algorithm == ShadowAlgorithm::Splat
+                && *engine == Engine::Gather
+                && !*first_touch
+            {
+                *reverse_kernel
+            } else {
+                ReverseKernel::Forward
+            },
             slab: *slab,
             quadrature: *quadrature,
             resolution: *resolution,

@@ -1,6 +1,6 @@
 //! Light as samples receive it: the look of a light, and the cures for darkness.
 
-use crate::model::{Hood, LightKind, SceneLight, ShadowAlgorithm, Shadows};
+use crate::model::{Hood, LightKind, NearField, SceneLight, Settings, ShadowAlgorithm, Shadows};
 
 /// A light as samples see it: what moving a parallel light outwards does not change.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,19 +12,21 @@ pub(super) struct LightLook {
     intensity: f64,
     hood: Option<Hood>,
     density_scale: f64,
+    /// It lights one side of a surface, or both.
+    casts_shadows: bool,
 }
 
 impl LightLook {
     /// What samples see of a light.
     pub(super) fn of(light: &SceneLight) -> Self {
-        let SceneLight { kind, position, color, intensity, on: _, casts_shadows: _, hood, density_scale } =
+        let SceneLight { kind, position, color, intensity, on: _, casts_shadows, hood, density_scale } =
             *light;
         let placed = match kind {
             LightKind::Parallel => light.direction().into(),
             LightKind::Perspective => position,
         };
         let hood = (hood.on && kind == LightKind::Perspective).then_some(hood);
-        Self { kind, placed, color, intensity, hood, density_scale }
+        Self { kind, placed, color, intensity, hood, density_scale, casts_shadows }
     }
 }
 
@@ -37,11 +39,12 @@ pub(super) struct ReceivedLight {
     gain: f64,
     bias_voxels: f64,
     balance: f64,
+    near_field: NearField,
 }
 
 impl ReceivedLight {
     /// The part of the shadows that acts where light is looked up.
-    pub(super) fn of(shadows: &Shadows) -> Self {
+    pub(super) fn of(settings: &Settings) -> Self {
         let Shadows {
             algorithm,
             strength,
@@ -58,7 +61,12 @@ impl ReceivedLight {
             resolution: _,
             precision: _,
             storage: _,
-        } = *shadows;
-        Self { algorithm, strength, ambient_offset, gain, bias_voxels, balance }
+            reverse_kernel: _,
+            near_field: _,
+        } = settings.shadows;
+        let near_field = settings.near_field();
+        // Rays nearby take the place of a bias.
+        let bias_voxels = if near_field == NearField::Off { bias_voxels } else { 0.0 };
+        Self { algorithm, strength, ambient_offset, gain, bias_voxels, balance, near_field }
     }
 }

@@ -9,8 +9,8 @@ use glam::DVec3;
 use super::*;
 use crate::data::Samples;
 use crate::model::{
-    Camera, ControlPoint, Deposit, Interpolation, Light, LightKind, Projection, Quadrature, Resolution,
-    TransferFunction,
+    Camera, ControlPoint, Deposit, Interpolation, Light, LightKind, NearField, Projection, Quadrature,
+    Resolution, ReverseKernel, Sides, TransferFunction,
 };
 
 const KERNELS: [Kernel; 3] = [Kernel::BSpline, Kernel::Gaussian { sigma: 0.6 }, Kernel::Prefiltered];
@@ -44,7 +44,8 @@ fn ball(dims: [usize; 3], spacing: DVec3) -> Volume {
     })
 }
 
-/// Extinction linear in density; `depth` is the optical depth of a full voxel.
+/// Extinction linear in density; `depth` is the optical depth of a full voxel. Light is that of the paper: volumes
+/// alone, splatted back with the kernel of the light pass.
 fn settings(depth: f64) -> Settings {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let points = vec![point(0.0, 0.0), point(1.0, -(-depth).exp_m1())];
@@ -59,6 +60,9 @@ fn settings(depth: f64) -> Settings {
         ..Settings::default()
     };
     settings.shadows.slab = 1.0;
+    settings.shadows.reverse_kernel = ReverseKernel::Forward;
+    settings.shadows.near_field = NearField::Off;
+    settings.shading.sides = Sides::Two;
     settings
 }
 

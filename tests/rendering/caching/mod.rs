@@ -1,7 +1,7 @@
 //! What is kept and what is refilled; and what must not change a single bit.
 
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightKind, Settings};
+use chiaroscuro::model::{LightKind, NearField, Settings};
 use chiaroscuro::plan::Request;
 use glam::DVec3;
 
@@ -122,6 +122,7 @@ fn live_controls_rebuild_no_light_and_change_the_picture() {
 #[test]
 fn a_light_bias_fills_more_once_and_is_live_from_then_on() {
     let (loaded, mut settings) = (loaded(), three_lights());
+    settings.shadows.near_field = NearField::Off;
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let before = render(&mut renderer, &loaded, &settings, SIZE);
     let mut seen = vec![before.light.clone()];

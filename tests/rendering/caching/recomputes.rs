@@ -78,6 +78,7 @@ impl Bench {
     }
 }
 
+/// Rows for what a user changes most; that every setting is classified is checked in `src/plan/keys/tests.rs`.
 #[test]
 fn every_setting_costs_what_it_should() {
     let table = [
@@ -109,9 +110,13 @@ fn every_setting_costs_what_it_should() {
         ("shadows.algorithm", "raycast", Cost::Lights(3)),
         ("shadows.strength", "0.5", Cost::Eye),
         ("shadows.gain", "2", Cost::Eye),
-        // Looks further from material, which in so small a volume is everywhere; larger ones are filled once more
-        // (`a_light_bias_fills_more_once_and_is_live_from_then_on`).
-        ("shadows.bias_voxels", "1", Cost::Eye),
+        // Rays nearby take its place (without them: `a_light_bias_fills_more_once_and_is_live_from_then_on`).
+        ("shadows.bias_voxels", "1", Cost::Nothing),
+        // Looks further from material, which in so small a volume is everywhere.
+        ("shadows.near_field", "off", Cost::Eye),
+        ("shadows.near_field", "long", Cost::Eye),
+        ("shadows.reverse_kernel", "forward", Cost::Lights(3)),
+        ("shading.sides", "two", Cost::Eye),
         ("shadows.balance", "1.5", Cost::Eye),
         ("shadows.first_touch", "true", Cost::Lights(3)),
         ("shadows.kernel", "prefiltered", Cost::Lights(3)),

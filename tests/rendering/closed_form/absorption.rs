@@ -1,7 +1,8 @@
 //! What homogeneous material absorbs: Beer–Lambert, and the opacity of chords.
 
 use chiaroscuro::gpu::Picture;
-use chiaroscuro::model::{Camera, Deposit, Engine, LightKind, Quadrature, ShadowAlgorithm};
+use chiaroscuro::model::{Camera, Deposit, Engine, LightKind, Quadrature, ReverseKernel, ShadowAlgorithm};
+use chiaroscuro::plan::light_views;
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
@@ -58,6 +59,48 @@ fn beer_lambert_in_a_homogeneous_block(engine: Engine) {
                         "μ {per_voxel}, Δs {slab}, {quadrature:?}: {found} not {expected} at depth {depth}"
                     );
                 }
+            }
+        }
+    }
+}
+
+/// No. 2, splatted back with a tent: what it makes of an exponential is a sum over the slabs under it, whose places
+/// the sheets' frame tells.
+#[test]
+fn beer_lambert_with_a_tent_on_the_way_back() {
+    let n = 48;
+    let face = 8;
+    let loaded =
+        Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (face..n - face).contains(c))));
+    let scene = loaded.volume().scene();
+    for (per_voxel, slab, tolerance) in BEER_LAMBERT {
+        let mut settings = base(Engine::Gather, per_voxel);
+        settings.shadows.reverse_kernel = ReverseKernel::Tent;
+        settings.shadows.slab = slab;
+        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        let light = settings.lights[0].in_scene(&settings.camera);
+        let view = light_views(&light, &settings.shadows, &scene).remove(0);
+        let half = per_voxel * slab / 2.0;
+        for z in face + 3..n - face - 3 {
+            let depth = (n - face) as f64 - 0.5 - z as f64;
+            let point = DVec3::new(n as f64 / 2.0, n as f64 / 2.0, z as f64);
+            let at = view.position(scene.scene_from_index.transform_point3(point)).expect("seen").slab;
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for k in (at - 8.0).floor() as i32..=(at + 8.0).ceil() as i32 {
+                // In voxels, from the voxel to the middle of the slab.
+                let behind = (f64::from(k) - at) * slab;
+                let weight = (1.0 - behind.abs()).max(0.0);
+                sum += weight * (-per_voxel * (depth + behind)).exp();
+                weights += weight;
+            }
+            let expected = sum / weights * half.sinh() / half;
+            let found = f64::from(volume[n / 2 + n * (n / 2 + n * z)]);
+            if expected > FAINT {
+                let error = (found / expected - 1.0).abs();
+                assert!(
+                    error <= tolerance,
+                    "μ {per_voxel}, Δs {slab}: {found} not {expected} at depth {depth}"
+                );
             }
         }
     }

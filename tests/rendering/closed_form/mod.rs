@@ -4,7 +4,7 @@ use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{Engine, Length, LightKind, Settings};
 
 use crate::common::context;
-use crate::scenes::{self, isotropic, linear_extinction, straight};
+use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
 
 mod absorption;
 mod brightness;
@@ -24,6 +24,7 @@ pub(crate) fn base(engine: Engine, per_voxel: f64) -> Settings {
         ..Settings::default()
     };
     isotropic(&mut settings);
+    paper(&mut settings);
     settings.sampling.engine = engine;
     settings
 }

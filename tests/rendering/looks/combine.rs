@@ -5,7 +5,7 @@ use crate::compare::{compare, difference, flat32};
 use crate::scenes::{self, isotropic};
 use crate::thresholds::{COMBINED, COMBINED_NORMALS};
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{Light, LightKind, LightStorage, Settings};
+use chiaroscuro::model::{Light, LightKind, LightStorage, NearField, Settings};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [96, 80];
@@ -24,6 +24,8 @@ fn look() -> Settings {
     settings.shadows.gain = 1.4;
     settings.shadows.bias_voxels = 0.5;
     settings.shadows.storage = LightStorage::PerLight;
+    // A combined volume has none.
+    settings.shadows.near_field = NearField::Off;
     settings
 }
 

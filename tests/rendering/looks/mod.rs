@@ -3,5 +3,7 @@
 mod combine;
 mod cuts;
 mod floor;
+mod near_field;
+mod sides;
 mod stretch;
 mod variants;

@@ -1,7 +1,7 @@
 //! What tells the paper's three algorithms apart (P §3.2): how often each of them blurs a shadow.
 
 use crate::common::{Dataset, context, render};
-use crate::scenes::{self, isotropic, linear_extinction, straight};
+use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
 use crate::thresholds::{
     DIRECT_BEER_LAMBERT, EDGE_CENTRE, EDGE_WIDTH, EDGE_WIDTHS, FAINT, SELF_SHADOW, SELF_SHADOW_GROWS,
 };
@@ -123,6 +123,7 @@ fn shadow_profile(algorithm: ShadowAlgorithm, engine: Engine) -> Vec<f64> {
         ..Settings::default()
     };
     isotropic(&mut settings);
+    paper(&mut settings);
     let mut renderer = renderer();
     let size = [480, 8];
     // The picture is as wide as the volume.
@@ -173,6 +174,7 @@ fn cures_brighten_and_splatting_is_slightly_darker() {
     let volume = chiaroscuro::data::synthetic::builtin("chair", Some(48)).expect("the chair");
     let histogram = Histogram::of(&volume);
     let mut settings = auto::first_settings(&volume, &histogram);
+    paper(&mut settings);
     let loaded = Dataset::new(volume);
     let mut renderer = renderer();
     let mut brightness =

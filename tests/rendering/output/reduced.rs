@@ -12,10 +12,13 @@ use crate::thresholds::{AVERAGED, AVERAGED_MEAN};
 
 const SIZE: [u32; 2] = [96, 72];
 
-/// The automatic opacity unit in the look of a test: it is what follows the number of voxels.
+/// The automatic opacity unit in the look of a test: it is what follows the number of voxels. Without rays nearby,
+/// which find that softer surfaces shade themselves more: by rays all the way the mean is 4 % less.
 fn look(volume: &Volume) -> Settings {
     let first = auto::first_settings(volume, &Histogram::of(volume));
-    Settings { opacity_unit: first.opacity_unit, ..scenes::look() }
+    let mut settings = Settings { opacity_unit: first.opacity_unit, ..scenes::look() };
+    scenes::paper(&mut settings);
+    settings
 }
 
 #[test]

@@ -15,6 +15,10 @@ pub(crate) const SURFACE_GRADIENT: Named = named(
     "The density step at which material counts as a surface; higher makes noise and haze look soft",
 );
 
+pub(crate) const SIDES: Named = named("Lit sides", "Which sides of a surface shadowed light falls on");
+pub(crate) const ONE_SIDE: Named = named("Outer", "The side that opacity falls to: clean edges, dark backs");
+pub(crate) const BOTH_SIDES: Named = named("Both", "Light reaches through surfaces, as in the paper");
+
 pub(crate) const TONE_MAP: Named =
     named("Tone map", "What happens to light that is brighter than the screen");
 pub(crate) const NEUTRAL: Named = named("Neutral", "Keeps colours up to 80 %, then rolls off smoothly");

@@ -80,6 +80,27 @@ pub(crate) const COMBINED: Named = named(
     "The diffuse light of all in one volume: quick pictures under many lights, without their highlights",
 );
 
+pub(crate) const QUALITY: Named =
+    named("Quality", "How truly light is computed; sets slabs, rays and the way light gets to the volume");
+pub(crate) const FAST: Named = named("Fast", "Light volumes alone: soft shadows, quickest");
+pub(crate) const STANDARD: Named = named("Standard", "Light volumes, and short rays near what is seen");
+pub(crate) const FINE: Named = named("Fine", "Longer rays and thinner slabs: for figures");
+pub(crate) const EXACT: Named = named("Exact", "Rays all the way and the thinnest slabs: true, and slow");
+
+pub(crate) const NEAR_FIELD: Named = named(
+    "Nearby",
+    "What shades a point from close by: found by a short ray, which shows relief, contact and thin things sharply",
+);
+pub(crate) const NEAR_OFF: Named =
+    named("Off", "The light volume alone, as in the paper: soft, and quickest");
+pub(crate) const NEAR_SHORT: Named = named("3 voxels", "Sharp where it matters most, at little cost");
+pub(crate) const NEAR_LONG: Named = named("8 voxels", "Truer yet, and slower: for figures");
+
+pub(crate) const REVERSE_KERNEL: Named =
+    named("Way back", "With which kernel light gets from the sheets into the light volume");
+pub(crate) const TENT: Named = named("Tent", "Narrow: sharper shadows, filled in less time");
+pub(crate) const FORWARD: Named = named("Kernel", "That of the light pass, as in the paper: softer shadows");
+
 pub(crate) const DEPOSIT: Named = named("Deposit", "Which light a sheet leaves in its voxels");
 pub(crate) const SLAB_MEAN: Named = named("Mean", "The mean over the slab: hardly depends on its thickness");
 pub(crate) const FRONT: Named =

@@ -1,0 +1,98 @@
+//! How truly light is computed, in one word that stands for several settings.
+
+use crate::model::{NearField, ReverseKernel, Settings, ShadowAlgorithm};
+
+/// A level of quality. Settings hold what it stands for, and not the word: a level can be chosen and then refined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quality {
+    /// Light volumes alone.
+    Fast,
+    /// Light volumes, and short rays near what is seen.
+    Standard,
+    /// Longer rays, and thinner slabs.
+    Fine,
+    /// Rays all the way, and the thinnest slabs.
+    Exact,
+}
+
+/// What a level stands for.
+struct Level {
+    algorithm: ShadowAlgorithm,
+    near_field: NearField,
+    /// Of the eye, in smallest edges of voxels.
+    slab: f64,
+    /// Of the light pass or of the rays, likewise.
+    shadow_slab: f64,
+}
+
+impl Quality {
+    /// From the quickest to the truest.
+    pub const ALL: [Self; 4] = [Self::Fast, Self::Standard, Self::Fine, Self::Exact];
+
+    fn level(self) -> Level {
+        let splat = |near_field, slab| Level {
+            algorithm: ShadowAlgorithm::Splat,
+            near_field,
+            slab,
+            shadow_slab: 1.0,
+        };
+        match self {
+            Self::Fast => splat(NearField::Off, 0.5),
+            Self::Standard => splat(NearField::Short, 0.5),
+            // Thin shells are a voxel thick: three slabs show their rise, their middle and their fall.
+            Self::Fine => splat(NearField::Long, 1.0 / 3.0),
+            Self::Exact => Level {
+                algorithm: ShadowAlgorithm::Direct,
+                near_field: NearField::Short,
+                slab: 0.25,
+                shadow_slab: 0.25,
+            },
+        }
+    }
+
+    /// Sets all that the level stands for. Shadows that are off stay off.
+    pub fn apply(self, settings: &mut Settings) {
+        let Level { algorithm, near_field, slab, shadow_slab } = self.level();
+        settings.sampling.slab = slab;
+        let shadows = &mut settings.shadows;
+        shadows.slab = shadow_slab;
+        shadows.near_field = near_field;
+        shadows.reverse_kernel = ReverseKernel::Tent;
+        if shadows.algorithm.is_on() {
+            shadows.algorithm = algorithm;
+        }
+    }
+
+    /// The level that settings are at, if they are at one.
+    pub fn of(settings: &Settings) -> Option<Self> {
+        Self::ALL.into_iter().find(|level| {
+            let mut applied = settings.clone();
+            level.apply(&mut applied);
+            applied == *settings
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_at_the_level_that_was_applied() {
+        let mut settings = Settings::default();
+        for level in Quality::ALL {
+            level.apply(&mut settings);
+            assert_eq!(Quality::of(&settings), Some(level));
+        }
+        settings.sampling.slab = 0.7;
+        assert_eq!(Quality::of(&settings), None);
+    }
+
+    #[test]
+    fn shadows_that_are_off_stay_off() {
+        let mut settings = Settings::default();
+        settings.shadows.algorithm = ShadowAlgorithm::Off;
+        Quality::Exact.apply(&mut settings);
+        assert_eq!(settings.shadows.algorithm, ShadowAlgorithm::Off);
+    }
+}

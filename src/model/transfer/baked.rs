@@ -1,0 +1,127 @@
+//! Transfer functions as tables.
+
+use super::LUT_SIZE;
+
+/// A transfer function as a table over a value range: linear RGB and extinction per scene unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedTransfer {
+    /// [`LUT_SIZE`] entries, evenly spaced over densities 0 … 1, both ends included.
+    pub entries: Vec<[f32; 4]>,
+    /// For each of them 1 where extinction rises with density, −1 where it falls, and between them amid a change: to
+    /// which side of a surface it falls.
+    pub sides: Vec<f32>,
+}
+
+/// How far, in entries, a change of extinction says to which side it falls: a step of 8-bit data.
+const SIDE_REACH: f64 = LUT_SIZE as f64 / 256.0;
+
+/// For each entry the balance of rises and falls around it, (rises − falls) / (rises + falls), each weighted by
+/// e^(−distance/[`SIDE_REACH`]): on a plateau the nearest change decides. 1 where nothing changes anywhere.
+fn sides(entries: &[[f32; 4]]) -> Vec<f32> {
+    let fade = (-1.0 / SIDE_REACH).exp();
+    let steps: Vec<f64> =
+        entries.windows(2).map(|pair| f64::from(pair[1][3]) - f64::from(pair[0][3])).collect();
+    let add = |sum: &mut [f64; 2], step: f64| {
+        *sum = [sum[0] * fade + step.max(0.0), sum[1] * fade + (-step).max(0.0)];
+        Some(*sum)
+    };
+    let before = std::iter::once([0.0; 2]).chain(steps.iter().scan([0.0; 2], |sum, &step| add(sum, step)));
+    let mut behind: Vec<_> = steps.iter().rev().scan([0.0; 2], |sum, &step| add(sum, step)).collect();
+    behind.reverse();
+    before
+        .zip(behind.into_iter().chain([[0.0; 2]]))
+        .map(|([rises, falls], [rises_behind, falls_behind])| {
+            let (rises, falls) = (rises + rises_behind, falls + falls_behind);
+            if rises + falls > 0.0 { ((rises - falls) / (rises + falls)) as f32 } else { 1.0 }
+        })
+        .collect()
+}
+
+impl BakedTransfer {
+    /// A table of [`LUT_SIZE`] entries.
+    pub(super) fn new(entries: Vec<[f32; 4]>) -> Self {
+        Self { sides: sides(&entries), entries }
+    }
+
+    /// Whether both have extinction at the same densities: only how much, and of which colour, differs.
+    pub fn shows_like(&self, other: &Self) -> bool {
+        let pairs = self.entries.iter().zip(&other.entries);
+        self.entries.len() == other.entries.len()
+            && pairs.into_iter().all(|(a, b)| (a[3] > 0.0) == (b[3] > 0.0))
+    }
+
+    /// Whether any density in `[min, max]` has extinction. Looks at the table entries around the
+    /// range too, since values between entries are interpolated.
+    pub fn visibility(&self) -> impl Fn(f32, f32) -> bool + Sync + use<> {
+        // visible[i] counts the entries below i that have extinction.
+        let counts: Vec<u32> = std::iter::once(0)
+            .chain(self.entries.iter().scan(0, |seen, entry| {
+                *seen += u32::from(entry[3] > 0.0);
+                Some(*seen)
+            }))
+            .collect();
+        let last = LUT_SIZE - 1;
+        move |min, max| {
+            // One entry of slack on either side: densities are rounded when they are uploaded.
+            let low = ((min * last as f32).floor() as usize).saturating_sub(1).min(last);
+            let high = ((max * last as f32).ceil() as usize + 1).min(last);
+            counts[high + 1] > counts[low]
+        }
+    }
+
+    /// To which side opacity falls at a density, of the nearest entry.
+    pub fn side(&self, density: f64) -> f64 {
+        let at = density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
+        f64::from(self.sides[at.round() as usize])
+    }
+
+    /// Linear RGB and extinction per scene unit at a density, interpolated in f64.
+    pub fn sample(&self, density: f64) -> [f64; 4] {
+        let at = density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
+        let low = (at as usize).min(LUT_SIZE - 2);
+        let t = at - low as f64;
+        std::array::from_fn(|i| {
+            let (a, b) = (f64::from(self.entries[low][i]), f64::from(self.entries[low + 1][i]));
+            a + (b - a) * t
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::data::ValueRange;
+    use crate::model::{ControlPoint, TransferFunction};
+
+    fn sides(points: &[(f64, f64)]) -> Vec<f32> {
+        let points = points.iter().map(|&(value, opacity)| ControlPoint::new(value, [1.0; 3], opacity));
+        let function = TransferFunction { points: points.collect(), ..TransferFunction::default() };
+        function.bake(ValueRange::UNIT, 1.0, 1.0).sides
+    }
+
+    #[test]
+    fn sides_are_those_of_the_nearest_change() {
+        // Rising, a plateau, falling.
+        let found = sides(&[(0.0, 0.0), (0.2, 0.0), (0.3, 0.8), (0.7, 0.8), (0.8, 0.0)]);
+        let at = |density: f64| found[(density * 1023.0) as usize];
+        for rising in [0.0, 0.1, 0.25, 0.3, 0.45] {
+            assert!(at(rising) > 0.99, "{rising}: {}", at(rising));
+        }
+        for falling in [0.55, 0.7, 0.75, 0.9, 1.0] {
+            assert!(at(falling) < -0.99, "{falling}: {}", at(falling));
+        }
+        // Between them there is no jump.
+        assert!(found.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.3));
+    }
+
+    #[test]
+    fn mirrored_curves_have_mirrored_sides() {
+        let curve = [(0.0, 0.0), (0.3, 0.1), (0.35, 0.9), (0.6, 0.2), (1.0, 0.7)];
+        let mut mirrored = curve.map(|(value, opacity)| (1.0 - value, opacity));
+        mirrored.reverse();
+        let (found, other) = (sides(&curve), sides(&mirrored));
+        for (a, b) in found.iter().zip(other.iter().rev()) {
+            assert!((a + b).abs() < 1e-3, "{a} {b}");
+        }
+        assert!(sides(&[(0.0, 0.5), (1.0, 0.5)]).iter().all(|&side| side == 1.0), "nothing changes");
+    }
+}

@@ -1,0 +1,72 @@
+//! Rays nearby: what shades a point from within a few voxels is found by a short ray.
+
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{Camera, Length, LightKind, LightingTransfer, NearField, Projection, Settings};
+
+use crate::common::{Dataset, context, render};
+use crate::scenes::{self, isotropic, linear_extinction, straight};
+use crate::thresholds::{LOOKED_UP_BELOW_A_FACE, NEAR_A_FACE};
+
+/// Mass of the cubic B-spline beyond `depth` voxels below the face of homogeneous material, which is half a voxel from
+/// its last voxels: ∫ from there to the light of the density that the kernel reconstructs.
+fn way_through_face(depth: f64) -> f64 {
+    let kernel = |d: f64| {
+        let d = d.abs();
+        if d < 1.0 {
+            2.0 / 3.0 - d * d * (1.0 - d / 2.0)
+        } else if d < 2.0 {
+            (2.0 - d).powi(3) / 6.0
+        } else {
+            0.0
+        }
+    };
+    // Voxels at 0, −1, −2 … are full; the face is at ½. Density at z is Σ kernel(z − voxel).
+    let density = |z: f64| (-60..=0).map(|voxel| kernel(z - f64::from(voxel))).sum::<f64>();
+    let (steps, from, to) = (4000, 0.5 - depth, 3.0);
+    let width = (to - from) / f64::from(steps);
+    (0..steps).map(|step| density(from + (f64::from(step) + 0.5) * width)).sum::<f64>() * width
+}
+
+/// An eye inside opaque, homogeneous material sees how much of oblique light arrives just below the lit face:
+/// with rays nearby as much as physics says, without them what three blurs leave of it.
+#[test]
+fn light_below_a_face_is_what_arrives_there() {
+    let n = 48;
+    let face = 8;
+    let loaded = Dataset::new(scenes::block(n, |v| v.iter().all(|c| (face..n - face).contains(c))));
+    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let per_voxel = 0.7;
+    let mut squares = [0.0_f64; 3];
+    let depths: Vec<f64> = (0..10).map(|step| 0.25 * f64::from(step)).collect();
+    for &depth in &depths {
+        let z = (n - face) as f64 - 0.5 - depth;
+        let height = (z + 0.5) / (n as f64 / 2.0) - 1.0;
+        let mut settings = Settings {
+            transfer: linear_extinction(40.0),
+            lighting: LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(per_voxel) },
+            opacity_unit: Length::Voxels(1.0),
+            lights: vec![scenes::light(LightKind::Parallel, [1.0, 0.0, 1.0])],
+            camera: Camera {
+                target: [0.0, 0.2, height],
+                distance: 0.3,
+                fov_y_deg: 2.0,
+                ..straight(-90.0, 0.0)
+            },
+            ..Settings::default()
+        };
+        settings.camera.projection = Projection::Perspective;
+        isotropic(&mut settings);
+        settings.sampling.slab = 0.25;
+        let expected = (-per_voxel * way_through_face(depth) * 2.0_f64.sqrt()).exp();
+        for (near, sum) in [NearField::Off, NearField::Short, NearField::Long].into_iter().zip(&mut squares) {
+            settings.shadows.near_field = near;
+            let picture = render(&mut renderer, &loaded, &settings, [9, 9]);
+            let found = f64::from(picture.light[9 * 4 + 4][0]);
+            *sum += (found - expected).powi(2);
+        }
+    }
+    let [looked_up, short, long] = squares.map(|sum| (sum / depths.len() as f64).sqrt());
+    println!("below a face, RMSE: looked up {looked_up:.4}, short rays {short:.4}, long {long:.4}");
+    assert!(looked_up > LOOKED_UP_BELOW_A_FACE, "{looked_up}");
+    assert!(short <= NEAR_A_FACE && long <= NEAR_A_FACE, "{short} {long}");
+}
