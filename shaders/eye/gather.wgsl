@@ -8,6 +8,7 @@
 #import "shading/shade.wgsl"
 #import "density/gradient.wgsl"
 #import "sheets/tiles.wgsl"
+#import "eye/slabs_by_need.wgsl"
 
 // r: distance to the nearest cell that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<f32>;
@@ -26,6 +27,8 @@ override DIRECT: bool = false;
 override GRADIENT_TEXTURE: bool = false;
 // Take gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
+// Slabs are as thin as they need to be (slabs_by_need.wgsl).
+override BY_NEED: bool = false;
 
 fn light_extinction(density: f32) -> f32 {
     let at = table_entry(density);
@@ -104,28 +107,32 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
     return gradient_of_sheets(pixel, depth_of(eye.frame, k), vec3f(across, down, deep), vec3f(0.0));
 }
 
+// The gradient of the volume in index space.
+fn volume_slope(p: vec3f, level: f32) -> vec3f {
+    if (GRADIENT_TEXTURE) {
+        return textureSampleLevel(gradients, clamped, (p + 4.5) * grid.pyramid_scale, level).xyz;
+    }
+    return index_gradient(p, level);
+}
+
 // The light from the material of slab k where the ray crosses it.
 fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample, weight: f32) -> vec3f {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
     let level = kernel_level(eye.frame, depth);
-    var slope: vec3f;
     if (SHEET_GRADIENTS) {
-        slope = gradient_between_sheets(vec2f(pixel), f32(k));
-    } else {
-        if (GRADIENT_TEXTURE) {
-            let coordinates = (p + 4.5) * grid.pyramid_scale;
-            slope = textureSampleLevel(gradients, clamped, coordinates, level).xyz;
-        } else {
-            slope = index_gradient(p, level);
-        }
-        slope = gradient_to_scene(eye.space, slope);
+        return lit_material(p, level, gradient_between_sheets(vec2f(pixel), f32(k)), found, weight);
     }
+    return lit_material(p, level, gradient_to_scene(eye.space, volume_slope(p, level)), found, weight);
+}
+
+// The light from material where the gradient is `volume_slope` in scene space.
+fn lit_material(p: vec3f, level: f32, volume_slope: vec3f, found: SlabSample, weight: f32) -> vec3f {
     var density = found.density;
     if (PRECLASSIFY && ONE_SIDED) {
         density = pyramid(p, level);
     }
-    slope += face_slope(p, level, density);
+    let slope = volume_slope + face_slope(p, level, density);
     return shade(Sampled(p, slope, density, level, weight), found.material.rgb);
 }
 
@@ -146,10 +153,10 @@ fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
     return k;
 }
 
-// What slab k shows where the ray crosses it.
-fn slab_seen(ray: Ray, span: vec2f, k: i32) -> SlabSample {
-    var found = slab_sample(eye.frame, ray, f32(k));
-    found.material.a *= share_within(span, depth_of(eye.frame, f32(k)), eye.frame.slab);
+// What a slab shows where the ray crosses it, whose middle is that of slab k and which is `width` as thick as that.
+fn slab_seen(ray: Ray, span: vec2f, k: f32, width: f32) -> SlabSample {
+    var found = slab_sample(eye.frame, ray, k);
+    found.material.a *= share_within(span, depth_of(eye.frame, k), width * eye.frame.slab);
     return found;
 }
 
@@ -168,7 +175,7 @@ fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Samp
             if (at.k > last) {
                 break;
             }
-            at.found = slab_seen(ray, span, at.k);
+            at.found = slab_seen(ray, span, f32(at.k), 1.0);
             if (at.found.material.a > 0.0) {
                 break;
             }
@@ -179,6 +186,45 @@ fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Samp
         }
     }
     return at;
+}
+
+// What a ray shows.
+struct Seen {
+    // Linear, premultiplied.
+    color: vec3f,
+    // Transmittance.
+    left: f32,
+}
+
+fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2u) -> Seen {
+    let walk = walk_along(eye.frame, ray);
+    var at = next_sample(ray, walk, span, inside.x, inside.y);
+    var color = vec3f(0.0);
+    var t = 1.0;
+    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
+    // there, not from the middle.
+    loop {
+        if (at.k > inside.y) {
+            break;
+        }
+        if (!STRETCH) {
+            at.found = slab_seen(ray, span, f32(at.k), 1.0);
+        }
+        if (at.found.material.a > 0.0) {
+            let passed = exp(-at.found.material.a * eye.frame.slab * ray.obliquity);
+            let weight = t * (1.0 - passed);
+            color += weight * shaded(ray, pixel, at.k, at.found, weight);
+            t *= passed;
+        }
+        if (t < eye.dark) {
+            break;
+        }
+        at = next_sample(ray, walk, span, at.k + 1, inside.y);
+        if (at.k > inside.y) {
+            break;
+        }
+    }
+    return Seen(color, t);
 }
 
 @compute @workgroup_size(8, 8)
@@ -196,32 +242,11 @@ fn main(
     let ray = ray_of(eye.frame, vec2f(pixel));
     let span = span_within(eye.seen, ray);
     let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
-    let walk = walk_along(eye.frame, ray);
-    var at = next_sample(ray, walk, span, inside.x, inside.y);
-    var color = vec3f(0.0);
-    var t = 1.0;
-    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
-    // there, not from the middle.
-    loop {
-        if (at.k > inside.y) {
-            break;
-        }
-        if (!STRETCH) {
-            at.found = slab_seen(ray, span, at.k);
-        }
-        if (at.found.material.a > 0.0) {
-            let passed = exp(-at.found.material.a * eye.frame.slab * ray.obliquity);
-            let weight = t * (1.0 - passed);
-            color += weight * shaded(ray, pixel, at.k, at.found, weight);
-            t *= passed;
-        }
-        if (t < eye.dark) {
-            break;
-        }
-        at = next_sample(ray, walk, span, at.k + 1, inside.y);
-        if (at.k > inside.y) {
-            break;
-        }
+    var seen: Seen;
+    if (BY_NEED) {
+        seen = slabs_by_need(ray, span, inside);
+    } else {
+        seen = even_slabs(ray, span, inside, pixel);
     }
-    textureStore(picture, pixel, vec4f(color, 1.0 - t));
+    textureStore(picture, pixel, vec4f(seen.color, 1.0 - seen.left));
 }

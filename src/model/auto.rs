@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{ControlPoint, Interpolation, Length, Rig, Sampling, Settings, TransferFunction};
+use super::{ControlPoint, Interpolation, Length, Rig, Sampling, Settings, Slabs, TransferFunction};
 use crate::data::{HISTOGRAM_BINS, Histogram, Volume};
 
 /// Share of the picture's height (and width, at 4:3) that the object fills.
@@ -22,8 +22,8 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
         transfer: transfer(volume, histogram),
         opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
-        // Half a voxel: with thicker slabs steep surfaces show the slabs as wood grain.
-        sampling: Sampling { slab: 0.5, ..Sampling::default() },
+        // Even slabs as thick show on steep surfaces as wood grain.
+        sampling: Sampling { slab: 1.0, slabs: Slabs::ByNeed, ..Sampling::default() },
         ..Settings::default()
     };
     frame_object(&mut settings, volume);

@@ -19,7 +19,7 @@ pub use self::settings::length::Length;
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, SceneLight};
 pub use self::settings::quality::Quality;
 pub use self::settings::sampling::{
-    Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder,
+    Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
 };
 pub use self::settings::shadows::{
     Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,

@@ -11,7 +11,7 @@ mod request;
 pub use self::geometry::brick_set::BrickSet;
 pub use self::geometry::cell_distances::{CellDistances, FARTHEST};
 pub use self::geometry::cell_set::CellSet;
-pub use self::geometry::eye_frame::{eye_frame, preview_slab};
+pub use self::geometry::eye_frame::{eye_frame, picture_frame, preview_slab};
 pub use self::geometry::light_frame::{
     LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views,
 };

@@ -65,13 +65,7 @@ impl<'r> Stack<'r> {
                 let width = frame.size[0];
                 (0..width * frame.size[1])
                     .into_par_iter()
-                    .map(|pixel| {
-                        let at = [pixel % width, pixel / width, k].map(f64::from);
-                        if self.material_at(at).is_none() {
-                            return 0.0;
-                        }
-                        gather::slab_mean(reference, frame, profile, *quadrature, at)
-                    })
+                    .map(|pixel| self.density_at([pixel % width, pixel / width, k].map(f64::from)))
                     .collect()
             }
         }
@@ -131,21 +125,46 @@ impl<'r> Stack<'r> {
     ///
     /// τ = μ(ρ̄) · Δs / cos θ, so that the opacity is 1 − e^−τ (P eq. 6).
     pub(super) fn sample(&self, pixel: u32, k: u32, material: [f64; 4]) -> Option<Sample> {
-        let width = self.frame.size[0];
-        let at @ [i, j, k] = [pixel % width, pixel / width, k].map(f64::from);
-        let point = self.material_at(at)?;
+        self.sample_of(pixel, f64::from(k), 1.0, material)
+    }
+
+    /// As [`Self::sample`], for a slab with its middle in that of slab `k`, and `width` times as thick.
+    pub(super) fn sample_of(&self, pixel: u32, k: f64, width: f64, material: [f64; 4]) -> Option<Sample> {
+        let [i, j] = self.place_of(pixel);
+        let point = self.material_at([i, j, k])?;
         let [r, g, b, extinction] = material;
         let lengthening =
             if self.reference.options.fault == Fault::NoObliquity { 1.0 } else { self.frame.obliquity(i, j) };
         let share = match &self.remaining {
             Cutting::Seen(remaining) => {
                 let end = |k| self.frame.point(i, j, self.frame.depth_of(k));
-                self.reference.share_of(remaining, end(k - 0.5), end(k + 0.5))
+                self.reference.share_of(remaining, end(k - 0.5 * width), end(k + 0.5 * width))
             }
             Cutting::Shading(remaining) => self.reference.share_that_shades(remaining, point),
         };
-        let optical_depth = share * extinction * self.frame.slab * lengthening;
+        let optical_depth = share * extinction * width * self.frame.slab * lengthening;
         (optical_depth > 0.0).then_some(Sample { point, rgb: [r, g, b], optical_depth })
+    }
+
+    /// Whether anything of slab `k` can be there on a pixel's ray, whatever the density.
+    pub(super) fn remains(&self, pixel: u32, k: u32) -> bool {
+        self.sample(pixel, k, [0.0, 0.0, 0.0, 1.0]).is_some()
+    }
+
+    /// The density with the GPU's weights in the middle of slab `k` on the ray of pixel (i, j); 0 outside the
+    /// volume's support.
+    pub(super) fn density_at(&self, at: [f64; 3]) -> f64 {
+        let Self { reference, frame, profile, quadrature, .. } = self;
+        if self.material_at(at).is_none() {
+            return 0.0;
+        }
+        gather::slab_mean(reference, frame, profile, *quadrature, at)
+    }
+
+    /// A pixel's column and row.
+    pub(super) fn place_of(&self, pixel: u32) -> [f64; 2] {
+        let width = self.frame.size[0];
+        [pixel % width, pixel / width].map(f64::from)
     }
 
     /// The number of pixels of a sheet.

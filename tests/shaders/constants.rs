@@ -2,7 +2,7 @@
 
 use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
 use chiaroscuro::gpu::LISTED_PER_ROW;
-use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS};
+use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS, THIN_SLABS};
 use chiaroscuro::plan::{
     MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT,
 };
@@ -23,9 +23,10 @@ fn constant(source: &str, name: &str) -> Option<f64> {
 
 #[test]
 fn constants_are_the_same_in_rust_and_in_the_shaders() {
-    let expected: [(&str, f64, &[&str]); 5] = [
+    let expected: [(&str, f64, &[&str]); 6] = [
         ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye/gather.wgsl"]),
         ("TABLE_SIZE", LUT_SIZE as f64, &["eye/gather.wgsl", "light/march.wgsl"]),
+        ("THIN_SLABS", f64::from(THIN_SLABS), &["eye/gather.wgsl"]),
         ("MIN_KERNEL_VOXELS", MIN_KERNEL_VOXELS, &["light/backproject.wgsl"]),
         ("MAX_KERNEL_PIXELS", MAX_KERNEL_PIXELS, &["light/backproject.wgsl"]),
         ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye/gather.wgsl", "light/march.wgsl"]),

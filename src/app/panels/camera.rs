@@ -41,6 +41,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         let eye = &mut panels.settings.sampling;
         let default_slab = panels.defaults.sampling.slab;
         sampling::show(ui, &mut eye.kernel, &mut eye.slab, default_slab, &mut eye.quadrature);
+        sampling::show_slabs(ui, &mut eye.slabs);
         sampling::show_engine(ui, eye);
     });
 }

@@ -5,13 +5,16 @@ use eframe::egui::Ui;
 
 use super::super::text::{self, Named};
 use super::controls::{Number, choice};
-use crate::model::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder};
+use crate::model::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs};
 
 /// σ where a Gaussian is chosen anew.
 const SIGMA: f64 = 0.6;
 
 const QUADRATURES: [(Quadrature, Named); 2] =
     [(Quadrature::One, text::sampling::ONE_POINT), (Quadrature::Two, text::sampling::TWO_POINTS)];
+
+const SLABS: [(Slabs, Named); 2] =
+    [(Slabs::ByNeed, text::sampling::BY_NEED), (Slabs::Even, text::sampling::EVEN)];
 
 const CLASSIFICATIONS: [(Classification, Named); 2] = [
     (Classification::Post, text::sampling::CLASSIFIED_SHEETS),
@@ -53,6 +56,11 @@ pub(super) fn show(
     }
     voxels(text::sampling::SLAB, 0.25..=2.0).show(ui, slab, default_slab);
     choice(ui, text::sampling::QUADRATURE, quadrature, &QUADRATURES);
+}
+
+/// Shows whether the eye's slabs are equally thick.
+pub(super) fn show_slabs(ui: &mut Ui, slabs: &mut Slabs) {
+    choice(ui, text::sampling::SLABS, slabs, &SLABS);
 }
 
 /// Shows what fills the sheets of both passes, and where the eye's normals come from.

@@ -10,7 +10,7 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::data::ValueRange;
-use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings};
+use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings, Slabs};
 
 /// Pixels of a picture.
 const SIZE: [u32; 2] = [176, 132];
@@ -139,6 +139,7 @@ fn quick(settings: &Settings) -> Settings {
     quick.shadows.resolution = Resolution::Half;
     (quick.shadows.kernel, quick.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
     quick.sampling.slab = quick.sampling.slab.max(1.0);
+    quick.sampling.slabs = Slabs::Even;
     quick
 }
 

@@ -4,7 +4,7 @@
 //! level that fits the frame budget; the render worker carries it out.
 
 use crate::math::SceneSpace;
-use crate::model::{Engine, Kernel, Resolution, Settings};
+use crate::model::{Engine, Kernel, Resolution, Settings, Slabs};
 use crate::plan::preview_slab;
 
 /// Milliseconds of a preview while something moves: a frame at 30 per second.
@@ -50,7 +50,9 @@ impl QualityLevel {
         }
         if self.quick_eye {
             settings.sampling.kernel = Kernel::Prefiltered;
-            let slab = settings.sampling.slab;
+            // Even ones are quicker.
+            let slab = settings.mean_slab();
+            settings.sampling.slabs = Slabs::Even;
             settings.sampling.slab = preview_slab(&settings.camera, scene, self.size(viewport), slab);
         }
         if self.quick_light {

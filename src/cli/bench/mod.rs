@@ -225,6 +225,7 @@ fn describe(
         "rendered": {
             "kernel": settings.sampling.kernel,
             "slab": settings.sampling.slab,
+            "slabs": settings.sampling.slabs,
             "light_kernel": settings.shadows.kernel,
             "light_slab": settings.shadows.slab,
             "light_resolution": settings.shadows.resolution,

@@ -14,7 +14,7 @@ use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{Classification, Deposit, Gradients, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm};
-use crate::plan::eye_frame;
+use crate::plan::picture_frame;
 use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
 
 /// Everything that the eye pass of one picture needs besides the volume.
@@ -41,7 +41,7 @@ impl EyePass {
         combined: Option<&CombinedLight>,
         options: &RenderOptions,
     ) -> Self {
-        let frame = eye_frame(&settings.camera, scene, window, settings.sampling.slab);
+        let frame = picture_frame(settings, scene, window);
         let direct = settings.shadows.algorithm == ShadowAlgorithm::Direct;
         let shadowed = lights.iter().filter(|input| input.lit.is_shadowed()).count();
         let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
@@ -162,6 +162,8 @@ pub(crate) struct GatherVariant {
     /// Pixels are wider than voxels somewhere.
     is_stretched: bool,
     sheet_gradients: bool,
+    /// Slabs are as thin as they need to be.
+    by_need: bool,
     shading: ShadingVariant,
     /// Samples cast rays to lights, which deposit so.
     rays: Option<Deposit>,
@@ -183,6 +185,7 @@ impl GatherVariant {
             classification: sampling.classification,
             is_stretched,
             sheet_gradients: sampling.gradients == Gradients::Sheets,
+            by_need: settings.has_slabs_by_need(),
             shading: ShadingVariant {
                 lights,
                 is_combined: false,
@@ -220,6 +223,7 @@ impl Variant for GatherVariant {
             classification_constant(self.classification),
             flag("STRETCH", self.is_stretched),
             flag("SHEET_GRADIENTS", self.sheet_gradients),
+            flag("BY_NEED", self.by_need),
             flag("GRADIENT_TEXTURE", self.has_gradients),
             ("NEAR_STEPS", f64::from(self.near_steps)),
         ]);

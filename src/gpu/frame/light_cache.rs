@@ -12,8 +12,8 @@ use crate::gpu::volume::{GpuVolume, brick_dims};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::{MAX_BIAS_VOXELS, NearField};
 use crate::plan::{
-    CellSet, FARTHEST, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, eye_frame, lookup_reach,
-    near_reach, slab_reach, stretch_reach,
+    CellSet, FARTHEST, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, lookup_reach, near_reach,
+    picture_frame, slab_reach, stretch_reach,
 };
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
@@ -53,7 +53,7 @@ fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let Request { settings, size, .. } = request;
     let size = size.map(|n| n * samples);
     let scene = &volume.scene;
-    let frame = eye_frame(&settings.camera, scene, size, settings.sampling.slab);
+    let frame = picture_frame(settings, scene, size);
     let stretch = frame.stretch_level(scene.support_radius() + frame.slab);
     let [width, height] = size.map(f64::from);
     let obliquity = frame.obliquity(0.0, 0.0).max(frame.obliquity(width, height));

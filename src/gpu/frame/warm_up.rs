@@ -10,13 +10,13 @@ use crate::gpu::light::march::MarchVariant;
 use crate::gpu::output::display::DisplayVariant;
 use crate::gpu::pipelines::variant::{LightCount, Only, Variant};
 use crate::gpu::{GpuError, ShaderLibrary};
-use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows};
+use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows, Slabs};
 
 /// Lights of a first look.
 const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
 
-/// Kernels of previews and of pictures.
-const KERNELS: [Kernel; 2] = [Kernel::Prefiltered, Kernel::BSpline];
+/// Kernels and slabs of previews and of pictures.
+const LOOKS: [(Kernel, Slabs); 2] = [(Kernel::Prefiltered, Slabs::Even), (Kernel::BSpline, Slabs::ByNeed)];
 
 impl ShaderLibrary {
     /// Makes the usual variants of every shader, until `stop`. To be called on a thread of its own.
@@ -45,7 +45,7 @@ impl ShaderLibrary {
     /// # Errors
     /// As [`Self::warm_up`].
     pub fn warm_up_rest(&self, stop: &AtomicBool) -> Result<(), GpuError> {
-        for kernel in KERNELS {
+        for (kernel, _) in LOOKS {
             let shadows = Shadows { kernel, ..Shadows::default() };
             let settings = Settings { shadows, ..Settings::default() };
             self.warm(&FloorVariant::of(&settings, FIRST_LIGHTS), stop)?;
@@ -57,9 +57,9 @@ impl ShaderLibrary {
     /// The passes of a splatted picture, of whole volumes or of what remains of them.
     fn warm_up_passes(&self, cuts: &Cuts, stop: &AtomicBool) -> Result<(), GpuError> {
         for is_stretched in [false, true] {
-            for kernel in KERNELS {
+            for (kernel, slabs) in LOOKS {
                 let settings = Settings {
-                    sampling: Sampling { kernel, ..Sampling::default() },
+                    sampling: Sampling { kernel, slabs, ..Sampling::default() },
                     shadows: Shadows { kernel, ..Shadows::default() },
                     cuts: cuts.clone(),
                     ..Settings::default()

@@ -22,6 +22,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "density/volume.wgsl",
     "eye/floor.wgsl",
     "eye/gather.wgsl",
+    "eye/slabs_by_need.wgsl",
     "light/backproject.wgsl",
     "light/clear_margin.wgsl",
     "light/combine.wgsl",

@@ -8,7 +8,7 @@ use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::math::SceneSpace;
 use crate::model::{Depth, ImageSpec, Settings};
 use crate::plan::PixelWindow;
-use crate::plan::eye_frame;
+use crate::plan::picture_frame;
 
 /// Most samples of a part: a picture of high-definition television in one part, and about 100 MiB of textures.
 const MOST_SAMPLES: u32 = 1 << 21;
@@ -132,7 +132,7 @@ fn margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) ->
     }
     let scene = SceneSpace::new(volume.dims(), volume.world_from_index());
     let fine = PixelWindow::from(size).finer(samples);
-    let frame = eye_frame(&settings.camera, &scene, fine, settings.sampling.slab);
+    let frame = picture_frame(settings, &scene, fine);
     frame.gradient_steps().0.div_ceil(samples)
 }
 

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     BakedTransfer, Camera, Classification, Cuts, Engine, Floor, Gradients, Kernel, Length, Light,
-    LightStorage, NearField, Sampling, ShadowAlgorithm, Shadows, TransferFunction,
+    LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, Slabs, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
@@ -210,6 +210,32 @@ impl Settings {
     pub fn near_field(&self) -> NearField {
         let looks_up = self.shadows.algorithm.has_volume() && !self.combines_lights() && !self.scatters();
         if looks_up { self.shadows.near_field } else { NearField::Off }
+    }
+
+    /// Whether the eye's slabs are as thin as they need to be. A slab is divided where the gradient says that it
+    /// holds much: not where gradients come from sheets, or voxels are classified; and where a slab is a mean of two
+    /// points it need not be.
+    pub fn has_slabs_by_need(&self) -> bool {
+        let Sampling { slabs, quadrature, gradients, classification, .. } = self.sampling;
+        slabs == Slabs::ByNeed
+            && !self.scatters()
+            && quadrature == Quadrature::One
+            && gradients == Gradients::Volume
+            && classification == Classification::Post
+    }
+
+    /// How thick slabs are that look like those of the settings and are even, in smallest voxel edges: slabs by need
+    /// cost, and err, as halves of the thickest do.
+    pub fn mean_slab(&self) -> f64 {
+        match self.sampling.slabs {
+            Slabs::Even => self.sampling.slab,
+            Slabs::ByNeed => 0.5 * self.sampling.slab,
+        }
+    }
+
+    /// Thickness of the eye's thickest slabs, in smallest voxel edges.
+    pub fn thickest_slab(&self) -> f64 {
+        if self.has_slabs_by_need() { self.sampling.slab } else { self.mean_slab() }
     }
 
     /// Whether what is reconstructed in a cell of 2³ voxels stays within the bounds that are known of it

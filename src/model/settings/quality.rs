@@ -1,6 +1,6 @@
 //! How truly light is computed, in one word that stands for several settings.
 
-use crate::model::{NearField, ReverseKernel, Settings, ShadowAlgorithm};
+use crate::model::{NearField, ReverseKernel, Settings, ShadowAlgorithm, Slabs};
 
 /// A level of quality. Settings hold what it stands for, and not the word: a level can be chosen and then refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,8 +19,9 @@ pub enum Quality {
 struct Level {
     algorithm: ShadowAlgorithm,
     near_field: NearField,
-    /// Of the eye, in smallest edges of voxels.
+    /// Of the eye, in smallest edges of voxels, and whether all are as thick.
     slab: f64,
+    slabs: Slabs,
     /// Of the light pass or of the rays, likewise.
     shadow_slab: f64,
 }
@@ -30,21 +31,23 @@ impl Quality {
     pub const ALL: [Self; 4] = [Self::Fast, Self::Standard, Self::Fine, Self::Exact];
 
     fn level(self) -> Level {
-        let splat = |near_field, slab| Level {
+        let splat = |near_field, slabs, slab| Level {
             algorithm: ShadowAlgorithm::Splat,
             near_field,
             slab,
+            slabs,
             shadow_slab: 1.0,
         };
         match self {
-            Self::Fast => splat(NearField::Off, 0.5),
-            Self::Standard => splat(NearField::Short, 0.5),
-            // Thin shells are a voxel thick: three slabs show their rise, their middle and their fall.
-            Self::Fine => splat(NearField::Long, 1.0 / 3.0),
+            Self::Fast => splat(NearField::Off, Slabs::Even, 0.5),
+            Self::Standard => splat(NearField::Short, Slabs::ByNeed, 1.0),
+            // A sixth of a voxel where it shows.
+            Self::Fine => splat(NearField::Long, Slabs::ByNeed, 2.0 / 3.0),
             Self::Exact => Level {
                 algorithm: ShadowAlgorithm::Direct,
                 near_field: NearField::Short,
                 slab: 0.25,
+                slabs: Slabs::Even,
                 shadow_slab: 0.25,
             },
         }
@@ -52,8 +55,8 @@ impl Quality {
 
     /// Sets all that the level stands for. Shadows that are off stay off.
     pub fn apply(self, settings: &mut Settings) {
-        let Level { algorithm, near_field, slab, shadow_slab } = self.level();
-        settings.sampling.slab = slab;
+        let Level { algorithm, near_field, slab, slabs, shadow_slab } = self.level();
+        (settings.sampling.slab, settings.sampling.slabs) = (slab, slabs);
         let shadows = &mut settings.shadows;
         shadows.slab = shadow_slab;
         shadows.near_field = near_field;

@@ -86,14 +86,30 @@ pub enum SheetOrder {
     EveryFootprint,
 }
 
+/// Whether all slabs are equally thick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Slabs {
+    /// As thick as [`Sampling::slab`] says.
+    Even,
+    /// A half or a quarter of that where a slab would take much of what the eye can still see: normals and light
+    /// change within a voxel, which would show as a weave.
+    ByNeed,
+}
+
+/// Parts into which a slab is divided at most, where slabs are as thin as they need to be.
+pub const THIN_SLABS: u32 = 4;
+
 /// How the eye's sheets are sampled.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Sampling {
     /// Reconstruction kernel.
     pub kernel: Kernel,
-    /// Slab thickness in smallest voxel edges.
+    /// Thickness of slabs, of the thickest if they are not even, in smallest voxel edges.
     pub slab: f64,
+    /// Whether all are equally thick.
+    pub slabs: Slabs,
     /// Points per slab.
     pub quadrature: Quadrature,
     /// Where normals come from; scattered sheets are all that there is of the volume, so there
@@ -112,6 +128,7 @@ impl Default for Sampling {
         Self {
             kernel: Kernel::BSpline,
             slab: 1.0,
+            slabs: Slabs::Even,
             quadrature: Quadrature::One,
             gradients: Gradients::Volume,
             classification: Classification::Post,

@@ -128,6 +128,7 @@ impl Settings {
         let Sampling {
             kernel: eye_kernel,
             slab,
+            slabs: _,
             quadrature: _,
             gradients: _,
             classification: _,

@@ -3,7 +3,8 @@
 use serde_json::{Map, Value};
 
 /// Settings that came with a schema, and what schemas before it did: (schema, group, setting, value).
-const ADDED: [(u64, &str, &str, &str); 3] = [
+const ADDED: [(u64, &str, &str, &str); 4] = [
+    (2, "sampling", "slabs", "even"),
     (2, "shading", "sides", "two"),
     (2, "shadows", "reverse_kernel", "forward"),
     (2, "shadows", "near_field", "off"),

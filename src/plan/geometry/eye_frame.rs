@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2};
 
 use super::sheet_frame::{Placement, SheetFrame};
 use crate::math::SceneSpace;
-use crate::model::{Camera, Projection};
+use crate::model::{Camera, Projection, Settings, THIN_SLABS};
 use crate::plan::PixelWindow;
 
 /// Most slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
@@ -26,6 +26,12 @@ pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f
     let width = frame.pitch_at(frame.first_depth) / (frame.slab / slab);
     // One is enough for a preview however large: it may show a little wood grain.
     slab.max(width.clamp(1.0, THICKEST_PREVIEW))
+}
+
+/// The sheets of a picture with some settings: the thinnest, if slabs are as thin as they need to be.
+pub fn picture_frame(settings: &Settings, scene: &SceneSpace, window: impl Into<PixelWindow>) -> SheetFrame {
+    let frame = eye_frame(&settings.camera, scene, window, settings.thickest_slab());
+    if settings.has_slabs_by_need() { frame.divided(THIN_SLABS) } else { frame }
 }
 
 /// The sheets that a camera sees, `slab` smallest voxel edges thick.

@@ -127,6 +127,11 @@ impl SheetFrame {
         }
     }
 
+    /// The same stack with each slab divided into so many.
+    pub(crate) fn divided(self, parts: u32) -> Self {
+        Self { slab: self.slab / f64::from(parts), slab_count: self.slab_count * parts, ..self }
+    }
+
     /// Depth of the middle of slab `k`.
     pub fn depth_of(&self, k: f64) -> f64 {
         self.first_depth + (k + 0.5) * self.slab

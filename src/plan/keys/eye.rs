@@ -6,7 +6,7 @@ use super::received::{LightLook, ReceivedLight};
 use super::table::{EyeTableKey, OpacityKey};
 use crate::model::{
     Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
-    Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder,
+    Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
 };
 use crate::plan::{CombinedKey, PixelWindow, RenderOptions, Request};
 
@@ -46,6 +46,7 @@ struct EyeLightKey {
 struct SamplingKey {
     kernel: Kernel,
     slab: f64,
+    slabs: Slabs,
     quadrature: Quadrature,
     gradients: Gradients,
     classification: Classification,
@@ -63,10 +64,10 @@ struct RaysKey {
 
 impl SamplingKey {
     fn of(settings: &Settings) -> Self {
-        let Sampling { kernel, slab, quadrature, gradients, classification, engine, order } =
+        let Sampling { kernel, slab, slabs, quadrature, gradients, classification, engine, order } =
             settings.sampling;
         let order = settings.scatters().then_some(order);
-        Self { kernel, slab, quadrature, gradients, classification, engine, order }
+        Self { kernel, slab, slabs, quadrature, gradients, classification, engine, order }
     }
 }
 

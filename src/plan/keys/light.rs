@@ -65,7 +65,16 @@ impl LightKey {
             cuts,
             floor: _,
             sampling:
-                Sampling { kernel: _, slab: _, quadrature: _, gradients: _, classification, engine, order: _ },
+                Sampling {
+                    kernel: _,
+                    slab: _,
+                    slabs: _,
+                    quadrature: _,
+                    gradients: _,
+                    classification,
+                    engine,
+                    order: _,
+                },
             output: _,
             views: _,
         } = &request.settings;

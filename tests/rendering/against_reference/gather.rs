@@ -8,8 +8,8 @@ use crate::scenes;
 use crate::thresholds::{BYTE_STEP, BYTES, LITERAL};
 use chiaroscuro::gpu::{Renderer, stored_density};
 use chiaroscuro::model::{
-    Camera, Classification, Deposit, Gradients, Kernel, LightKind, LightLock, Precision, Projection,
-    Quadrature, Resolution, Settings, ShadowAlgorithm,
+    Camera, Classification, ClipPlane, Deposit, Gradients, Kernel, LightKind, LightLock, Precision,
+    Projection, Quadrature, Resolution, Settings, ShadowAlgorithm, Slabs,
 };
 use chiaroscuro::reference::{Options, Reference, Weights};
 use glam::DVec3;
@@ -53,6 +53,20 @@ fn a_light_inside_the_volume() {
     let mut settings = scenes::look();
     settings.lights = vec![scenes::light(LightKind::Perspective, [-0.45, -0.35, 0.4])];
     check("light inside", DVec3::ONE, &settings);
+}
+
+#[test]
+fn slabs_by_need() {
+    let mut settings = scenes::look();
+    settings.sampling.slabs = Slabs::ByNeed;
+    check("slabs by need", DVec3::ONE, &settings);
+    settings.sampling.slab = 1.6;
+    settings.camera.distance = 9.0;
+    check("slabs by need, stretched", DVec3::new(1.0, 0.8, 1.6), &settings);
+    settings = Settings { camera: scenes::look().camera, ..settings };
+    settings.cuts.plane =
+        ClipPlane { on: true, normal: [0.6, -1.0, 0.7], offset: 0.17, ..ClipPlane::default() };
+    check("slabs by need, cut", DVec3::ONE, &settings);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Camera, ControlPoint, Engine, Kernel, LightKind, Settings, ShadowAlgorithm};
+use chiaroscuro::model::{Camera, ControlPoint, Engine, Kernel, LightKind, Settings, ShadowAlgorithm, Slabs};
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
@@ -174,6 +174,39 @@ sided_mutation!(
     "vec4f(0.0, 1.0 - f.z, f.z, 0.0)",
     "vec4f(0.0, f.z, 1.0 - f.z, 0.0)"
 );
+
+/// Slabs that are as thin as they need to be.
+fn look_by_need() -> Settings {
+    let mut settings = look();
+    settings.sampling.slabs = Slabs::ByNeed;
+    settings
+}
+
+#[test]
+fn undamaged_slabs_by_need_agree() {
+    assert!(!disagree_in(&look_by_need(), 40, "\u{0}", "", Fault::None));
+}
+
+#[test]
+fn damaged_slabs_by_need_are_noticed() {
+    let damages = [
+        // As dense as thin ones.
+        ("found.material.a * f32(width)", "found.material.a"),
+        // Sampled at their front.
+        ("f32(start) + 0.5 * f32(width - 1)", "f32(start)"),
+        // Divided behind what hides them.
+        ("let share = t * (1.0 - exp", "let share = (1.0 - exp"),
+        ("const MUCH = 0.125", "const MUCH = 0.25"),
+        ("const CURVED = 1.25", "const CURVED = 0.5"),
+    ];
+    for (from, to) in damages {
+        in_shader("eye/gather.wgsl", from);
+        assert!(
+            disagree_in(&look_by_need(), 40, from, to, Fault::None),
+            "the comparison does not notice {to:?}"
+        );
+    }
+}
 
 gpu_mutation!(
     gpu_kernel_five_percent_wider,

@@ -3,7 +3,7 @@
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Kernel, LightKind, LightStorage, Quadrature, Resolution, Settings, ShadowAlgorithm,
+    Kernel, LightKind, LightStorage, Quadrature, Resolution, Settings, ShadowAlgorithm, Slabs,
 };
 use chiaroscuro::plan::Request;
 use glam::DVec3;
@@ -40,6 +40,9 @@ fn looks() -> Vec<Settings> {
     inside.lights[0] = scenes::light(LightKind::Perspective, [0.1, -0.4, 0.5]);
     inside.camera.distance = 0.6;
     looks.push(inside);
+    let mut by_need = scenes::look();
+    by_need.sampling.slabs = Slabs::ByNeed;
+    looks.push(by_need);
     let mut biased = scenes::look();
     biased.shadows.bias_voxels = 2.0;
     let mut halved = scenes::look();

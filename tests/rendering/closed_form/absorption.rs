@@ -1,7 +1,9 @@
 //! What homogeneous material absorbs: Beer–Lambert, and the opacity of chords.
 
 use chiaroscuro::gpu::Picture;
-use chiaroscuro::model::{Camera, Deposit, Engine, LightKind, Quadrature, ReverseKernel, ShadowAlgorithm};
+use chiaroscuro::model::{
+    Camera, Deposit, Engine, LightKind, Quadrature, ReverseKernel, ShadowAlgorithm, Slabs,
+};
 use chiaroscuro::plan::light_views;
 use glam::DVec3;
 
@@ -193,6 +195,20 @@ fn opacity_of_a_chord(engine: Engine) {
             means.push(picture.light.iter().map(|texel| f64::from(texel[3])).sum::<f64>());
         }
         assert!((means[2] / means[0] - 1.0).abs() <= SLAB_MEAN_CHANGE, "{name}: {means:?}");
+    }
+}
+
+/// The same with slabs by need, through material of which much, or little, is met within a voxel.
+#[test]
+fn opacity_of_a_chord_by_need() {
+    let ball = Dataset::new(scenes::ball(48, DVec3::splat(23.5), 14.0));
+    for per_voxel in [0.02, 0.1, 0.2] {
+        let mut settings = base(Engine::Gather, per_voxel);
+        settings.sampling.slabs = Slabs::ByNeed;
+        let picture = render(&mut renderer(), &ball, &settings, [96, 96]);
+        let expected = 1.0 - (-per_voxel * 28.0_f64).exp();
+        let found = f64::from(picture.light[48 * 96 + 48][3]);
+        assert!((found - expected).abs() <= CHORD_OPACITY, "{per_voxel}: {found} not {expected}");
     }
 }
 

@@ -14,6 +14,11 @@ pub(crate) const SIGMA: Named =
 pub(crate) const SLAB: Named =
     named("Slab", "Thickness of a sheet in edges of the smallest voxel; thinner is slower and more exact");
 
+pub(crate) const SLABS: Named = named("Slabs", "Whether all slabs of the picture are equally thick");
+pub(crate) const BY_NEED: Named =
+    named("By need", "A quarter as thick where material is dense: steep surfaces show no weave");
+pub(crate) const EVEN: Named = named("Even", "All as thick as set");
+
 pub(crate) const QUADRATURE: Named = named("Quadrature", "Samples per slab along the ray");
 pub(crate) const ONE_POINT: Named = named("1 point", "The middle of every slab: fast");
 pub(crate) const TWO_POINTS: Named = named("2 points", "Twice the work; for export and comparison");

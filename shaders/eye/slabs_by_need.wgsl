@@ -1,0 +1,79 @@
+// Slabs along a ray that are as thin as they need to be: one that may take much of what the eye can still see is divided
+// into quarters, because normals and light change within it. The slabs of the frame are the quarters.
+#import "density/cells.wgsl"
+#import "density/classify.wgsl"
+
+// Parts into which a slab is divided; a power of two.
+const THIN_SLABS = 4;
+
+// A slab is divided that may take more than this share of the light from behind it. Above, steep surfaces begin to show
+// a weave; below, it is dearer, and nothing looks better.
+const MUCH = 0.125;
+
+// The density is expected to change across a slab by this many times what its gradient in the middle says.
+const CURVED = 1.25;
+
+fn extinction_near(density: f32) -> f32 {
+    return table.entries[nearest_entry(density)].a;
+}
+
+// The largest extinction that is expected within a slab: there, at its ends and halfway to them, where the density
+// changes by `change` from the middle to an end.
+fn largest_extinction(found: SlabSample, change: f32) -> f32 {
+    let ends = max(extinction_near(found.density - change), extinction_near(found.density + change));
+    let between = 0.5 * change;
+    let halfway = max(extinction_near(found.density - between), extinction_near(found.density + between));
+    return max(extinction_near(found.density), max(ends, halfway));
+}
+
+// What a ray shows between slabs of the frame, the first and the last inside.
+fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
+    let walk = walk_along(eye.frame, ray);
+    let thick = f32(THIN_SLABS) * eye.frame.slab;
+    var k = next_seen(walk, inside.x, inside.y);
+    // How many slabs of the frame the next sample stands for, and where the one ends that is being divided.
+    var width = THIN_SLABS;
+    var end = 0;
+    var color = vec3f(0.0);
+    var t = 1.0;
+    loop {
+        if (k > inside.y) {
+            break;
+        }
+        // Whatever was leapt over, thick slabs begin at multiples of their width.
+        let start = k & ~(width - 1);
+        let middle = f32(start) + 0.5 * f32(width - 1);
+        let depth = depth_of(eye.frame, middle);
+        let p = ray.origin + ray.direction * depth;
+        let level = kernel_level(eye.frame, depth);
+        let found = slab_seen(ray, span, middle, f32(width));
+        let slope = volume_slope(p, level);
+        var needed = width;
+        if (width == THIN_SLABS) {
+            let change = 0.5 * CURVED * thick * abs(dot(slope, ray.direction));
+            let share = t * (1.0 - exp(-largest_extinction(found, change) * thick * ray.obliquity));
+            // So is what ends within the slab.
+            let is_whole = start >= inside.x && start + THIN_SLABS - 1 <= inside.y;
+            needed = select(1, width, is_whole && share <= MUCH);
+            end = start + THIN_SLABS;
+        }
+        if (needed == width) {
+            if (found.material.a > 0.0) {
+                let passed = exp(-found.material.a * f32(width) * eye.frame.slab * ray.obliquity);
+                let weight = t * (1.0 - passed);
+                color += weight * lit_material(p, level, gradient_to_scene(eye.space, slope), found, weight);
+                t *= passed;
+            }
+            k = start + width;
+        }
+        if (t < eye.dark) {
+            break;
+        }
+        k = next_seen(walk, k, inside.y);
+        width = select(needed, THIN_SLABS, k >= end);
+        if (k > inside.y) {
+            break;
+        }
+    }
+    return Seen(color, t);
+}
