@@ -8,7 +8,7 @@ override LINEAR: bool = false;
 
 fn linear_light(pixel: vec2u) -> vec4f {
     let light = pixel_light(pixel);
-    let before_background = light + (1.0 - light.a) * vec4f(linear_from_srgb(background_at(pixel.y)), 1.0);
+    let before_background = light + (1.0 - light.a) * vec4f(linear_from_srgb(background_at(pixel)), 1.0);
     return select(before_background, light, display.transparent != 0u);
 }
 

@@ -14,9 +14,11 @@ struct Display {
     // First row of this part of the picture, and rows of the whole.
     first_row: f32,
     rows: f32,
+    // First column of this part of the picture.
+    first_column: f32,
+    // Step between the numbers of a picture whose background is dithered; else 0.
+    dither_step: f32,
     pad0: u32,
-    pad1: u32,
-    pad2: u32,
 }
 
 @group(0) @binding(0) var<uniform> bound_display: Display;
@@ -60,10 +62,21 @@ fn pixel_light(pixel: vec2u) -> vec4f {
     return light / f32(SAMPLES * SAMPLES);
 }
 
+// How far, in steps, what is rounded at a place of the whole picture is moved before that: an ordered pattern of 8 × 8
+// (Bayer 1973), in which each of 64 amounts between −½ and ½ appears once. The bits of x xor y and of y, woven
+// together backwards.
+fn ordered(place: vec2u) -> f32 {
+    let a = place.x ^ place.y;
+    let b = place.y;
+    let bits = ((a & 1u) << 5u) | ((b & 1u) << 4u) | ((a & 2u) << 2u) | ((b & 2u) << 1u) | ((a & 4u) >> 1u) | ((b & 4u) >> 2u);
+    return (f32(bits) + 0.5) / 64.0 - 0.5;
+}
+
 // sRGB.
-fn background_at(row: u32) -> vec3f {
-    let down = (f32(row) + display.first_row + 0.5) / display.rows;
-    return mix(display.top.rgb, display.bottom.rgb, down);
+fn background_at(pixel: vec2u) -> vec3f {
+    let place = vec2f(pixel) + vec2f(display.first_column, display.first_row);
+    let background = mix(display.top.rgb, display.bottom.rgb, (place.y + 0.5) / display.rows);
+    return max(background + ordered(vec2u(place)) * display.dither_step, vec3f(0.0));
 }
 
 // Display colours of a pixel, with straight alpha where the background is left out.
@@ -74,7 +87,7 @@ fn shown_color(pixel: vec2u) -> vec4f {
     // Uniforms are no conditions of branches: Mesa's software driver would make each shader anew for their
     // values, for every dispatch, and keep it.
     let alone = vec4f(srgb_from_linear(select(vec3f(0.0), mapped, light.a > 0.0)), light.a);
-    let background = background_at(pixel.y);
+    let background = background_at(pixel);
     let mixed = srgb_from_linear(mix(linear_from_srgb(background), mapped, light.a));
     // Where nothing is, exactly the background, not its way to linear light and back.
     let before_background = vec4f(select(mixed, background, light.a <= 0.0), 1.0);

@@ -164,6 +164,10 @@ pub(crate) const HALF_STEP: f64 = 0.501 / 255.0;
 /// What rounding to 8 bits must take somewhere in a picture, if more bits have more to say.
 pub(crate) const HALF_STEP_SEEN: f64 = 0.4 / 255.0;
 
+/// A dithered gradient, mean of eight rows, in steps of 8 bits: 64 amounts are a 64th of a step apart, and eight rows of
+/// a gradient are not quite as many whole patterns.
+pub(crate) const DITHERED: f64 = 0.1;
+
 /// A background from top to bottom under several samples: it is that of the pixel's middle, not their mean.
 pub(crate) const SAMPLED_BACKGROUND: f64 = 5e-3;
 

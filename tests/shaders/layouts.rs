@@ -232,7 +232,18 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         (
             "output/display.wgsl",
-            layout!(Display { top, bottom, transparent, clip, exposure, first_row, rows, pad0, pad1, pad2 }),
+            layout!(Display {
+                top,
+                bottom,
+                transparent,
+                clip,
+                exposure,
+                first_row,
+                rows,
+                first_column,
+                dither_step,
+                pad0
+            }),
         ),
         ("volume/prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
         ("volume/downsample.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),

@@ -7,7 +7,7 @@ use crate::gpu::pipelines::variant::{Constants, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::resources::tools::Tools;
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Depth, Output, ToneMap};
+use crate::model::{Background, Depth, Output, ToneMap};
 
 /// What tells one pipeline of the display from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -48,19 +48,23 @@ pub(crate) fn display(
     let Shape { size, samples, deep } = target.shape;
     let variant = DisplayVariant { samples, is_linear: options.depth == Depth::Linear, is_deep: deep };
     let pipeline = shaders.pipeline(&variant)?;
-    let (first_row, rows) = options.part.map_or((0, size[1]), |part| (part.first[1], part.whole[1]));
+    let ([first_column, first_row], rows) =
+        options.part.map_or(([0; 2], size[1]), |part| (part.first, part.whole[1]));
+    let Background { top, bottom } = output.background;
+    // What is one colour stays that; what is finer than 8 bits, or cut out, needs nothing.
+    let is_dithered = top != bottom && !deep && !options.transparent;
     let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let uniform = uniforms::Display {
-        top: opaque(output.background.top),
-        bottom: opaque(output.background.bottom),
+        top: opaque(top),
+        bottom: opaque(bottom),
         transparent: u32::from(options.transparent),
         clip: u32::from(output.tone_map == ToneMap::Clip),
         exposure: options.exposure,
         first_row: first_row as f32,
         rows: rows as f32,
+        first_column: first_column as f32,
+        dither_step: if is_dithered { 1.0 / 255.0 } else { 0.0 },
         pad0: 0,
-        pad1: 0,
-        pad2: 0,
     };
     let uniform = pool.buffer(context, "Display::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let bind_group = pool.bind(

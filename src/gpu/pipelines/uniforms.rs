@@ -358,7 +358,7 @@ pub struct Display {
     pub exposure: f32,
     pub first_row: f32,
     pub rows: f32,
+    pub first_column: f32,
+    pub dither_step: f32,
     pub pad0: u32,
-    pub pad1: u32,
-    pub pad2: u32,
 }

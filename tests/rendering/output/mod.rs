@@ -2,6 +2,7 @@
 //! window, other programs.
 
 mod bands;
+mod dither;
 mod painter;
 mod preview;
 mod reduced;
