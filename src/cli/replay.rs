@@ -79,7 +79,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         (Rows::Bytes(before), Rows::Bytes(again)) => Distance::between(before, again),
         _ => Distance::between_values(&before.values(), &again.values()),
     };
-    let words = format!("different: RMSE {rmse:.3} of 255, largest difference {largest}");
+    let maker = if record.is_earlier() { "made by an earlier version, " } else { "" };
+    let words = format!("{maker}different: RMSE {rmse:.3} of 255, largest difference {largest}");
     if args.check {
         return Err(CliError::Differs(words));
     }

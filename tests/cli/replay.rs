@@ -55,6 +55,14 @@ fn pictures_can_be_made_again_from_themselves() {
     let outcome = folder.run("replay changed.png --check");
     assert_eq!(outcome.code, Some(1), "{outcome:?}");
     assert!(outcome.stderr.contains("RMSE"), "{outcome:?}");
+    assert!(!outcome.stderr.contains("earlier version"), "{outcome:?}");
+
+    // What an earlier version made need not be the same, and is said to be of one.
+    let earlier = changed.replace("\"schema\": 2", "\"schema\": 1");
+    assert_ne!(earlier, changed);
+    export_png([48, 36], &pixels, true, Some(&earlier), &folder.path("earlier.png")).expect("written");
+    let said = folder.succeed("replay earlier.png");
+    assert!(said.contains("made by an earlier version") && said.contains("RMSE"), "{said}");
 
     // Another volume, a moved one, and pictures that carry nothing.
     folder.write(

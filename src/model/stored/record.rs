@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::data::ValueRange;
-use crate::model::{ImageSpec, PresetError, Settings, apply_relative};
+use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, apply_relative};
 
 /// The volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,6 +110,11 @@ impl Record {
             return Err(PresetError::NotAnObject);
         }
         Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
+    }
+
+    /// Whether the record is of an earlier schema, whose pictures this version may make a little differently.
+    pub fn is_earlier(&self) -> bool {
+        self.overlay.get("schema").and_then(Value::as_u64).is_some_and(|schema| schema < SCHEMA.into())
     }
 
     /// The settings of the record laid over others, for a volume with these values, and warnings of what was not
