@@ -146,7 +146,7 @@ enum QualityArg {
     Fast,
     /// Light volumes, and short rays near what is seen
     Standard,
-    /// Longer rays and thinner slabs: for figures
+    /// Light volumes, and longer rays: for figures
     Fine,
     /// Rays all the way and the thinnest slabs: slow
     Exact,

@@ -9,7 +9,7 @@ pub enum Quality {
     Fast,
     /// Light volumes, and short rays near what is seen.
     Standard,
-    /// Longer rays, and thinner slabs.
+    /// Light volumes, and longer rays.
     Fine,
     /// Rays all the way, and the thinnest slabs.
     Exact,
@@ -41,8 +41,8 @@ impl Quality {
         match self {
             Self::Fast => splat(NearField::Off, Slabs::Even, 0.5),
             Self::Standard => splat(NearField::Short, Slabs::ByNeed, 1.0),
-            // A sixth of a voxel where it shows.
-            Self::Fine => splat(NearField::Long, Slabs::ByNeed, 2.0 / 3.0),
+            // Thinner slabs come no nearer to the limit.
+            Self::Fine => splat(NearField::Long, Slabs::ByNeed, 1.0),
             Self::Exact => Level {
                 algorithm: ShadowAlgorithm::Direct,
                 near_field: NearField::Short,

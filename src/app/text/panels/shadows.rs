@@ -84,7 +84,7 @@ pub(crate) const QUALITY: Named =
     named("Quality", "How truly light is computed; sets slabs, rays and the way light gets to the volume");
 pub(crate) const FAST: Named = named("Fast", "Light volumes alone: soft shadows, quickest");
 pub(crate) const STANDARD: Named = named("Standard", "Light volumes, and short rays near what is seen");
-pub(crate) const FINE: Named = named("Fine", "Longer rays and thinner slabs: for figures");
+pub(crate) const FINE: Named = named("Fine", "Light volumes, and longer rays: for figures");
 pub(crate) const EXACT: Named = named("Exact", "Rays all the way and the thinnest slabs: true, and slow");
 
 pub(crate) const NEAR_FIELD: Named = named(
