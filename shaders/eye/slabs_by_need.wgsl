@@ -1,4 +1,4 @@
-// Slabs along a ray that are as thin as they need to be: one that may take much of what the eye can still see is divided
+// Slabs along a ray that are as thin as they need to be: one that may make up much of what is seen along it is divided
 // into quarters, because normals and light change within it. The slabs of the frame are the quarters.
 #import "density/cells.wgsl"
 #import "density/classify.wgsl"
@@ -6,7 +6,7 @@
 // Parts into which a slab is divided; a power of two.
 const THIN_SLABS = 4;
 
-// A slab is divided that may take more than this share of the light from behind it. Above, steep surfaces begin to show
+// A slab is divided that may make up more than this share of what is seen along the ray. Above, steep surfaces show
 // a weave; below, it is dearer, and nothing looks better.
 const MUCH = 0.125;
 

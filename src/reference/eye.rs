@@ -13,7 +13,7 @@ use crate::model::{BakedTransfer, Classification, THIN_SLABS};
 use crate::plan::SheetFrame;
 use crate::plan::picture_frame;
 
-/// A slab is divided that may take more than this share of the light from behind it.
+/// A slab is divided that may make up more than this share of what is seen along a ray.
 const MUCH: f64 = 1.0 / 8.0;
 
 /// The density is expected to change across a slab by this many times what its gradient in the middle says.

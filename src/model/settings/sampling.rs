@@ -92,7 +92,7 @@ pub enum SheetOrder {
 pub enum Slabs {
     /// As thick as [`Sampling::slab`] says.
     Even,
-    /// A half or a quarter of that where a slab would take much of what the eye can still see: normals and light
+    /// A quarter of that where a slab would make up much of what is seen along a ray: normals and light
     /// change within a voxel, which would show as a weave.
     ByNeed,
 }
