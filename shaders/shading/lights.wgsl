@@ -21,6 +21,11 @@ struct Light {
     place_in_index: vec3f,
     // 1: surfaces take its diffuse light from both sides.
     two_sided: f32,
+    // By how much the last step of rays nearby is longer: half a voxel of its volume, in scene units.
+    near_ahead: f32,
+    pad0: f32,
+    pad1: f32,
+    pad2: f32,
 }
 
 struct Towards {

@@ -31,8 +31,8 @@ struct Eye {
     near_edge: f32,
     // Index space to texture coordinates of the volume into which lights have been combined.
     combined_lookup: vec3f,
-    // By how much the last step of rays nearby is longer: half a voxel of the light volumes, in scene units.
-    near_ahead: f32,
+    // How far rays nearby go, but for what the last step has more, in scene units.
+    near_whole: f32,
     // What is seen.
     seen: Cut,
     // What attenuates light.

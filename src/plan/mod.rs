@@ -8,6 +8,7 @@ mod keys;
 mod probe;
 mod request;
 
+pub use self::geometry::ahead::CellsAhead;
 pub use self::geometry::brick_set::BrickSet;
 pub use self::geometry::cell_distances::{CellDistances, FARTHEST};
 pub use self::geometry::cell_set::CellSet;
@@ -18,7 +19,7 @@ pub use self::geometry::light_frame::{
 pub use self::geometry::march_tiles::{MarchTiles, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT};
 pub use self::geometry::pixel_window::PixelWindow;
 pub use self::geometry::reach::{
-    bias_reach, lookup_reach, near_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach,
+    bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach,
     scatter_reach_bricks, slab_reach, stretch_reach,
 };
 pub use self::geometry::sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};

@@ -69,7 +69,7 @@ impl EyePass {
             runs: 1,
             near_edge: scene.smallest_edge() as f32,
             combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
-            near_ahead: near_ahead(lights, scene),
+            near_whole: (settings.near_field().length_voxels() * scene.smallest_edge()) as f32,
             seen: uniforms::Cut::new(&remains.region(scene)),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
             lights: packed,
@@ -232,12 +232,6 @@ impl Variant for GatherVariant {
         }
         constants
     }
-}
-
-/// By how much the last step of rays nearby is longer, in scene units: half a voxel of the coarsest light volume.
-fn near_ahead(lights: &[LightInput<'_>], scene: &SceneSpace) -> f32 {
-    let divisor = lights.iter().filter_map(|input| input.volume).map(|volume| volume.divisor).max();
-    (0.5 * divisor.unwrap_or(1) as f64 * scene.smallest_edge()) as f32
 }
 
 /// How surfaces and shadows look, for the shaders.

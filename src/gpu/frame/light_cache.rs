@@ -5,14 +5,14 @@ use std::sync::Arc;
 use super::light_build::LightBuild;
 use super::loaded::Loaded;
 use crate::gpu::light::combine::CombinedLight;
-use crate::gpu::light::volume::LightVolume;
+use crate::gpu::light::volume::{Filling, LightVolume};
 use crate::gpu::resources::cached::Cached;
-use crate::gpu::volume::transfer_tables::Tables;
+use crate::gpu::volume::transfer_tables::{Needs, Tables};
 use crate::gpu::volume::{GpuVolume, brick_dims};
 use crate::gpu::{Context, GpuError, RenderOptions};
-use crate::model::{MAX_BIAS_VOXELS, NearField};
+use crate::model::{MAX_BIAS_VOXELS, NearField, SceneLight, Settings};
 use crate::plan::{
-    CellSet, FARTHEST, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, lookup_reach, near_reach,
+    CellSet, CellsAhead, FARTHEST, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, lookup_reach,
     picture_frame, slab_reach, stretch_reach,
 };
 
@@ -48,7 +48,7 @@ pub(super) struct Wanted<'a> {
 }
 
 /// How many cells from what the transfer functions show a picture looks up light: as far as its samples
-/// see, and the rays nearby or a light bias further. Every direction to look from has the same, so that orbiting refills nothing.
+/// see, and a light bias further. Every direction to look from has the same, so that orbiting refills nothing.
 fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let Request { settings, size, .. } = request;
     let size = size.map(|n| n * samples);
@@ -61,27 +61,46 @@ fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let towards_light = match settings.near_field() {
         // Any bias fills for the largest, so that the next needs nothing.
         NearField::Off if settings.shadows.bias_voxels > 0.0 => bias_reach(MAX_BIAS_VOXELS),
-        NearField::Off => 0,
-        near => near_reach(near, settings.shadows.resolution.divisor()),
+        _ => 0,
     };
     stretch_reach(stretch).saturating_add(slab).saturating_add(towards_light)
 }
 
+/// Where, from its samples, a picture looks up a light whose volume has voxels of `divisor` data voxels.
+fn lookups_ahead(volume: &GpuVolume, settings: &Settings, light: &SceneLight, divisor: usize) -> CellsAhead {
+    let near = settings.near_field();
+    if near == NearField::Off {
+        return CellsAhead::default();
+    }
+    let way = (near.length_voxels() + 0.5 * divisor as f64) * volume.scene.smallest_edge();
+    CellsAhead::towards(light, &volume.scene, way)
+}
+
 /// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples
-/// reach so far, and how far those are from what the transfer functions show.
+/// reach so far and that looks up light ahead of them.
 fn needed_cells(
     volume: &GpuVolume,
     tables: &Tables,
     options: &RenderOptions,
-    divisor: usize,
-    reach: u8,
-) -> (Arc<CellSet>, u8) {
+    Needs { reach, divisor, ahead }: Needs,
+) -> Arc<CellSet> {
     if options.fill_everything {
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
-        return (Arc::new(CellSet::full(brick_dims(dims))), FARTHEST);
+        return Arc::new(CellSet::full(brick_dims(dims)));
     }
-    let reach = reach.saturating_add(lookup_reach(divisor));
-    (tables.cells_within(volume, reach, divisor), reach)
+    let around =
+        if ahead == CellsAhead::default() { lookup_reach(divisor) } else { CellsAhead::reach(divisor) };
+    tables.needed_cells(volume, Needs { reach: reach.saturating_add(around), divisor, ahead })
+}
+
+/// How far, in data cells around what the transfer functions show, a light volume is read.
+fn read_around(options: &RenderOptions, divisor: usize, reach: u8, aheads: &[CellsAhead]) -> u8 {
+    if options.fill_everything {
+        return FARTHEST;
+    }
+    let farthest = aheads.iter().map(CellsAhead::farthest).max().unwrap_or(0);
+    let around = if farthest == 0 { lookup_reach(divisor) } else { CellsAhead::reach(divisor) };
+    reach.saturating_add(around).saturating_add(farthest)
 }
 
 fn is_within(needed: &Arc<CellSet>, filled: &Arc<CellSet>) -> bool {
@@ -109,7 +128,8 @@ impl Loaded {
         let Wanted { context, request, options, .. } = wanted;
         let reach = picture_reach(&self.volume, request, options.samples);
         let divisor = request.settings.shadows.resolution.divisor();
-        let (needed, _) = needed_cells(&self.volume, &self.tables.value, options, divisor, reach);
+        let needs = Needs { reach, divisor, ahead: CellsAhead::default() };
+        let needed = needed_cells(&self.volume, &self.tables.value, options, needs);
         let is_usable = self
             .combined
             .as_ref()
@@ -149,13 +169,24 @@ impl Loaded {
         let is_wanted = |key: &LightKey| {
             full_keys.iter().flatten().any(|full| full == key || at_coarse(full).as_ref() == Some(key))
         };
-        let needed = |key: &LightKey, reach: u8| {
-            needed_cells(volume, &tables.value, options, key.resolution().divisor(), reach)
+        let needed = |key: &LightKey, reach: u8, ahead: CellsAhead| {
+            needed_cells(
+                volume,
+                &tables.value,
+                options,
+                Needs { reach, divisor: key.resolution().divisor(), ahead },
+            )
+        };
+        let settings = &request.settings;
+        let ahead_of = |index: usize, key: &LightKey| {
+            let light = settings.lights[index].in_scene(&settings.camera);
+            lookups_ahead(volume, settings, &light, key.resolution().divisor())
         };
         // A preview makes do with what a picture at full quality looks up; the margin lets all light pass.
-        let least = |key: &LightKey| needed(key, if request.coarse.is_some() { 0 } else { reach }).0;
-        let usable = |known: &Cached<LightKey, LightVolume>, key: &LightKey| {
-            known.key() == key && is_within(&least(key), &known.value.filled)
+        let least_reach = if request.coarse.is_some() { 0 } else { reach };
+        let usable = |known: &Cached<LightKey, LightVolume>, index: usize, key: &LightKey| {
+            let least = needed(key, least_reach, ahead_of(index, key));
+            known.key() == key && is_within(&least, &known.value.filled)
         };
         let mut keys = vec![None; full_keys.len()];
         let mut builds: Vec<LightBuild> = Vec::new();
@@ -165,10 +196,15 @@ impl Loaded {
             let found = [Some(full), coarse.as_ref()]
                 .into_iter()
                 .flatten()
-                .find(|key| lights.iter().any(|known| usable(known, key)))
+                .find(|key| lights.iter().any(|known| usable(known, index, key)))
                 .cloned();
             let key = found.clone().or(coarse).unwrap_or_else(|| full.clone());
             if found.is_none() {
+                // Two looks that are compared may differ in how far ahead they look: one volume serves both.
+                let mut aheads = vec![ahead_of(index, &key)];
+                for known in lights.iter().filter(|known| *known.key() == key) {
+                    aheads.extend(known.value.aheads.first().filter(|known| **known != aheads[0]));
+                }
                 recyclable
                     .extend(lights.extract_if(.., |known| *known.key() == key).map(|light| light.value));
                 // One that would be forgotten afterwards.
@@ -177,9 +213,15 @@ impl Loaded {
                     let oldest = free.min_by_key(|&at| lights[at].value.last_used);
                     recyclable.extend(oldest.map(|at| lights.swap_remove(at).value));
                 }
-                let filled = needed(&key, reach);
-                let margin = needed(&key, reach.max(stretch_reach(WIDEST))).0.without(&filled.0);
-                let fresh = LightVolume::new(context, volume, &key, filled, margin, recyclable)?;
+                let all = |reach: u8| {
+                    let sets = aheads.iter().map(|&ahead| needed(&key, reach, ahead));
+                    sets.reduce(|a, b| Arc::new(a.with(&b))).unwrap_or_default()
+                };
+                let filled = all(reach);
+                let margin = all(reach.max(stretch_reach(WIDEST))).without(&filled);
+                let reach = read_around(options, key.resolution().divisor(), reach, &aheads);
+                let filling = Filling { filled, margin, reach, aheads };
+                let fresh = LightVolume::new(context, volume, &key, filling, recyclable)?;
                 builds.push(LightBuild::new(volume, request, index, &fresh, key.resolution(), options.chunk));
                 lights.push(Cached::unfilled(key.clone(), fresh));
             }

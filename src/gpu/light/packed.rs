@@ -47,6 +47,10 @@ pub(crate) fn pack_light(
         hood_outer: cone.cos_outer as f32,
         place_in_index: place_in_index.as_vec3().into(),
         two_sided: f32::from(u8::from(!light.casts_shadows)),
+        near_ahead: volume.map_or(0.0, |volume| 0.5 * volume.divisor as f64 * scene.smallest_edge()) as f32,
+        pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
     }
 }
 

@@ -11,7 +11,7 @@ use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::{Gpu, GpuVolume, texture_3d};
 use crate::gpu::{Context, GpuError};
 use crate::model::Precision;
-use crate::plan::{BrickSet, CellSet, LightKey, LightView, reverse_reach_voxels};
+use crate::plan::{BrickSet, CellSet, CellsAhead, LightKey, LightView, reverse_reach_voxels};
 
 /// One light's attenuation volume.
 #[derive(Debug)]
@@ -26,8 +26,10 @@ pub(crate) struct LightVolume {
     pub view: wgpu::TextureView,
     /// Cells (of light voxels) that hold, or will hold, values.
     pub filled: Arc<CellSet>,
-    /// Data cells, beyond those that either transfer function shows, for whose lookups they suffice.
+    /// How far, in data cells around what the transfer functions show, those lie at most.
     pub reach: u8,
+    /// How far ahead of samples it is looked up, the last first.
+    pub aheads: Vec<CellsAhead>,
     /// Cells around what is filled, which only previews look up, and which no material darkens.
     margin: CellSet,
     /// Cells of the margin that are cleared, by this volume or the one that had its texture before.
@@ -40,6 +42,19 @@ pub(crate) struct LightVolume {
     pub last_used: u64,
 }
 
+/// What is filled of a light volume.
+#[derive(Debug)]
+pub(crate) struct Filling {
+    /// Cells (of light voxels) to be filled.
+    pub filled: Arc<CellSet>,
+    /// Cells around them, to be cleared.
+    pub margin: CellSet,
+    /// How far, in data cells around what the transfer functions show, those to be filled lie at most.
+    pub reach: u8,
+    /// How far ahead of samples it will be looked up.
+    pub aheads: Vec<CellsAhead>,
+}
+
 impl LightVolume {
     /// Makes the texture, or takes that of a volume that is not wanted any more; nothing is filled yet.
     ///
@@ -49,10 +64,10 @@ impl LightVolume {
         context: &Context,
         volume: &GpuVolume,
         key: &LightKey,
-        (filled, reach): (Arc<CellSet>, u8),
-        margin: CellSet,
+        filling: Filling,
         recyclable: &mut Vec<Self>,
     ) -> Result<Self, GpuError> {
+        let Filling { filled, margin, reach, aheads } = filling;
         let divisor = key.resolution().divisor();
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
         let format = match key.precision() {
@@ -69,6 +84,7 @@ impl LightVolume {
             cleared,
             filled,
             reach,
+            aheads,
             started: None,
             fill_ms: None,
             last_used: 0,

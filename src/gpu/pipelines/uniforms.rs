@@ -282,6 +282,10 @@ pub struct Light {
     pub hood_outer: f32,
     pub place_in_index: [f32; 3],
     pub two_sided: f32,
+    pub near_ahead: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
 }
 
 /// `shading/lights.wgsl`.
@@ -319,7 +323,7 @@ pub struct Eye {
     pub runs: u32,
     pub near_edge: f32,
     pub combined_lookup: [f32; 3],
-    pub near_ahead: f32,
+    pub near_whole: f32,
     pub seen: Cut,
     pub shading_cut: Cut,
     pub lights: [Light; crate::model::MAX_LIGHTS],

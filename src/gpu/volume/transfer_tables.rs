@@ -1,12 +1,13 @@
 //! Transfer functions on the GPU, and the bricks that they show.
 
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::{GpuVolume, brick_dims};
 use crate::gpu::{Context, GpuError};
 use crate::model::{BakedTransfer, Settings};
-use crate::plan::{BrickSet, CellDistances, CellSet, TablesKey};
+use crate::plan::{BrickSet, CellDistances, CellSet, CellsAhead, TablesKey};
 
 /// A baked transfer function: its table and where it shows anything.
 #[derive(Debug, Clone)]
@@ -70,12 +71,23 @@ pub(crate) struct Tables {
     pub light_distances: wgpu::TextureView,
     /// Distances to what either shows: an eye sample looks up its light not far from there.
     shown: Arc<CellDistances>,
-    /// Cells of light volumes up to a distance from there, by that distance and the volumes' divisor.
-    needed: RefCell<Vec<Needed>>,
+    /// Cells of light volumes around there that pictures have needed, the last ones.
+    needed: RefCell<VecDeque<(Needs, Arc<CellSet>)>>,
 }
 
-/// Cells of a light volume up to a reach, for a divisor: ((reach, divisor), cells).
-type Needed = ((u8, usize), Arc<CellSet>);
+/// What cells a picture needs of a light volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Needs {
+    /// Up to so many data cells around what either transfer function shows, …
+    pub reach: u8,
+    /// … of a volume with voxels of so many data voxels, …
+    pub divisor: usize,
+    /// … so much further on.
+    pub ahead: CellsAhead,
+}
+
+/// How many sets of needed cells are kept: for eight lights, of two looks, at two resolutions.
+const MOST_NEEDED: usize = 32;
 
 impl Tables {
     /// Bakes what other tables of the volume, made from another key, do not hold already. Returns the tables and
@@ -144,17 +156,28 @@ impl Tables {
         Ok((Self { eye, lighting, eye_distances, light_distances, shown, needed }, baked))
     }
 
-    /// The cells of a light volume, of `divisor` data voxels per voxel, that hold a cell at most `reach`
-    /// from what either transfer function shows.
-    pub(crate) fn cells_within(&self, volume: &GpuVolume, reach: u8, divisor: usize) -> Arc<CellSet> {
-        let key = (reach, divisor);
-        let mut needed = self.needed.borrow_mut();
-        if let Some((_, known)) = needed.iter().find(|(known, _)| *known == key) {
-            return Arc::clone(known);
+    /// The cells of a light volume that a picture needs.
+    pub(crate) fn needed_cells(&self, volume: &GpuVolume, needs: Needs) -> Arc<CellSet> {
+        let known =
+            self.needed.borrow().iter().find(|(known, _)| *known == needs).map(|(_, set)| Arc::clone(set));
+        if let Some(known) = known {
+            return known;
         }
-        let dims = brick_dims(volume.volume.dims().map(|n| n.div_ceil(divisor)));
-        let fresh = Arc::new(self.shown.within(reach, divisor, dims));
-        needed.push((key, Arc::clone(&fresh)));
+        let Needs { reach, divisor, ahead } = needs;
+        let dims = volume.volume.dims();
+        let coarse = brick_dims(dims.map(|n| n.div_ceil(divisor)));
+        let fresh = if ahead == CellsAhead::default() {
+            self.shown.within(reach, divisor, coarse)
+        } else {
+            let still = Needs { divisor: 1, ahead: CellsAhead::default(), ..needs };
+            let around = self.needed_cells(volume, still);
+            let moved = ahead.of((*around).clone(), dims.map(|n| (n - 1) / 2));
+            if divisor > 1 { moved.coarsened(divisor, coarse) } else { moved }
+        };
+        let fresh = Arc::new(fresh);
+        let mut needed = self.needed.borrow_mut();
+        needed.truncate(MOST_NEEDED - 1);
+        needed.push_front((needs, Arc::clone(&fresh)));
         fresh
     }
 

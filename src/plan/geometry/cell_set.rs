@@ -2,8 +2,14 @@
 
 use crate::plan::BrickSet;
 
+/// Cells along the edge of a brick.
+const PER_BRICK: usize = 4;
+
+/// The first layer of a brick's cells along each axis.
+const LAYERS: [u64; 3] = [0x1111_1111_1111_1111, 0x000f_000f_000f_000f, 0xffff];
+
 /// A set of the cells of a grid of bricks.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CellSet {
     /// Bricks along x, y, z.
     pub dims: [usize; 3],
@@ -22,6 +28,75 @@ impl CellSet {
     pub fn without(&self, other: &Self) -> Self {
         let masks = self.masks.iter().zip(&other.masks).map(|(a, b)| a & !b).collect();
         Self { dims: self.dims, masks }
+    }
+
+    /// What is in either of two sets of one grid.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        let masks = self.masks.iter().zip(&other.masks).map(|(a, b)| a | b).collect();
+        Self { dims: self.dims, masks }
+    }
+
+    /// The set moved by one cell along an axis, forwards or back; nothing leaves the grid at cells 0 and `last`.
+    #[must_use]
+    pub fn stepped(&self, axis: usize, forwards: bool, last: usize) -> Self {
+        let layer = LAYERS[axis];
+        let step = 1 << (2 * axis);
+        let stride: usize = self.dims[..axis].iter().product();
+        let count = self.dims[axis];
+        let is_last = |brick: usize| brick == last / PER_BRICK;
+        let last_layer = layer << (step * (last % PER_BRICK));
+        let mask = |(at, &mask): (usize, &u64)| {
+            let brick = at / stride % count;
+            let beyond = (PER_BRICK - 1) * step;
+            if forwards {
+                let entering = if brick > 0 { self.masks[at - stride] >> beyond & layer } else { 0 };
+                let staying = if is_last(brick) { mask & last_layer } else { 0 };
+                (mask & !(layer << beyond)) << step | entering | staying
+            } else {
+                let next = if brick + 1 < count { self.masks[at + stride] } else { 0 };
+                let staying = if brick == 0 { mask & layer } else { 0 };
+                (mask & !layer) >> step | (next & layer) << beyond | staying
+            }
+        };
+        Self { dims: self.dims, masks: self.masks.iter().enumerate().map(mask).collect() }
+    }
+
+    /// The cells, `factor` times as large, of a grid of `bricks` that hold any of these.
+    #[must_use]
+    pub fn coarsened(&self, factor: usize, bricks: [usize; 3]) -> Self {
+        let mut coarse = Self { dims: bricks, masks: vec![0; bricks.iter().product()] };
+        for (brick, mask) in self.bricks() {
+            let mut left = mask;
+            while left != 0 {
+                let bit = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let within = [bit % PER_BRICK, bit / PER_BRICK % PER_BRICK, bit / (PER_BRICK * PER_BRICK)];
+                coarse.insert(std::array::from_fn(|axis| (brick[axis] * PER_BRICK + within[axis]) / factor));
+            }
+        }
+        coarse
+    }
+
+    /// Puts in a cell; none outside the grid.
+    pub fn insert(&mut self, cell: [usize; 3]) {
+        if let Some((at, bit)) = self.place(cell) {
+            self.masks[at] |= bit;
+        }
+    }
+
+    /// Whether a cell is in it.
+    pub fn contains(&self, cell: [usize; 3]) -> bool {
+        self.place(cell).is_some_and(|(at, bit)| self.masks[at] & bit != 0)
+    }
+
+    /// The brick and the bit of a cell.
+    fn place(&self, cell: [usize; 3]) -> Option<(usize, u64)> {
+        let [x, y, z] = cell.map(|c| c / PER_BRICK);
+        let [nx, ny, nz] = self.dims;
+        let [i, j, k] = cell.map(|c| c % PER_BRICK);
+        let is_inside = x < nx && y < ny && z < nz;
+        is_inside.then(|| (x + nx * (y + ny * z), 1 << (i + PER_BRICK * (j + PER_BRICK * k))))
     }
 
     /// Whether all of this set is in the other.
@@ -60,5 +135,45 @@ mod tests {
         assert_eq!(a.bricks().collect::<Vec<_>>(), [([0, 0, 0], 0b0110)]);
         assert_eq!((a.count(), b.to_bricks().positions().count()), (2, 2));
         assert!(b.is_within(&CellSet::full([2, 1, 1])));
+    }
+
+    /// Cells of 3 × 2 × 2 bricks.
+    fn set(members: &[[usize; 3]]) -> CellSet {
+        let mut set = CellSet { dims: [3, 2, 2], masks: vec![0; 12] };
+        members.iter().for_each(|&cell| set.insert(cell));
+        set
+    }
+
+    #[test]
+    fn a_step_moves_every_cell_and_stops_at_the_border() {
+        let last = [10, 6, 7];
+        let members = [[0, 0, 0], [3, 3, 3], [4, 2, 7], [10, 6, 5], [7, 5, 4]];
+        for axis in 0..3 {
+            for forwards in [true, false] {
+                let moved = members.map(|mut cell| {
+                    let at = &mut cell[axis];
+                    *at = if forwards { (*at + 1).min(last[axis]) } else { at.saturating_sub(1) };
+                    cell
+                });
+                assert_eq!(
+                    set(&members).stepped(axis, forwards, last[axis]),
+                    set(&moved),
+                    "{axis} {forwards}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_coarse_cell_holds_what_its_cells_do() {
+        let coarse = set(&[[3, 5, 7], [8, 0, 0]]).coarsened(2, [2, 1, 1]);
+        let expected = {
+            let mut expected = CellSet { dims: [2, 1, 1], masks: vec![0; 2] };
+            expected.insert([1, 2, 3]);
+            expected.insert([4, 0, 0]);
+            expected
+        };
+        assert_eq!(coarse, expected);
+        assert!(coarse.contains([1, 2, 3]) && !coarse.contains([0, 0, 0]) && !coarse.contains([99, 0, 0]));
     }
 }

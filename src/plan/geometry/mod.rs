@@ -1,5 +1,6 @@
 //! The geometry of the passes: frames of sheets, bricks and cells, how far samples reach.
 
+pub(super) mod ahead;
 pub(super) mod brick_set;
 pub(super) mod cell_distances;
 pub(super) mod cell_set;

@@ -2,7 +2,7 @@
 
 use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
-use crate::model::{NearField, Quadrature, Shadows};
+use crate::model::{Quadrature, Shadows};
 use crate::plan::{LightView, SheetFrame};
 
 /// Voxels along the edge of a cell.
@@ -57,11 +57,6 @@ pub fn lookup_reach(divisor: usize) -> u8 {
 /// How far lookups see `bias_voxels` from the sample.
 pub fn bias_reach(bias_voxels: f64) -> u8 {
     in_cells(bias_voxels)
-}
-
-/// How far lookups behind rays nearby see, from the sample, in light volumes with voxels of `divisor` data voxels.
-pub fn near_reach(near: NearField, divisor: usize) -> u8 {
-    in_cells(near.length_voxels() + 0.5 * divisor as f64)
 }
 
 /// How far the reverse kernel sees around the voxels of a light volume.

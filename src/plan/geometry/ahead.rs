@@ -1,0 +1,173 @@
+//! Where samples look up light that rays nearby have led some way towards it.
+//!
+//! All samples go equally far, so that what they need of a light volume is what the transfer functions show, moved
+//! towards the light: no more than without rays nearby.
+
+use glam::DVec3;
+
+use crate::math::SceneSpace;
+use crate::model::{LightKind, SceneLight};
+use crate::plan::{CellSet, lookup_reach};
+
+/// Voxels along the edge of a cell.
+const CELL_EDGE: f64 = 2.0;
+
+/// By how many cells of 2³ voxels lookups lie ahead of their samples: along each axis any number between the two.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct CellsAhead {
+    /// The least.
+    pub least: [i8; 3],
+    /// The most.
+    pub most: [i8; 3],
+}
+
+impl CellsAhead {
+    /// Where lookups lie that are `way` (in scene units) from their samples, towards a light or at it.
+    ///
+    /// A cell that moves by s cells comes to lie across two: the one is meant that has more of it, and [`Self::reach`]
+    /// has room for the other.
+    pub fn towards(light: &SceneLight, scene: &SceneSpace, way: f64) -> Self {
+        let radius = scene.support_radius();
+        let place = DVec3::from(light.position);
+        let (axis, spread_rad, stays) = match light.kind {
+            LightKind::Parallel => (light.direction(), 0.0, false),
+            // From anywhere in the sphere, the light is seen at most so far from where its middle sees it.
+            LightKind::Perspective if place.length() > radius + way => {
+                (place.normalize(), (radius / place.length()).asin(), false)
+            }
+            LightKind::Perspective => (DVec3::Z, std::f64::consts::PI, true),
+        };
+        // Along the axes of the grid, in cells for a way along them.
+        let to_index = scene.index_from_scene.matrix3.transpose() * (way / CELL_EDGE);
+        let [x, y, z] = [to_index.x_axis, to_index.y_axis, to_index.z_axis].map(|row| {
+            let angle_rad = row.angle_between(axis);
+            let nearest = (angle_rad - spread_rad).max(0.0).cos() * row.length();
+            let farthest = (angle_rad + spread_rad).min(std::f64::consts::PI).cos() * row.length();
+            let (low, high) = if stays { (farthest.min(0.0), nearest.max(0.0)) } else { (farthest, nearest) };
+            ((low - 0.5).ceil() as i8, (high - 0.5).ceil() as i8)
+        });
+        Self { least: [x.0, y.0, z.0], most: [x.1, y.1, z.1] }
+    }
+
+    /// How many cells around that which samples see lookups may need, ahead of it, of a light volume with voxels of
+    /// `divisor` data voxels: the texels that a fetch sees, and where texels are data voxels there is half a cell to
+    /// spare for what moves by parts of cells.
+    pub fn reach(divisor: usize) -> u8 {
+        lookup_reach(divisor) + u8::from(divisor > 1)
+    }
+
+    /// How many cells ahead lookups lie at most, along any axis and either way.
+    pub fn farthest(&self) -> u8 {
+        self.least.iter().chain(&self.most).map(|cells| cells.unsigned_abs()).max().unwrap_or(0)
+    }
+
+    /// Cells that lookups ahead of those of a set may need, of a volume that ends with cell `last` along each axis:
+    /// beyond, fetches find what is at its border.
+    #[must_use]
+    pub fn of(&self, set: CellSet, last: [usize; 3]) -> CellSet {
+        let mut moved = set;
+        for axis in 0..3 {
+            let (least, most) = (self.least[axis], self.most[axis]);
+            for _ in 0..least.unsigned_abs() {
+                moved = moved.stepped(axis, least > 0, last[axis]);
+            }
+            for _ in least..most {
+                let next = moved.stepped(axis, true, last[axis]);
+                moved = moved.with(&next);
+            }
+        }
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::CellDistances;
+    use glam::DAffine3;
+
+    fn scene() -> SceneSpace {
+        SceneSpace::new([40, 30, 20], DAffine3::from_scale(DVec3::new(1.0, 1.2, 2.0)))
+    }
+
+    fn light(kind: LightKind, position: [f64; 3]) -> SceneLight {
+        SceneLight { kind, position, ..SceneLight::default() }
+    }
+
+    /// Where the lookups of samples all over a cell lie, in light volumes with voxels of `divisor` data voxels: the
+    /// cells of those volumes' grids whose texels a fetch sees.
+    fn looked_into(light: &SceneLight, way: f64, sample_cell: [usize; 3], divisor: usize) -> Vec<[usize; 3]> {
+        let scene = scene();
+        let mut cells = Vec::new();
+        for at in 0..125 {
+            let fraction = DVec3::new(f64::from(at % 5), f64::from(at / 5 % 5), f64::from(at / 25)) / 4.0;
+            let sample = (DVec3::from(sample_cell.map(|c| c as f64)) + fraction * (1.0 - 1e-9)) * CELL_EDGE;
+            let place = scene.scene_from_index.transform_point3(sample);
+            let away = match light.kind {
+                LightKind::Parallel => light.direction() * way,
+                LightKind::Perspective => (DVec3::from(light.position) - place).clamp_length_max(way),
+            };
+            let lookup = sample + scene.index_from_scene.transform_vector3(away);
+            let texel = (lookup + 0.5) / divisor as f64 - 0.5;
+            for corner in 0..8 {
+                let voxel: [usize; 3] = std::array::from_fn(|axis| {
+                    let last = scene.dims[axis].div_ceil(divisor) as f64 - 1.0;
+                    (texel[axis].floor() + f64::from(corner >> axis & 1)).clamp(0.0, last) as usize
+                });
+                cells.push(voxel.map(|v| v / 2));
+            }
+        }
+        cells
+    }
+
+    #[test]
+    fn no_lookup_is_missed() {
+        let scene = scene();
+        let dims = scene.dims.map(|n| n.div_ceil(8));
+        let last = scene.dims.map(|n| (n - 1) / 2);
+        for (kind, position) in [
+            (LightKind::Parallel, [1.0, 0.0, 0.0]),
+            (LightKind::Parallel, [-1.0, 2.0, 0.3]),
+            (LightKind::Parallel, [0.3, -0.7, -2.0]),
+            (LightKind::Perspective, [2.5, 2.0, -1.0]),
+            (LightKind::Perspective, [-30.0, 2.0, 1.0]),
+            (LightKind::Perspective, [0.2, 0.1, 0.3]),
+        ] {
+            let light = light(kind, position);
+            for (divisor, sample_cell) in [1, 2, 4]
+                .into_iter()
+                .flat_map(|d| [[0, 0, 0], [7, 5, 4], [19, 14, 9], [0, 14, 3]].map(|c| (d, c)))
+            {
+                let way = (3.0 + 0.5 * divisor as f64) * scene.smallest_edge();
+                let ahead = CellsAhead::towards(&light, &scene, way);
+                let mut set = CellSet { dims, masks: vec![0; dims.iter().product()] };
+                set.insert(sample_cell);
+                let around = CellDistances::of(&set).within(CellsAhead::reach(divisor), 1, dims);
+                let coarse = scene.dims.map(|n| n.div_ceil(8 * divisor));
+                let needed = ahead.of(around, last).coarsened(divisor, coarse);
+                for cell in looked_into(&light, way, sample_cell, divisor) {
+                    assert!(
+                        needed.contains(cell),
+                        "{position:?} 1/{divisor}: {sample_cell:?} looks into {cell:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Rays nearby that are 3½ voxels long would take all that lies two cells further around.
+    #[test]
+    fn a_parallel_light_needs_no_more_cells() {
+        let (scene, dims) = (scene(), [5, 4, 3]);
+        let ahead = CellsAhead::towards(
+            &light(LightKind::Parallel, [1.0, 2.0, 3.0]),
+            &scene,
+            3.5 * scene.smallest_edge(),
+        );
+        let mut set = CellSet { dims, masks: vec![0; dims.iter().product()] };
+        set.insert([9, 7, 5]);
+        let around = CellDistances::of(&set).within(CellsAhead::reach(1), 1, dims);
+        assert_eq!((around.count(), ahead.of(around, [19, 14, 9]).count()), (27, 27));
+        assert_ne!(ahead, CellsAhead::default());
+    }
+}
