@@ -5,6 +5,8 @@ struct TransferTable {
     entries: array<vec4f, 1024>,
     // Where opacity rises with density, 1; where it falls, −1.
     sides: array<f32, 1024>,
+    // For each power of two up to the table's size, largest extinctions over so many entries from each on.
+    peaks: array<f32, 11264>,
 }
 
 @group(0) @binding(1) var<storage, read> table: TransferTable;
@@ -40,4 +42,15 @@ fn nearest_entry(density: f32) -> u32 {
 // To which side of a surface opacity falls: 1 where density falls, −1 where it rises, and between them amid a change.
 fn side_of(density: f32) -> f32 {
     return table.sides[nearest_entry(density)];
+}
+
+// The largest extinction of densities within a range.
+fn largest_extinction(low: f32, high: f32) -> f32 {
+    let range = clamp(vec2f(low, high), vec2f(0.0), vec2f(1.0)) * f32(TABLE_SIZE - 1u);
+    let first = u32(range.x);
+    let last = u32(ceil(range.y));
+    // Two runs of as many entries as fit, one from either end.
+    let power = firstLeadingBit(last - first + 1u);
+    let run = power * TABLE_SIZE;
+    return max(table.peaks[run + first], table.peaks[run + last + 1u - (1u << power)]);
 }

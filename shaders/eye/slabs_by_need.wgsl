@@ -13,19 +13,6 @@ const MUCH = 0.125;
 // The density is expected to change across a slab by this many times what its gradient in the middle says.
 const CURVED = 1.25;
 
-fn extinction_near(density: f32) -> f32 {
-    return table.entries[nearest_entry(density)].a;
-}
-
-// The largest extinction that is expected within a slab: there, at its ends and halfway to them, where the density
-// changes by `change` from the middle to an end.
-fn largest_extinction(found: SlabSample, change: f32) -> f32 {
-    let ends = max(extinction_near(found.density - change), extinction_near(found.density + change));
-    let between = 0.5 * change;
-    let halfway = max(extinction_near(found.density - between), extinction_near(found.density + between));
-    return max(extinction_near(found.density), max(ends, halfway));
-}
-
 // What a ray shows between slabs of the frame, the first and the last inside.
 fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
     let walk = walk_along(eye.frame, ray);
@@ -51,7 +38,8 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         var needed = width;
         if (width == THIN_SLABS) {
             let change = 0.5 * CURVED * thick * abs(dot(slope, ray.direction));
-            let share = t * (1.0 - exp(-largest_extinction(found, change) * thick * ray.obliquity));
+            let largest = largest_extinction(found.density - change, found.density + change);
+            let share = t * (1.0 - exp(-largest * thick * ray.obliquity));
             // So is what ends within the slab.
             let is_whole = start >= inside.x && start + THIN_SLABS - 1 <= inside.y;
             needed = select(1, width, is_whole && share <= MUCH);

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{ControlPoint, Interpolation, Length, Rig, Sampling, Settings, Slabs, TransferFunction};
+use super::{ControlPoint, Interpolation, Length, Quality, Rig, Settings, TransferFunction};
 use crate::data::{HISTOGRAM_BINS, Histogram, Volume};
 
 /// Share of the picture's height (and width, at 4:3) that the object fills.
@@ -22,10 +22,9 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
         transfer: transfer(volume, histogram),
         opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
-        // Even slabs as thick show on steep surfaces as wood grain.
-        sampling: Sampling { slab: 1.0, slabs: Slabs::ByNeed, ..Sampling::default() },
         ..Settings::default()
     };
+    Quality::Standard.apply(&mut settings);
     frame_object(&mut settings, volume);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
     settings

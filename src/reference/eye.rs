@@ -144,8 +144,7 @@ impl Reference<'_> {
         let along = self.scene.scene_from_index.transform_vector3(frame.direction.at(i, j));
         let change = shader.gradient(point, frame.stretch_level(depth)).dot(along).abs();
         let change = 0.5 * CURVED * thickness * change;
-        let at = |share: f64| table.sample(density + share * change)[3];
-        let largest = [-1.0, -0.5, 0.0, 0.5, 1.0].map(at).into_iter().fold(0.0, f64::max);
+        let largest = table.largest_extinction(density - change, density + change);
         let share = ray.seen[3] * -(-largest * thickness * frame.obliquity(i, j)).exp_m1();
         is_whole && share <= MUCH
     }

@@ -31,7 +31,8 @@ impl Table {
         bounded: bool,
         known: impl IntoIterator<Item = &'a Self>,
     ) -> Self {
-        let numbers: Vec<f32> = baked.entries.iter().flatten().chain(&baked.sides).copied().collect();
+        let numbers: Vec<f32> =
+            baked.entries.iter().flatten().chain(&baked.sides).chain(&baked.peaks).copied().collect();
         let buffer = context.buffer("Table::buffer", &numbers, wgpu::BufferUsages::STORAGE);
         if let Some(known) = known.into_iter().find(|known| baked.shows_like(&known.baked)) {
             return Self { baked: Arc::new(baked), buffer, ..known.clone() };

@@ -10,6 +10,8 @@ pub struct BakedTransfer {
     /// For each of them 1 where extinction rises with density, −1 where it falls, and between them amid a change: to
     /// which side of a surface it falls.
     pub sides: Vec<f32>,
+    /// For each power of two up to [`LUT_SIZE`], for each entry the largest extinction of so many entries from there on.
+    pub peaks: Vec<f32>,
 }
 
 /// How far, in entries, a change of extinction says to which side it falls: a step of 8-bit data.
@@ -37,10 +39,24 @@ fn sides(entries: &[[f32; 4]]) -> Vec<f32> {
         .collect()
 }
 
+/// Largest extinctions over runs of 1, 2, 4 … [`LUT_SIZE`] entries; runs end with the table.
+fn peaks(entries: &[[f32; 4]]) -> Vec<f32> {
+    let count = entries.len();
+    let mut runs: Vec<f32> = entries.iter().map(|entry| entry[3]).collect();
+    for power in 0..count.ilog2() {
+        let shorter = runs.len() - count;
+        for at in 0..count {
+            let second = (at + (1 << power)).min(count - 1);
+            runs.push(runs[shorter + at].max(runs[shorter + second]));
+        }
+    }
+    runs
+}
+
 impl BakedTransfer {
     /// A table of [`LUT_SIZE`] entries.
     pub(super) fn new(entries: Vec<[f32; 4]>) -> Self {
-        Self { sides: sides(&entries), entries }
+        Self { sides: sides(&entries), peaks: peaks(&entries), entries }
     }
 
     /// Whether both have extinction at the same densities: only how much, and of which colour, differs.
@@ -67,6 +83,13 @@ impl BakedTransfer {
             let high = ((max * last as f32).ceil() as usize + 1).min(last);
             counts[high + 1] > counts[low]
         }
+    }
+
+    /// The largest extinction of densities from `low` to `high`.
+    pub fn largest_extinction(&self, low: f64, high: f64) -> f64 {
+        let at = |density: f64| density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
+        let (first, last) = (at(low).floor() as usize, at(high).ceil() as usize);
+        self.entries[first..=last].iter().map(|entry| f64::from(entry[3])).fold(0.0, f64::max)
     }
 
     /// To which side opacity falls at a density, of the nearest entry.
@@ -111,6 +134,24 @@ mod tests {
         }
         // Between them there is no jump.
         assert!(found.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.3));
+    }
+
+    #[test]
+    fn the_largest_extinction_of_a_range_is_found_in_two_runs() {
+        let points = [(0.0, 0.1), (0.2, 0.0), (0.3, 0.9), (0.31, 0.2), (0.7, 0.5), (1.0, 0.4)]
+            .map(|(value, opacity)| ControlPoint::new(value, [1.0; 3], opacity));
+        let function = TransferFunction { points: points.to_vec(), ..TransferFunction::default() };
+        let baked = function.bake(ValueRange::UNIT, 1.0, 1.0);
+        assert_eq!(baked.peaks.len(), 11 * 1024);
+        for first in (0..1024_usize).step_by(37) {
+            for last in (first..1024).step_by(29) {
+                let power = (last - first + 1).ilog2();
+                let run = |at: usize| f64::from(baked.peaks[1024 * power as usize + at]);
+                let found = run(first).max(run(last + 1 - (1 << power)));
+                let expected = baked.largest_extinction(first as f64 / 1023.0, last as f64 / 1023.0);
+                assert_eq!(found, expected, "{first} … {last}");
+            }
+        }
     }
 
     #[test]
