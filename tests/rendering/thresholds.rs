@@ -41,6 +41,9 @@ pub(crate) const ROTATION_RANGE: f64 = 0.005;
 /// See [`ROTATION_RANGE`].
 pub(crate) const ROTATION_STEP: f64 = 0.001;
 
+/// Light along a flat face against rays, at most: what slabs as thick as a voxel leave of the first and last voxel.
+pub(crate) const LIGHT_ALONG_A_FACE: f64 = 0.05;
+
 /// By how much halving the slab must shrink the error: first order, and second order.
 pub(crate) const ORDER_FRONT: f64 = 1.8;
 /// See [`ORDER_FRONT`].

@@ -75,6 +75,10 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         hood_outer,
         place_in_index,
         two_sided,
+        near_ahead,
+        pad0,
+        pad1,
+        pad2,
     });
     vec![
         ("eye/gather.wgsl", frame.clone()),
@@ -171,7 +175,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 runs,
                 near_edge,
                 combined_lookup,
-                near_ahead,
+                near_whole,
                 seen,
                 shading_cut,
                 lights

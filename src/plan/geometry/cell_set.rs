@@ -37,27 +37,30 @@ impl CellSet {
         Self { dims: self.dims, masks }
     }
 
-    /// The set moved by one cell along an axis, forwards or back; nothing leaves the grid at cells 0 and `last`.
+    /// The set moved by one cell along an axis, forwards or back, in a grid that ends with cell `last`: what lies beyond
+    /// its border belongs to the cells there, from which it moves in, and into which it moves out.
     #[must_use]
     pub fn stepped(&self, axis: usize, forwards: bool, last: usize) -> Self {
         let layer = LAYERS[axis];
         let step = 1 << (2 * axis);
         let stride: usize = self.dims[..axis].iter().product();
         let count = self.dims[axis];
-        let is_last = |brick: usize| brick == last / PER_BRICK;
-        let last_layer = layer << (step * (last % PER_BRICK));
+        let end = step * (PER_BRICK - 1);
+        let within_last: u64 = (0..=last % PER_BRICK).map(|at| layer << (step * at)).sum();
         let mask = |(at, &mask): (usize, &u64)| {
             let brick = at / stride % count;
-            let beyond = (PER_BRICK - 1) * step;
-            if forwards {
-                let entering = if brick > 0 { self.masks[at - stride] >> beyond & layer } else { 0 };
-                let staying = if is_last(brick) { mask & last_layer } else { 0 };
-                (mask & !(layer << beyond)) << step | entering | staying
+            let is_last = brick == last / PER_BRICK;
+            let moved = if forwards {
+                let before = if brick > 0 { self.masks[at - stride] >> end & layer } else { 0 };
+                (mask & !(layer << end)) << step | before
             } else {
-                let next = if brick + 1 < count { self.masks[at + stride] } else { 0 };
-                let staying = if brick == 0 { mask & layer } else { 0 };
-                (mask & !layer) >> step | (next & layer) << beyond | staying
-            }
+                let behind = if brick + 1 < count { (self.masks[at + stride] & layer) << end } else { 0 };
+                (mask & !layer) >> step | behind
+            };
+            let first_border = if brick == 0 { layer } else { 0 };
+            let last_border = if is_last { layer << (step * (last % PER_BRICK)) } else { 0 };
+            let grid = if is_last { within_last } else { u64::MAX };
+            (moved | mask & (first_border | last_border)) & grid
         };
         Self { dims: self.dims, masks: self.masks.iter().enumerate().map(mask).collect() }
     }
@@ -150,16 +153,15 @@ mod tests {
         let members = [[0, 0, 0], [3, 3, 3], [4, 2, 7], [10, 6, 5], [7, 5, 4]];
         for axis in 0..3 {
             for forwards in [true, false] {
-                let moved = members.map(|mut cell| {
-                    let at = &mut cell[axis];
+                let mut expected = set(&members.map(|mut cell| {
+                    let at: &mut usize = &mut cell[axis];
                     *at = if forwards { (*at + 1).min(last[axis]) } else { at.saturating_sub(1) };
                     cell
-                });
-                assert_eq!(
-                    set(&members).stepped(axis, forwards, last[axis]),
-                    set(&moved),
-                    "{axis} {forwards}"
-                );
+                }));
+                // What moves in has been beyond the border.
+                let is_at_border = |cell: &&[usize; 3]| [0, last[axis]].contains(&cell[axis]);
+                members.iter().filter(is_at_border).for_each(|&cell| expected.insert(cell));
+                assert_eq!(set(&members).stepped(axis, forwards, last[axis]), expected, "{axis} {forwards}");
             }
         }
     }

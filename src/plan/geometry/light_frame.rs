@@ -111,16 +111,10 @@ pub fn light_views(light: &SceneLight, shadows: &Shadows, scene: &SceneSpace) ->
     let position = DVec3::from(light.position);
     match light.kind {
         LightKind::Parallel => {
-            vec![outside_view(scene, -light.direction(), 0.0, edge, shadows.slab)]
+            vec![outside_view(scene, -light.direction(), 0.0, edge, shadows)]
         }
         LightKind::Perspective if position.length() >= SPLIT_RADII * radius => {
-            vec![outside_view(
-                scene,
-                -position / position.length(),
-                1.0 / position.length(),
-                edge,
-                shadows.slab,
-            )]
+            vec![outside_view(scene, -position / position.length(), 1.0 / position.length(), edge, shadows)]
         }
         LightKind::Perspective => cube_views(scene, position, edge, shadows.slab),
     }
@@ -132,16 +126,19 @@ fn outside_view(
     forward: DVec3,
     inverse_distance: f64,
     edge: f64,
-    slab: f64,
+    shadows: &Shadows,
 ) -> LightView {
     let axes = axes_along(forward);
-    let pixels = scene.support_corners().map(|corner| {
-        let local = axes.transpose() * corner;
+    let pixel_of = |point: DVec3| {
+        let local = axes.transpose() * point;
         DVec2::new(local.x, local.y) / (edge * (1.0 + local.z * inverse_distance))
-    });
-    let low = pixels.iter().fold(DVec2::INFINITY, |low, &pixel| low.min(pixel)).floor();
-    let high = pixels.iter().fold(DVec2::NEG_INFINITY, |high, &pixel| high.max(pixel)).ceil();
-    let size = high - low + 1.0;
+    };
+    let pixels = scene.support_corners().map(pixel_of);
+    // Of light along rows of voxels, a pixel of its own goes through each: no row takes light from those beside it.
+    let row = pixel_of(middle_voxel(scene, shadows.resolution.divisor()));
+    let low = (pixels.iter().fold(DVec2::INFINITY, |low, &pixel| low.min(pixel)) - row).floor() + row;
+    let high = (pixels.iter().fold(DVec2::NEG_INFINITY, |high, &pixel| high.max(pixel)) - row).ceil() + row;
+    let size = (high - low).round() + 1.0;
     let place = Placement {
         axes,
         anchor: DVec3::ZERO,
@@ -149,10 +146,19 @@ fn outside_view(
         pitch: edge,
         first_pixel: low,
         size: [size.x as u32, size.y as u32],
-        slab: slab * edge,
+        slab: shadows.slab * edge,
         near: f64::NEG_INFINITY,
     };
     view(scene, &place, false)
+}
+
+/// The voxel of a light volume next to the middle, in scene space: half a voxel beside it where their number is even.
+fn middle_voxel(scene: &SceneSpace, divisor: usize) -> DVec3 {
+    let index = scene.dims.map(|n| {
+        let voxel = (n as f64 / 2.0 / divisor as f64).floor();
+        (voxel + 0.5) * divisor as f64 - 0.5
+    });
+    scene.scene_from_index.transform_point3(DVec3::from(index))
 }
 
 /// Six views around a light at `position`.

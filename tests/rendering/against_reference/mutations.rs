@@ -165,7 +165,7 @@ sided_mutation!(
 sided_mutation!(
     light_looked_up_where_rays_end,
     "eye/gather.wgsl",
-    "select(0.0, eye.near_ahead, step + 1u == NEAR_STEPS)",
+    "select(0.0, light.near_ahead, step + 1u == NEAR_STEPS)",
     "0.0"
 );
 sided_mutation!(

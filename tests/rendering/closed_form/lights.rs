@@ -1,7 +1,7 @@
 //! Lights and their shadows: at the eye, behind a ball, far away, and under a hood.
 
 use chiaroscuro::gpu::Picture;
-use chiaroscuro::model::{Deposit, Engine, Hood, LightKind, ShadowAlgorithm};
+use chiaroscuro::model::{Deposit, Engine, Hood, LightKind, ReverseKernel, ShadowAlgorithm};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
@@ -10,6 +10,7 @@ use crate::compare::{Limit, compare, wide};
 use crate::scenes;
 use crate::thresholds::{
     BALL_SHADOW, FAR_LIGHT, HEADLIGHT_COARSE, HEADLIGHT_FINE, HEADLIGHT_ORDER, HOOD_EDGE_DEG,
+    LIGHT_ALONG_A_FACE,
 };
 
 with_both_engines! {
@@ -135,5 +136,33 @@ fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
         let grey = row.iter().filter(|(_, arriving)| (0.02..0.98).contains(arriving)).count();
         assert!(grey >= 4, "{algorithm:?}: a rim of 4° is {grey} voxels wide: {row:?}");
         assert!(row.last().is_some_and(|(angle, _)| *angle > 13.0), "the row reaches beyond the rim");
+    }
+}
+
+/// Light along the rows of voxels beside a flat face: dark rows lie beside lit ones, and none takes light from the next.
+/// A row attenuates light as its own reconstructed density says, whether a voxel or a face of two lies in the middle.
+#[test]
+fn light_along_a_face_stays_in_its_rows() {
+    for n in [40, 41] {
+        let face = 12;
+        let loaded = Dataset::new(scenes::block(n, |[_, _, z]| z >= face && z < n - face));
+        let mut settings = base(Engine::Gather, 0.3);
+        settings.shadows.reverse_kernel = ReverseKernel::Tent;
+        settings.lights[0].position = [1.0, 0.0, 0.0];
+        let mut rays = settings.clone();
+        rays.shadows.algorithm = ShadowAlgorithm::Raycast;
+        let [found, expected] =
+            [settings, rays].map(|settings| attenuation(&mut renderer(), &loaded, &settings, 0));
+        let (mut worst, mut darkest) = (0.0_f32, 1.0_f32);
+        for z in 0..n {
+            for x in 4..n - 4 {
+                let at = x + n * (n / 2 + n * z);
+                worst = worst.max((found[at] - expected[at]).abs());
+                darkest = darkest.min(expected[at]);
+            }
+        }
+        println!("light along a face, {n}³: off by up to {worst:.4}");
+        assert!(darkest < 0.01, "there is a shadow: {darkest}");
+        assert!(f64::from(worst) <= LIGHT_ALONG_A_FACE, "{n}³: off by {worst}");
     }
 }
