@@ -6,25 +6,20 @@
 #import "density/classify.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/shade.wgsl"
-#import "density/gradient.wgsl"
+#import "shading/near_light.wgsl"
+#import "density/stored_gradient.wgsl"
 #import "sheets/tiles.wgsl"
 #import "eye/slabs_by_need.wgsl"
 
 // r: distance to the nearest cell that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
-// For rays to lights: the lighting transfer function, and in g the distance in cells to the nearest that
-// it makes attenuate light.
-@group(0) @binding(4) var<storage, read> lighting_table: TransferTable;
+// For rays to lights: in g the distance in cells to the nearest that the lighting transfer function makes attenuate
+// light.
 @group(0) @binding(5) var light_distances: texture_3d<f32>;
 
 // Cast rays to the lights instead of looking into volumes (P §3.3).
 override DIRECT: bool = false;
-// Gradients of the pyramid (volume/gradients.wgsl).
-@group(0) @binding(6) var gradients: texture_3d<f32>;
-
-// Take gradients from there instead of from the pyramid itself.
-override GRADIENT_TEXTURE: bool = false;
 // Take gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
 // Slabs are as thin as they need to be (slabs_by_need.wgsl).
@@ -39,47 +34,11 @@ fn light_distance(cell: vec3f) -> i32 {
     return near(light_distances, cell).y;
 }
 
-// Steps of the near field (src/model/settings/shadows.rs), or none.
-override NEAR_STEPS: u32 = 0u;
-// Samples whose share in the picture is less go the whole way in one step: a few such shares make a step of 8 bits,
-// and light differs by a part of itself.
-const NEAR_LEAST = 1.0 / 128.0;
-
-// Light as a ray finds it close by, and as its volume knows it from there on: a volume blurs what lies within a voxel
-// or two, which is where a surface shades itself. The last step goes half a voxel of the light volume further, to where
-// the trilinear fetch sees little of what the ray has met already; no piece of the way is left out. Every sample looks
-// light up equally far away, so that light volumes hold no more than that takes (src/plan/geometry/ahead.rs).
-fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
-    let forward = (light.place_in_index - surface.point * light.perspective) * towards.per_length;
-    let counts = weight > NEAR_LEAST;
-    var way = 0.0;
-    var depth = 0.0;
-    var step = select(max(NEAR_STEPS, 1u) - 1u, 0u, counts);
-    loop {
-        let usual = select(eye.near_whole, near_width(step) * eye.near_edge, counts);
-        let width = usual + select(0.0, light.near_ahead, step + 1u == NEAR_STEPS);
-        let length = min(width, max(towards.distance - way, 0.0));
-        let p = surface.point + forward * (way + 0.5 * length);
-        let extinction = lighting_table.entries[nearest_entry(pyramid(p, surface.level))].a;
-        depth += extinction * share_that_shades(eye.shading_cut, p) * length;
-        way += length;
-        step += 1u;
-        if (step >= NEAR_STEPS) {
-            break;
-        }
-    }
-    let end = surface.point + forward * way;
-    return exp(-depth * light.extinction_scale) * looked_up(light, volume, end);
-}
-
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
-    if (!DIRECT && NEAR_STEPS > 0u) {
-        return near_light(light, volume, surface, towards, weight);
+    if (!DIRECT) {
+        return near_or_looked_up(light, volume, surface, towards, weight);
     }
     let p = biased(light, surface, towards);
-    if (!DIRECT) {
-        return looked_up(light, volume, p);
-    }
     let s = eye.shading;
     let reach = towards.distance - s.bias;
     let direction = to_index(eye.space, towards.direction);
@@ -105,14 +64,6 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
     let slabs = f32(eye.gradient_slabs);
     let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * slabs * eye.frame.slab);
     return gradient_of_sheets(pixel, depth_of(eye.frame, k), vec3f(across, down, deep), vec3f(0.0));
-}
-
-// The gradient of the volume in index space.
-fn volume_slope(p: vec3f, level: f32) -> vec3f {
-    if (GRADIENT_TEXTURE) {
-        return textureSampleLevel(gradients, clamped, (p + 4.5) * grid.pyramid_scale, level).xyz;
-    }
-    return index_gradient(p, level);
 }
 
 // The light from the material of slab k where the ray crosses it.

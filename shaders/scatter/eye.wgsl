@@ -1,16 +1,23 @@
 // The picture from scattered sheets (P §3.5, eq. 9): one thread per pixel takes the slab's sum,
-// classifies and shades it, and composites it behind the slabs before. Its gradient is that of the
+// classifies and shades it, and composites it behind the slabs before. Its gradient is that of the volume, or of the
 // neighbouring sheets, which are in the ring already.
 #import "density/table.wgsl"
 #import "scatter/slab.wgsl"
 #import "shading/shade.wgsl"
-#import "shading/looked_up_light.wgsl"
+#import "shading/near_light.wgsl"
+#import "density/stored_gradient.wgsl"
 
 // Distance in bricks to the nearest that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<u32>;
 // Colour and opacity so far.
-@group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
-@group(1) @binding(4) var clamped: sampler;
+@group(1) @binding(8) var<storage, read_write> rays: array<vec4f>;
+
+// Take gradients from neighbouring sheets.
+override SHEET_GRADIENTS: bool = true;
+
+fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
+    return near_or_looked_up(light, volume, surface, towards, weight);
+}
 
 // The sheet's value at a pixel; nothing lies before the first or behind the last.
 fn sheet(pixel: vec2i, k: i32) -> f32 {
@@ -50,6 +57,7 @@ fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     eye = bound_eye;
+    grid = bound_grid;
     scatter = bound_scatter;
     if (any(id.xy >= eye.frame.size)) {
         return;
@@ -71,10 +79,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
             let level = stretch_level(eye.frame, met.depth);
             let density = sheet(pixel, k);
-            let slope = gradient_between_sheets(pixel, k, met) + face_slope(p, level, density);
-            let rgb = shade(Sampled(p, slope, density, level, 1.0), material.rgb);
             let share = share_within(span_within(eye.seen, ray), met.depth, met.thickness);
             let opacity = 1.0 - exp(-share * material.a * met.thickness * ray.obliquity);
+            var slope: vec3f;
+            if (SHEET_GRADIENTS) {
+                slope = gradient_between_sheets(pixel, k, met);
+            } else {
+                slope = gradient_to_scene(eye.space, volume_slope(p, level));
+            }
+            slope += face_slope(p, level, density);
+            let rgb = shade(Sampled(p, slope, density, level, left * opacity), material.rgb);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);
         }
     }

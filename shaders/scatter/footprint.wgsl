@@ -9,7 +9,7 @@ override QUADRATURE: u32 = 1u;
 // to 4; y its integral along the ray up to a distance from −2 to 2.
 const FOOTPRINT_SIZE = 512u;
 
-@group(1) @binding(2) var<storage, read> footprint_table: array<vec2f, 512>;
+@group(1) @binding(7) var<storage, read> footprint_table: array<vec2f, 512>;
 
 fn entry_at(at: f32) -> vec2f {
     let clamped_at = clamp(at, 0.0, 1.0) * f32(FOOTPRINT_SIZE - 1u);

@@ -30,8 +30,8 @@ struct Phase {
 // How many footprints were splatted.
 @group(0) @binding(5) var<storage, read_write> splats: atomic<u32>;
 // Colour and opacity so far.
-@group(1) @binding(3) var<storage, read_write> rays: array<vec4f>;
-@group(1) @binding(4) var clamped: sampler;
+@group(1) @binding(8) var<storage, read_write> rays: array<vec4f>;
+@group(1) @binding(3) var clamped: sampler;
 @group(3) @binding(0) var<uniform> bound_phase: Phase;
 var<private> phase: Phase;
 

@@ -62,10 +62,10 @@ const ORDER_EVERY_FOOTPRINT = 2u;
 
 override ORDER: u32 = 0u;
 
-@group(1) @binding(0) var<uniform> bound_scatter: Scatter;
+@group(1) @binding(5) var<uniform> bound_scatter: Scatter;
 var<private> scatter: Scatter;
 // Sums of density × footprint in units of 2⁻²⁴: integers, so that their order does not matter.
-@group(1) @binding(1) var<storage, read_write> sheets: array<atomic<i32>>;
+@group(1) @binding(6) var<storage, read_write> sheets: array<atomic<i32>>;
 
 // One, as sums hold it: far below what 8 or 16 bits of density show, and room for sums up to 128.
 const UNIT = 16777216.0;

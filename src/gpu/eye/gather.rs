@@ -13,7 +13,7 @@ use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::math::SceneSpace;
-use crate::model::{Classification, Deposit, Gradients, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm};
+use crate::model::{Classification, Deposit, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm};
 use crate::plan::picture_frame;
 use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
 
@@ -114,6 +114,22 @@ impl EyePass {
         self.variant.shading
     }
 
+    /// How samples of scattered sheets get their normals and their light; whether from `gradients` is known by then.
+    pub(crate) fn sampling_variant(&self, has_gradients: bool) -> SamplingVariant {
+        SamplingVariant { has_gradients, ..self.variant.sampling }
+    }
+
+    /// The texture of gradients, if there is one and normals may come from it.
+    pub(crate) fn gradients<'a>(&self, gpu: Gpu<'a>) -> Option<&'a wgpu::TextureView> {
+        let views = gpu.volume.gradients_views.as_ref().filter(|_| self.takes_gradients);
+        views.map(|views| self.levels.choose(views))
+    }
+
+    /// Levels of the pyramid that kernels reach.
+    pub(crate) fn levels(&self) -> Levels {
+        self.levels
+    }
+
     /// Draws some rows of the picture. `attenuation` holds the volumes of its lights in their order, or the
     /// combined one.
     pub(crate) fn draw(
@@ -125,8 +141,8 @@ impl EyePass {
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, volume, .. } = gpu;
-        let gradients = volume.gradients_views.as_ref().filter(|_| self.takes_gradients);
+        let Gpu { context, shaders, .. } = gpu;
+        let gradients = self.gradients(gpu);
         let variant = self.variant.with_gradients(gradients.is_some());
         let pipeline = shaders.pipeline(&variant)?;
         let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
@@ -144,7 +160,7 @@ impl EyePass {
                 view_of("picture", picture),
                 buffer("lighting_table", &tables.lighting.buffer),
                 view_of("light_distances", &tables.light_distances),
-                view_of("gradients", gradients.map_or(gpu.placeholder, |views| self.levels.choose(views))),
+                view_of("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
         let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels);
@@ -161,16 +177,34 @@ pub(crate) struct GatherVariant {
     classification: Classification,
     /// Pixels are wider than voxels somewhere.
     is_stretched: bool,
-    sheet_gradients: bool,
+    sampling: SamplingVariant,
     /// Slabs are as thin as they need to be.
     by_need: bool,
     shading: ShadingVariant,
     /// Samples cast rays to lights, which deposit so.
     rays: Option<Deposit>,
+}
+
+/// How samples get their normals and their light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct SamplingVariant {
+    /// Normals come from neighbouring sheets.
+    sheet_gradients: bool,
     /// Normals come from the texture of gradients.
     has_gradients: bool,
     /// Steps of the rays nearby.
     near_steps: u32,
+}
+
+impl SamplingVariant {
+    /// Its override constants.
+    pub(crate) fn constants(self) -> Constants {
+        vec![
+            flag("SHEET_GRADIENTS", self.sheet_gradients),
+            flag("GRADIENT_TEXTURE", self.has_gradients),
+            ("NEAR_STEPS", f64::from(self.near_steps)),
+        ]
+    }
 }
 
 impl GatherVariant {
@@ -184,7 +218,11 @@ impl GatherVariant {
             reconstruction: Reconstruction::new(sampling.kernel, sampling.quadrature),
             classification: sampling.classification,
             is_stretched,
-            sheet_gradients: sampling.gradients == Gradients::Sheets,
+            sampling: SamplingVariant {
+                sheet_gradients: settings.has_sheet_gradients(),
+                has_gradients: false,
+                near_steps,
+            },
             by_need: settings.has_slabs_by_need(),
             shading: ShadingVariant {
                 lights,
@@ -194,8 +232,6 @@ impl GatherVariant {
                 sides: shading.sides,
             },
             rays: casts_rays.then_some(shadows.deposit),
-            has_gradients: false,
-            near_steps,
         }
     }
 
@@ -206,8 +242,9 @@ impl GatherVariant {
     }
 
     /// The pass whose normals come from the texture of gradients, or do not.
-    pub(crate) fn with_gradients(self, has_gradients: bool) -> Self {
-        Self { has_gradients, ..self }
+    pub(crate) fn with_gradients(mut self, has_gradients: bool) -> Self {
+        self.sampling.has_gradients = has_gradients;
+        self
     }
 }
 
@@ -222,11 +259,9 @@ impl Variant for GatherVariant {
         constants.extend([
             classification_constant(self.classification),
             flag("STRETCH", self.is_stretched),
-            flag("SHEET_GRADIENTS", self.sheet_gradients),
             flag("BY_NEED", self.by_need),
-            flag("GRADIENT_TEXTURE", self.has_gradients),
-            ("NEAR_STEPS", f64::from(self.near_steps)),
         ]);
+        constants.extend(self.sampling.constants());
         if let Some(deposit) = self.rays {
             constants.extend([("DIRECT", 1.0), deposit_constant(deposit)]);
         }

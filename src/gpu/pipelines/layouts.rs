@@ -11,21 +11,21 @@ const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 16 * 4;
 /// Pairs of floats in a table of footprints, as `scatter/footprint.wgsl` declares it.
 const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;
 
+const GRID: Slot = Slot::uniform::<uniforms::Grid>(0, "bound_grid");
+const PYRAMID_TEXTURE: Slot = Slot::sampled(2, "pyramid_texture", Shape::Volume);
+const CLAMPED: Slot = Slot::sampler(3, "clamped");
+
 /// Density, with a pyramid for kernels that perspective stretches.
 const VOLUME: &[Slot] = &[
-    Slot::uniform::<uniforms::Grid>(0, "bound_grid"),
+    GRID,
     Slot::sampled(1, "density_texture", Shape::Volume),
-    Slot::sampled(2, "pyramid_texture", Shape::Volume),
-    Slot::sampler(3, "clamped"),
+    PYRAMID_TEXTURE,
+    CLAMPED,
     Slot::sampler(4, "nearest"),
 ];
 
 /// The pyramid alone.
-const PYRAMID: &[Slot] = &[
-    Slot::uniform::<uniforms::Grid>(0, "bound_grid"),
-    Slot::sampled(2, "pyramid_texture", Shape::Volume),
-    Slot::sampler(3, "clamped"),
-];
+const PYRAMID: &[Slot] = &[GRID, PYRAMID_TEXTURE, CLAMPED];
 
 /// Names of the light volumes, in the order of their lights.
 pub(crate) const ATTENUATION: [&str; 8] = [
@@ -63,10 +63,12 @@ const RESAMPLE: &[Slot] = &[
 /// A table, and what the eye and its lights are.
 const EYE: Slot = Slot::uniform::<uniforms::Eye>(0, "bound_eye");
 const TABLE: Slot = Slot::list(1, "table", TABLE_BYTES, Access::Read);
-const SCATTER: Slot = Slot::uniform::<uniforms::Scatter>(0, "bound_scatter");
-const SHEETS: Slot = Slot::list(1, "sheets", 4, Access::ReadWrite);
-const FOOTPRINT_TABLE: Slot = Slot::list(2, "footprint_table", FOOTPRINT_TABLE_BYTES, Access::Read);
-const RAYS: Slot = Slot::list(3, "rays", 16, Access::ReadWrite);
+const LIGHTING_TABLE: Slot = Slot::list(4, "lighting_table", TABLE_BYTES, Access::Read);
+const GRADIENTS: Slot = Slot::sampled(6, "gradients", Shape::Volume);
+const SCATTER: Slot = Slot::uniform::<uniforms::Scatter>(5, "bound_scatter");
+const SHEETS: Slot = Slot::list(6, "sheets", 4, Access::ReadWrite);
+const FOOTPRINT_TABLE: Slot = Slot::list(7, "footprint_table", FOOTPRINT_TABLE_BYTES, Access::Read);
+const RAYS: Slot = Slot::list(8, "rays", 16, Access::ReadWrite);
 
 /// What display passes read; `shown` is what they write.
 const fn display(shown: Format) -> [Slot; 4] {
@@ -107,9 +109,9 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 TABLE,
                 Slot::sampled(2, "distances", Shape::Volume),
                 Slot::target(3, "picture", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba32Float)),
-                Slot::list(4, "lighting_table", TABLE_BYTES, Access::Read),
+                LIGHTING_TABLE,
                 Slot::sampled(5, "light_distances", Shape::Volume),
-                Slot::sampled(6, "gradients", Shape::Volume),
+                GRADIENTS,
             ],
             VOLUME,
             LIGHTS,
@@ -178,8 +180,8 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
     (
         "scatter/eye.wgsl",
         &[
-            &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume)],
-            &[SCATTER, SHEETS, RAYS, Slot::sampler(4, "clamped")],
+            &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume), LIGHTING_TABLE, GRADIENTS],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS],
             LIGHTS,
         ],
     ),
@@ -194,7 +196,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::list(5, "splats", 4, Access::ReadWrite),
                 Slot::list(6, "voxels", 4, Access::Read),
             ],
-            &[SCATTER, FOOTPRINT_TABLE, RAYS, Slot::sampler(4, "clamped")],
+            &[CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS],
             LIGHTS,
             &[Slot::uniform::<uniforms::Phase>(0, "bound_phase")],
         ],

@@ -6,7 +6,7 @@ use super::footprints::{Footprints, Inputs};
 use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
-use crate::gpu::eye::gather::EyePass;
+use crate::gpu::eye::gather::{EyePass, SamplingVariant};
 use crate::gpu::light::packed::light_bind_group;
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::variant::{Constants, Only, ShadingVariant, Variant};
@@ -25,6 +25,7 @@ pub(crate) const SLABS_PER_STEP: u32 = 2;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct ScatterEyeVariant {
     shading: ShadingVariant,
+    sampling: SamplingVariant,
     sheets: ScatterVariant,
 }
 
@@ -35,6 +36,7 @@ impl Variant for ScatterEyeVariant {
 
     fn constants(&self) -> Constants {
         let mut constants = self.shading.constants();
+        constants.extend(self.sampling.constants());
         constants.extend(self.sheets.sheet_constants());
         constants
     }
@@ -112,7 +114,7 @@ impl EyeScatter {
         slabs: Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, .. } = gpu;
+        let Gpu { context, shaders, volume, .. } = gpu;
         let uniform = eye.uniform_buffer(context, self.ahead);
         let is_last = slabs.end == self.scatterer.sheet_count();
         if let Some(footprints) = &self.footprints {
@@ -130,7 +132,12 @@ impl EyeScatter {
             }
             return if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) };
         }
-        let variant = ScatterEyeVariant { shading: eye.shading_variant(), sheets: self.scatterer.variant() };
+        let gradients = eye.gradients(gpu);
+        let variant = ScatterEyeVariant {
+            shading: eye.shading_variant(),
+            sampling: eye.sampling_variant(gradients.is_some()),
+            sheets: self.scatterer.variant(),
+        };
         let pipeline = shaders.pipeline(&variant)?;
         let own = pass::bind(
             context,
@@ -141,8 +148,11 @@ impl EyeScatter {
                 buffer("bound_eye", &uniform),
                 buffer("table", &tables.eye.buffer),
                 view_of("distances", &self.distances),
+                buffer("lighting_table", &tables.lighting.buffer),
+                view_of("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
+        let grid = gpu.uniform("Volume::grid", volume.grid(0));
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         for k in slabs {
             // The slabs ahead are there when their neighbours need them.
@@ -166,10 +176,12 @@ impl EyeScatter {
                 &pipeline,
                 1,
                 &[
+                    buffer("bound_grid", &grid),
+                    view_of("pyramid_texture", eye.levels().choose(&volume.pyramid_views)),
+                    sampler("clamped", &volume.clamped),
                     buffer("bound_scatter", &slab),
                     buffer("sheets", &self.scatterer.sheets),
                     buffer("rays", &self.rays),
-                    sampler("clamped", &self.clamped),
                 ],
             );
             pass::dispatch(

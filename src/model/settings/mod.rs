@@ -18,7 +18,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     BakedTransfer, Camera, Classification, Cuts, Engine, Floor, Gradients, Kernel, Length, Light,
-    LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, Slabs, TransferFunction,
+    LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
+    TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
@@ -204,11 +205,12 @@ impl Settings {
         wanted && shadowed > 0 && self.shadows.algorithm.has_volume()
     }
 
-    /// Where rays from samples say how much light arrives. Only where light volumes of their own do from there on, and
-    /// only of gathered pictures: the scattering engine keeps to the paper, and in a combined volume of light its own
-    /// voxels blur what rays would tell.
+    /// Where rays from samples say how much light arrives. Only where light volumes of their own do from there on: in a
+    /// combined volume of light its own voxels blur what rays would tell. Nor where every footprint is composited, which
+    /// are shaded as the paper has it.
     pub fn near_field(&self) -> NearField {
-        let looks_up = self.shadows.algorithm.has_volume() && !self.combines_lights() && !self.scatters();
+        let looks_up =
+            self.shadows.algorithm.has_volume() && !self.combines_lights() && !self.composites_footprints();
         if looks_up { self.shadows.near_field } else { NearField::Off }
     }
 
@@ -253,7 +255,12 @@ impl Settings {
 
     /// Whether normals come from sheets.
     pub fn has_sheet_gradients(&self) -> bool {
-        self.scatters() || self.sampling.gradients == Gradients::Sheets
+        self.sampling.gradients == Gradients::Sheets
+    }
+
+    /// Whether voxels are composited one by one, and never summed in sheets.
+    pub fn composites_footprints(&self) -> bool {
+        self.scatters() && self.sampling.order == SheetOrder::EveryFootprint
     }
 
     /// The opacity unit in scene units, safe to divide by.

@@ -21,12 +21,20 @@ pub(super) fn complete(record: &mut Value) {
             group.entry(*setting).or_insert_with(|| Value::String((*value).to_owned()));
         }
     }
+    // Normals of scattered sheets came from sheets, whatever was set.
+    if schema < 2
+        && groups.get("sampling").and_then(|group| group.get("engine")) == Some(&Value::from("scatter"))
+    {
+        if let Some(Value::Object(sampling)) = groups.get_mut("sampling") {
+            sampling.insert("gradients".to_owned(), Value::from("sheets"));
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{NearField, ReverseKernel, SCHEMA, Settings, Sides, load_json};
+    use crate::model::{Gradients, NearField, ReverseKernel, SCHEMA, Settings, Sides, load_json};
 
     #[test]
     fn what_was_saved_looks_as_it_did() {
@@ -36,6 +44,8 @@ mod tests {
         assert_eq!(old.shadows.reverse_kernel, ReverseKernel::Forward);
         assert_eq!(old.shadows.near_field, NearField::Off);
         assert_eq!((old.shadows.gain, old.schema), (2.0, SCHEMA));
+        let scattered = load(r#"{"schema": 1, "sampling": {"engine": "scatter", "gradients": "volume"}}"#);
+        assert_eq!(scattered.sampling.gradients, Gradients::Sheets);
         // What it names all the same counts, and so does what has no schema.
         assert_eq!(load(r#"{"schema": 1, "shading": {"sides": "one"}}"#).shading.sides, Sides::One);
         assert_eq!(load(r#"{"shadows": {"gain": 2.0}}"#).shadows.near_field, NearField::Short);
