@@ -6,10 +6,12 @@
 
 use glam::DVec3;
 
-use super::{ControlPoint, Interpolation, Length, Quality, Rig, Settings, TransferFunction};
+use super::{
+    ControlPoint, FRAME_ASPECT, Fit, Interpolation, Length, Quality, Rig, Settings, TransferFunction,
+};
 use crate::data::{HISTOGRAM_BINS, Histogram, Volume};
 
-/// Share of the picture's height (and width, at 4:3) that the object fills.
+/// Share of the frame's height, or of its width, that the object fills: whichever it reaches first.
 const FILL: f64 = 0.8;
 
 /// Where the object begins, between its surroundings (0) and Otsu's split (1): thin shells and legs,
@@ -181,8 +183,9 @@ fn floor_under(outline: &[DVec3]) -> f64 {
 }
 
 /// Points the camera at what the transfer function shows, from three quarters above, near enough
-/// that it fills the picture.
+/// that it fills the frame, which lies within pictures of any shape.
 fn frame_object(settings: &mut Settings, volume: &Volume) {
+    settings.camera.fit = Fit::Frame;
     let corners = outline(settings, volume);
     if corners.is_empty() {
         return;
@@ -190,7 +193,7 @@ fn frame_object(settings: &mut Settings, volume: &Volume) {
     settings.floor.height = floor_under(&corners) - volume.scene().smallest_edge() / 2.0;
     let camera = &mut settings.camera;
     let view = camera.scene_from_view();
-    let half_angle = (camera.fov_y_deg.to_radians() / 2.0).tan();
+    let half_angle_tan = camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
     // Two rounds: perspective shifts the middle a little once the distance is known.
     let mut target = DVec3::ZERO;
     for _ in 0..3 {
@@ -208,8 +211,8 @@ fn frame_object(settings: &mut Settings, volume: &Volume) {
         let middle = (low + high) / 2.0;
         target += (view.x_axis * middle.x + view.y_axis * middle.y) * camera.distance;
         let half = (high - low) / 2.0;
-        let wanted = FILL * half_angle;
-        let factor = (half.y / wanted).max(half.x / (wanted * 4.0 / 3.0));
+        let wanted = FILL * half_angle_tan;
+        let factor = (half.y / wanted).max(half.x / (wanted * FRAME_ASPECT));
         camera.distance = (camera.distance * factor).clamp(0.3, 20.0);
     }
     camera.target = target.into();
@@ -219,6 +222,8 @@ fn frame_object(settings: &mut Settings, volume: &Volume) {
 mod tests {
     use super::*;
     use crate::data::Samples;
+    use crate::data::synthetic::builtin;
+    use glam::DVec2;
 
     /// A ball of the given value in a margin of another, with a ripple on both.
     fn ball(inside: f32, outside: f32) -> Volume {
@@ -273,5 +278,43 @@ mod tests {
         let (_, top, _) = settings.camera.pixel_from_scene(DVec3::ZERO, 400.0, 300.0).unwrap();
         assert!((top - 150.0).abs() < 20.0, "the ball's centre is at row {top}");
         assert!(settings.camera.distance > 1.0 && settings.camera.distance < 8.0);
+    }
+
+    /// Where the shown voxels of a volume lie in a picture: corners of the box around them, in pixels.
+    fn seen_box(settings: &Settings, volume: &Volume, size: DVec2) -> [DVec2; 2] {
+        let pixels = outline(settings, volume).into_iter().map(|point| {
+            let seen = settings.camera.pixel_from_scene(point, size.x, size.y);
+            let (x, y, _) = seen.expect("a point in front of the eye");
+            DVec2::new(x, y)
+        });
+        pixels.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+    }
+
+    #[test]
+    fn the_object_is_framed_in_pictures_of_every_shape() {
+        for name in ["chair", "cloud", "marschner-lobb"] {
+            let volume = builtin(name, Some(48)).unwrap();
+            let mut settings = first_settings(&volume, &Histogram::of(&volume));
+            let mut parallel = settings.clone();
+            parallel.camera.toggle_projection();
+            for size in [[1200, 400], [960, 540], [800, 600], [500, 500], [360, 640], [200, 800]] {
+                let size = DVec2::from(size.map(f64::from));
+                let [low, high] = seen_box(&settings, &volume, size);
+                let margin = (low / size).min((size - high) / size).min_element();
+                assert!(margin >= 0.05, "{name} in {size}: a margin of {margin}");
+                // The largest frame in the picture.
+                let height = size.y.min(size.x / FRAME_ASPECT);
+                let filled = ((high - low) / DVec2::new(height * FRAME_ASPECT, height)).max_element();
+                assert!(filled >= 0.6, "{name} in {size}: fills {filled} of the frame");
+                // Parallel rays show what is far away larger: of a whole cube, a little more than the margin.
+                let [low, high] = seen_box(&parallel, &volume, size);
+                assert!(low.min_element() > 0.0 && (size - high).min_element() > 0.0, "{name} in {size}");
+            }
+            // With the angle of the height, a narrow picture cuts it off.
+            settings.camera.fit = Fit::Height;
+            let size = DVec2::new(200.0, 800.0);
+            let [low, high] = seen_box(&settings, &volume, size);
+            assert!(low.x < 0.0 && high.x > size.x, "{name}: {low} to {high}");
+        }
     }
 }

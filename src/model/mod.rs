@@ -12,7 +12,7 @@ mod stored;
 mod transfer;
 mod turntable;
 
-pub use self::settings::camera::{Camera, Projection};
+pub use self::settings::camera::{Camera, FRAME_ASPECT, Fit, Projection};
 pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
 pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::length::Length;

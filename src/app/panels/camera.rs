@@ -7,12 +7,14 @@ use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice};
 use super::{Panels, sampling};
 use crate::app::common::commands::Command;
-use crate::model::Projection;
+use crate::model::{Fit, Projection};
 
 const PROJECTIONS: [(Projection, Named); 2] = [
     (Projection::Perspective, text::camera::PERSPECTIVE),
     (Projection::Orthographic, text::camera::ORTHOGRAPHIC),
 ];
+
+const FITS: [(Fit, Named); 2] = [(Fit::Frame, text::camera::FRAME), (Fit::Height, text::camera::HEIGHT)];
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -33,6 +35,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     distance.show(ui, &mut camera.distance, defaults.distance);
     let angle = Number::new(text::camera::FIELD_OF_VIEW, 1.0..=120.0).unit(DEGREES).decimals(1);
     angle.show(ui, &mut camera.fov_y_deg, defaults.fov_y_deg);
+    choice(ui, text::camera::FIT, &mut camera.fit, &FITS);
     let reset = text::camera::RESET_VIEW;
     if ui.button(reset.name).on_hover_text(reset.tip).clicked() {
         panels.commands.push(Command::ResetView);

@@ -44,7 +44,7 @@ pub(crate) fn navigate(
         let shift = dy / height.max(1.0) * (range.high - range.low);
         transfer.shift_and_stretch(shift, (WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
     } else if pans {
-        camera.pan(dx, dy, height);
+        camera.pan(dx, dy, width, height);
     } else if response.dragged_by(PointerButton::Primary) {
         camera.orbit(dx * DEGREES_PER_POINT, dy * DEGREES_PER_POINT);
     }

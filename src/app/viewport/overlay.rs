@@ -99,8 +99,8 @@ fn bar_length_mm(longest_mm: f64) -> Option<(f64, String)> {
 
 /// A bar at the bottom left whose length holds at the middle of the view.
 fn scale_bar(painter: &Painter, picture: Rect, camera: &Camera, scene: &SceneSpace) {
-    let mm_per_point =
-        2.0 * camera.half_height_at_target() / f64::from(picture.height().max(1.0)) * scene.mm_per_unit;
+    let [width, height] = [picture.width(), picture.height().max(1.0)].map(f64::from);
+    let mm_per_point = camera.pixel_at_target(width, height) * scene.mm_per_unit;
     let Some((length_mm, text)) = bar_length_mm(mm_per_point * LONGEST_BAR * f64::from(picture.width()))
     else {
         return;

@@ -13,6 +13,21 @@ pub enum Projection {
     Orthographic,
 }
 
+/// Width over height of the frame of [`Fit::Frame`]: between those of screens and of pages.
+pub const FRAME_ASPECT: f64 = 4.0 / 3.0;
+
+/// What of a picture the angle of view belongs to: what is seen where pictures of several shapes are made.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fit {
+    /// The height. Narrow pictures show less at the sides.
+    #[default]
+    Height,
+    /// The height of the largest frame of 4:3 in the middle of the picture, all of which is seen in a picture of any
+    /// shape: narrow ones show more above and below.
+    Frame,
+}
+
 /// A camera that orbits a target. Scene space has z up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
@@ -28,8 +43,11 @@ pub struct Camera {
     pub target: [f64; 3],
     /// From the target to the eye, in scene units.
     pub distance: f64,
-    /// Full vertical angle of view.
+    /// Full vertical angle of view of the picture, or of the frame in it: as `fit` says.
     pub fov_y_deg: f64,
+    /// What the angle of view belongs to. Cameras that were saved before there was a choice have it of the height.
+    #[serde(default)]
+    pub fit: Fit,
 }
 
 impl Camera {
@@ -50,9 +68,19 @@ impl Camera {
         DVec3::from(self.target) + self.scene_from_view().z_axis * self.distance
     }
 
-    /// Half the picture's height at the target, in scene units.
-    pub fn half_height_at_target(&self) -> f64 {
-        self.distance * (self.fov_y_deg.to_radians() / 2.0).tan()
+    /// Half the height, at the target, of a picture with that width over height; in scene units.
+    pub fn half_height_at_target(&self, aspect: f64) -> f64 {
+        let heights_per_frame = match self.fit {
+            // As wide as the picture, the frame is lower than that.
+            Fit::Frame if aspect > 0.0 && aspect < FRAME_ASPECT => FRAME_ASPECT / aspect,
+            Fit::Frame | Fit::Height => 1.0,
+        };
+        self.distance * (self.fov_y_deg.to_radians() / 2.0).tan() * heights_per_frame
+    }
+
+    /// Edge of a pixel at the target, in scene units.
+    pub fn pixel_at_target(&self, width: f64, height: f64) -> f64 {
+        2.0 * self.half_height_at_target(width / height) / height
     }
 
     /// Where a scene point is seen: pixels from the top left, and its depth along the view axis
@@ -65,7 +93,7 @@ impl Camera {
             Projection::Perspective => return None,
             Projection::Orthographic => 1.0,
         };
-        let pixels_per_unit = height / 2.0 / self.half_height_at_target();
+        let pixels_per_unit = height / 2.0 / self.half_height_at_target(width / height);
         let x = width / 2.0 + offset.x * scale * pixels_per_unit;
         let y = height / 2.0 - offset.y * scale * pixels_per_unit;
         Some((x, y, depth))
@@ -74,7 +102,7 @@ impl Camera {
     /// The ray through a pixel (from the top left): origin and unit direction, in scene space.
     pub fn ray_through(&self, x: f64, y: f64, width: f64, height: f64) -> (DVec3, DVec3) {
         let view = self.scene_from_view();
-        let unit = 2.0 * self.half_height_at_target() / height;
+        let unit = self.pixel_at_target(width, height);
         let across = view.x_axis * ((x - width / 2.0) * unit) + view.y_axis * ((height / 2.0 - y) * unit);
         match self.projection {
             Projection::Perspective => {
@@ -90,10 +118,10 @@ impl Camera {
         self.elevation_deg = (self.elevation_deg + down_deg + 180.0).rem_euclid(360.0) - 180.0;
     }
 
-    /// Moves the target so that the scene follows a drag of `dx`, `dy` pixels (y down).
-    pub fn pan(&mut self, dx: f64, dy: f64, height: f64) {
+    /// Moves the target so that the scene follows a drag of `dx`, `dy` pixels (y down) in a picture of that size.
+    pub fn pan(&mut self, dx: f64, dy: f64, width: f64, height: f64) {
         let view = self.scene_from_view();
-        let unit = 2.0 * self.half_height_at_target() / height;
+        let unit = self.pixel_at_target(width, height);
         let target = DVec3::from(self.target) - view.x_axis * (dx * unit) + view.y_axis * (dy * unit);
         self.target = target.into();
     }
@@ -116,6 +144,7 @@ impl Default for Camera {
             target: [0.0; 3],
             distance: 5.2,
             fov_y_deg: 30.0,
+            fit: Fit::Height,
         }
     }
 }
@@ -134,25 +163,73 @@ mod tests {
         assert!((camera.eye() - DVec3::new(0.0, -5.2, 0.0)).length() < 1e-12);
     }
 
+    /// Every projection with every fit.
+    fn cameras() -> impl Iterator<Item = Camera> {
+        [Projection::Perspective, Projection::Orthographic].into_iter().flat_map(|projection| {
+            [Fit::Height, Fit::Frame].map(|fit| Camera {
+                projection,
+                fit,
+                roll_deg: 20.0,
+                target: [0.1, 0.2, -0.3],
+                ..Camera::default()
+            })
+        })
+    }
+
     #[test]
     fn pixels_and_rays_agree() {
-        for projection in [Projection::Perspective, Projection::Orthographic] {
-            let camera = Camera { projection, roll_deg: 20.0, target: [0.1, 0.2, -0.3], ..Camera::default() };
-            let point = DVec3::new(0.4, -0.7, 0.2);
-            let (x, y, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
-            let (origin, direction) = camera.ray_through(x, y, 640.0, 480.0);
-            let miss = (point - origin).reject_from(direction).length();
-            assert!(miss < 1e-12, "{projection:?} misses by {miss}");
+        for camera in cameras() {
+            for (width, height) in [(640.0, 480.0), (300.0, 300.0), (90.0, 160.0), (100.0, 400.0)] {
+                let point = DVec3::new(0.4, -0.7, 0.2);
+                let (x, y, _) = camera.pixel_from_scene(point, width, height).unwrap();
+                let (origin, direction) = camera.ray_through(x, y, width, height);
+                let miss = (point - origin).reject_from(direction).length();
+                assert!(miss < 1e-12, "{camera:?} misses by {miss} in {width} × {height}");
+            }
         }
     }
 
     #[test]
     fn the_scene_follows_a_pan() {
-        let mut camera = Camera::default();
-        let (x0, y0, _) = camera.pixel_from_scene(DVec3::ZERO, 800.0, 600.0).unwrap();
-        camera.pan(30.0, -20.0, 600.0);
-        let (x1, y1, _) = camera.pixel_from_scene(DVec3::ZERO, 800.0, 600.0).unwrap();
-        assert!((x1 - x0 - 30.0).abs() < 1e-9 && (y1 - y0 + 20.0).abs() < 1e-9, "{x0} {y0} → {x1} {y1}");
+        for mut camera in cameras() {
+            // In the plane through the target, which is what a pan moves.
+            let point = DVec3::from(camera.target);
+            for (width, height) in [(800.0, 600.0), (200.0, 600.0)] {
+                let (x0, y0, _) = camera.pixel_from_scene(point, width, height).unwrap();
+                camera.pan(30.0, -20.0, width, height);
+                let (x1, y1, _) = camera.pixel_from_scene(point, width, height).unwrap();
+                let miss = (x1 - x0 - 30.0).abs().max((y1 - y0 + 20.0).abs());
+                assert!(miss < 1e-9, "{camera:?}: {x0} {y0} → {x1} {y1}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_angle_is_the_heights_whatever_the_shape() {
+        let camera = Camera::default();
+        assert_eq!(camera.fit, Fit::Height);
+        let half = camera.distance * (camera.fov_y_deg.to_radians() / 2.0).tan();
+        for aspect in [3.0, FRAME_ASPECT, 1.0, 0.25] {
+            assert_eq!(camera.half_height_at_target(aspect), half);
+        }
+    }
+
+    #[test]
+    fn a_frame_is_as_high_as_wide_pictures_and_as_wide_as_narrow_ones() {
+        let height = Camera::default();
+        let frame = Camera { fit: Fit::Frame, ..Camera::default() };
+        for (width, to) in [(1800.0, 600.0), (1280.0, 720.0), (640.0, 480.0), (800.0, 600.0)] {
+            assert_eq!(frame.half_height_at_target(width / to), height.half_height_at_target(width / to));
+        }
+        let half_width = FRAME_ASPECT * height.half_height_at_target(FRAME_ASPECT);
+        for aspect in [1.3, 1.0, 9.0 / 16.0, 0.25] {
+            let found = frame.half_height_at_target(aspect) * aspect;
+            assert!((found / half_width - 1.0).abs() < 1e-12, "{aspect}: {found}, not {half_width}");
+        }
+        // Of no picture at all nothing is seen, but numbers stay finite.
+        for aspect in [0.0, -1.0, f64::NAN] {
+            assert!(frame.half_height_at_target(aspect).is_finite());
+        }
     }
 
     #[test]

@@ -32,8 +32,16 @@ impl Settings {
         let default = Self::default();
         self.views.retain(|slot, _| (1..=9).contains(slot));
         for camera in self.views.values_mut().chain([&mut self.camera]) {
-            let Camera { projection: _, azimuth_deg, elevation_deg, roll_deg, target, distance, fov_y_deg } =
-                camera;
+            let Camera {
+                projection: _,
+                azimuth_deg,
+                elevation_deg,
+                roll_deg,
+                target,
+                distance,
+                fov_y_deg,
+                fit: _,
+            } = camera;
             number(azimuth_deg, -1e6, 1e6, default.camera.azimuth_deg);
             number(elevation_deg, -1e6, 1e6, default.camera.elevation_deg);
             number(roll_deg, -1e6, 1e6, 0.0);

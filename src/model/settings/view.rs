@@ -88,6 +88,7 @@ impl Camera {
     /// Frames what another camera frames, from the direction of this one.
     pub fn frame_as(&mut self, other: &Self) {
         self.target = other.target;
+        self.fit = other.fit;
         // As wide at the target as the other, whatever the angle of view.
         let ratio = (other.fov_y_deg.to_radians() / 2.0).tan() / (self.fov_y_deg.to_radians() / 2.0).tan();
         self.distance = other.distance * ratio;
@@ -97,7 +98,7 @@ impl Camera {
     /// plane stays there, in a picture of `size` pixels.
     pub fn zoom_at(&mut self, factor: f64, pixel: DVec2, size: DVec2) {
         let before = self.distance;
-        let unit = 2.0 * self.half_height_at_target() / size.y.max(1.0);
+        let unit = self.pixel_at_target(size.x, size.y.max(1.0));
         let view = self.scene_from_view();
         let aside =
             view.x_axis * ((pixel.x - size.x / 2.0) * unit) + view.y_axis * ((size.y / 2.0 - pixel.y) * unit);
@@ -121,6 +122,7 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Fit;
 
     #[test]
     fn sides_are_seen_from_where_their_names_say() {
@@ -149,14 +151,18 @@ mod tests {
     #[test]
     fn the_point_under_the_pointer_stays_when_zooming() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            let mut camera = Camera { projection, target: [0.2, -0.1, 0.3], ..Camera::default() };
-            let view = camera.scene_from_view();
-            // In the plane through the target.
-            let point = DVec3::from(camera.target) + 0.4 * view.x_axis - 0.3 * view.y_axis;
-            let (x, y, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
-            camera.zoom_at(0.6, DVec2::new(x, y), DVec2::new(640.0, 480.0));
-            let (x1, y1, _) = camera.pixel_from_scene(point, 640.0, 480.0).unwrap();
-            assert!((x1 - x).abs() < 1e-9 && (y1 - y).abs() < 1e-9, "{projection:?}: {x} {y} → {x1} {y1}");
+            for (fit, size) in
+                [(Fit::Height, DVec2::new(640.0, 480.0)), (Fit::Frame, DVec2::new(200.0, 480.0))]
+            {
+                let mut camera = Camera { projection, fit, target: [0.2, -0.1, 0.3], ..Camera::default() };
+                let view = camera.scene_from_view();
+                // In the plane through the target.
+                let point = DVec3::from(camera.target) + 0.4 * view.x_axis - 0.3 * view.y_axis;
+                let (x, y, _) = camera.pixel_from_scene(point, size.x, size.y).unwrap();
+                camera.zoom_at(0.6, DVec2::new(x, y), size);
+                let (x1, y1, _) = camera.pixel_from_scene(point, size.x, size.y).unwrap();
+                assert!((x1 - x).abs() < 1e-9 && (y1 - y).abs() < 1e-9, "{camera:?}: {x} {y} → {x1} {y1}");
+            }
         }
     }
 
@@ -174,10 +180,19 @@ mod tests {
 
     #[test]
     fn framing_as_another_keeps_the_direction() {
-        let other = Camera { distance: 4.0, fov_y_deg: 30.0, target: [0.1, 0.0, 0.0], ..Camera::default() };
+        let other = Camera {
+            distance: 4.0,
+            fov_y_deg: 30.0,
+            target: [0.1, 0.0, 0.0],
+            fit: Fit::Frame,
+            ..Camera::default()
+        };
         let mut camera = Camera { azimuth_deg: 10.0, fov_y_deg: 60.0, distance: 9.0, ..Camera::default() };
         camera.frame_as(&other);
-        assert!((camera.half_height_at_target() - other.half_height_at_target()).abs() < 1e-9);
+        for aspect in [2.0, 0.5] {
+            let (found, wanted) = (camera.half_height_at_target(aspect), other.half_height_at_target(aspect));
+            assert!((found - wanted).abs() < 1e-9, "{aspect}: {found}, not {wanted}");
+        }
         assert_eq!((camera.azimuth_deg, camera.target), (10.0, other.target));
     }
 }

@@ -15,26 +15,50 @@ const ADDED: [(u64, &str, &str, &str); 4] = [
 pub(super) fn complete(record: &mut Value) {
     let Some(schema) = record.get("schema").and_then(Value::as_u64) else { return };
     let Value::Object(groups) = record else { return };
+    let views = groups.get_mut("views").and_then(Value::as_object_mut);
+    for camera in views.into_iter().flat_map(|views| views.values_mut()) {
+        complete_camera(camera);
+    }
+    if let Some(camera) = groups.get_mut("camera") {
+        complete_camera(camera);
+    }
     for (_, group, setting, value) in ADDED.iter().filter(|(since, ..)| schema < *since) {
         let group = groups.entry(*group).or_insert_with(|| Value::Object(Map::new()));
         if let Value::Object(group) = group {
             group.entry(*setting).or_insert_with(|| Value::String((*value).to_owned()));
         }
     }
-    // Normals of scattered sheets came from sheets, whatever was set.
-    if schema < 2
-        && groups.get("sampling").and_then(|group| group.get("engine")) == Some(&Value::from("scatter"))
+    if schema < 2 {
+        complete_scattered(groups);
+    }
+}
+
+/// Takes the normals of scattered sheets from sheets, whatever was set: so they were.
+fn complete_scattered(groups: &mut Map<String, Value>) {
+    if let Some(Value::Object(sampling)) = groups.get_mut("sampling")
+        && sampling.get("engine") == Some(&Value::from("scatter"))
     {
-        if let Some(Value::Object(sampling)) = groups.get_mut("sampling") {
-            sampling.insert("gradients".to_owned(), Value::from("sheets"));
-        }
+        sampling.insert("gradients".to_owned(), Value::from("sheets"));
+    }
+}
+
+/// Gives the angle of view of a camera to the picture's height, if it says how far away the eye is, which frames
+/// what is seen, and not what it is framed in: all cameras of schema 1 are so, and those of schema 2 from before
+/// there was a choice.
+fn complete_camera(camera: &mut Value) {
+    if let Value::Object(camera) = camera
+        && camera.contains_key("distance")
+    {
+        camera.entry("fit").or_insert_with(|| Value::String("height".to_owned()));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Gradients, NearField, ReverseKernel, SCHEMA, Settings, Sides, load_json};
+    use crate::model::{
+        Camera, Fit, Gradients, NearField, ReverseKernel, SCHEMA, Settings, Sides, load_json,
+    };
 
     #[test]
     fn what_was_saved_looks_as_it_did() {
@@ -50,9 +74,43 @@ mod tests {
         assert_eq!(load(r#"{"schema": 1, "shading": {"sides": "one"}}"#).shading.sides, Sides::One);
         assert_eq!(load(r#"{"shadows": {"gain": 2.0}}"#).shadows.near_field, NearField::Short);
         assert_eq!(load(r#"{"schema": 2}"#), Settings::default());
-        // Nonsense is left to whoever reads it.
+    }
+
+    #[test]
+    fn saved_cameras_see_what_they_saw() {
+        let mut now = Settings::default();
+        now.camera.fit = Fit::Frame;
+        now.views.insert(1, now.camera.clone());
+        let load = |text: &str| load_json(&now, text).expect("settings").0;
+        let before = load(
+            r#"{"schema": 2, "camera": {"distance": 4.0}, "views": {"1": {"distance": 3.0}, "2":
+                {"projection": "perspective", "azimuth_deg": 0.0, "elevation_deg": 0.0, "roll_deg": 0.0,
+                "target": [0.0, 0.0, 0.0], "distance": 3.0, "fov_y_deg": 30.0}}}"#,
+        );
+        assert_eq!((before.camera.fit, before.camera.distance), (Fit::Height, 4.0));
+        assert!(before.views.len() == 2 && before.views.values().all(|camera| camera.fit == Fit::Height));
+        // What says nothing of the frame leaves it, and what names it counts.
+        for kept in [
+            r#"{"schema": 1, "shadows": {"gain": 2.0}}"#,
+            r#"{"schema": 2, "camera": {"azimuth_deg": 10.0}}"#,
+            r#"{"camera": {"distance": 4.0}}"#,
+            r#"{"schema": 2, "camera": {"distance": 4.0, "fit": "frame"}}"#,
+        ] {
+            assert_eq!(load(kept).camera.fit, Fit::Frame, "{kept}");
+        }
+        // A whole camera that is read by itself.
+        let mut saved = serde_json::to_value(&now.camera).expect("a camera");
+        saved.as_object_mut().expect("an object").remove("fit");
+        assert_eq!(serde_json::from_value::<Camera>(saved).expect("a camera").fit, Fit::Height);
+    }
+
+    #[test]
+    fn nonsense_is_left_to_whoever_reads_it() {
         let mut nonsense = serde_json::json!({"schema": 1, "shadows": 3});
         complete(&mut nonsense);
         assert_eq!(nonsense["shadows"], 3);
+        let mut nonsense = serde_json::json!({"schema": 2, "camera": [], "views": {"1": 3}});
+        complete(&mut nonsense);
+        assert_eq!(nonsense["camera"], serde_json::json!([]));
     }
 }

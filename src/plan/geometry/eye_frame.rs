@@ -55,7 +55,8 @@ pub fn eye_frame(
         Projection::Perspective if to_middle > 0.05 * camera.distance => to_middle,
         Projection::Perspective => camera.distance,
     };
-    let pitch_at_target = 2.0 * camera.half_height_at_target() / f64::from(whole[1].max(1));
+    let [width, height] = whole.map(|pixels| f64::from(pixels.max(1)));
+    let pitch_at_target = camera.pixel_at_target(width, height);
     let (pitch, inverse_distance, near) = match camera.projection {
         Projection::Orthographic => (pitch_at_target, 0.0, f64::NEG_INFINITY),
         Projection::Perspective => (
@@ -84,6 +85,7 @@ pub fn eye_frame(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Fit;
     use glam::{DAffine3, DVec3};
 
     fn scene() -> SceneSpace {
@@ -93,10 +95,14 @@ mod tests {
     #[test]
     fn rays_are_the_cameras_rays() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            for distance in [0.4, 3.0] {
-                let camera = Camera { projection, distance, target: [0.1, -0.2, 0.05], ..Camera::default() };
-                let frame = eye_frame(&camera, &scene(), [64, 48], 1.0);
-                let (origin, direction) = camera.ray_through(10.5, 7.5, 64.0, 48.0);
+            for (distance, fit, size) in
+                [(0.4, Fit::Height, [64, 48]), (3.0, Fit::Height, [20, 48]), (3.0, Fit::Frame, [20, 48])]
+            {
+                let target = [0.1, -0.2, 0.05];
+                let camera = Camera { projection, target, distance, fit, ..Camera::default() };
+                let frame = eye_frame(&camera, &scene(), size, 1.0);
+                let [width, height] = size.map(f64::from);
+                let (origin, direction) = camera.ray_through(10.5, 7.5, width, height);
                 for depth in [-0.2, 0.3] {
                     let point = scene().scene_from_index.transform_point3(frame.point(10.0, 7.0, depth));
                     let miss = (point - origin).reject_from(direction).length();
@@ -112,9 +118,10 @@ mod tests {
     #[test]
     fn parts_of_a_picture_see_what_the_whole_sees() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            let camera = Camera { projection, ..Camera::default() };
-            let whole = eye_frame(&camera, &scene(), [64, 48], 1.0);
-            let part = PixelWindow { whole: [64, 48], first: [20, 30], size: [8, 9] };
+            // Parts that are wide of a picture that is narrow.
+            let camera = Camera { projection, fit: Fit::Frame, ..Camera::default() };
+            let whole = eye_frame(&camera, &scene(), [48, 64], 1.0);
+            let part = PixelWindow { whole: [48, 64], first: [20, 30], size: [16, 9] };
             let part = eye_frame(&camera, &scene(), part, 1.0);
             assert_eq!((part.first_depth, part.slab_count), (whole.first_depth, whole.slab_count));
             for depth in [-0.3, 0.2] {

@@ -61,6 +61,7 @@ fn every_setting_causes_what_the_design_says() {
         ("camera.target", "[0.1,0,0]", Effect::Eye),
         ("camera.distance", "2", Effect::Eye),
         ("camera.fov_y_deg", "40", Effect::Eye),
+        ("camera.fit", "frame", Effect::Eye),
         ("camera.projection", "orthographic", Effect::Eye),
         ("lights.1.name", "Fill", Effect::Nothing),
         ("lights.1.color", "[1,0,0]", Effect::Eye),

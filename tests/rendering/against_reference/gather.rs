@@ -5,10 +5,10 @@ use super::{SIZE, check_against, round_to_f16};
 use crate::common::{Dataset, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
-use crate::thresholds::{BYTE_STEP, BYTES, LITERAL};
+use crate::thresholds::{BYTE_STEP, BYTES, LITERAL, SAME_WEIGHTS};
 use chiaroscuro::gpu::{Renderer, stored_density};
 use chiaroscuro::model::{
-    Camera, Classification, ClipPlane, Deposit, Gradients, Kernel, LightKind, LightLock, Precision,
+    Camera, Classification, ClipPlane, Deposit, Fit, Gradients, Kernel, LightKind, LightLock, Precision,
     Projection, Quadrature, Resolution, Settings, ShadowAlgorithm, Slabs,
 };
 use chiaroscuro::reference::{Options, Reference, Weights};
@@ -141,6 +141,29 @@ fn an_eye_inside_the_volume() {
     let mut settings = scenes::look();
     settings.camera = Camera { distance: 0.35, fov_y_deg: 70.0, target: [0.4, 0.3, 0.2], ..settings.camera };
     check("eye inside", DVec3::ONE, &settings);
+}
+
+/// A frame of 4:3 in a narrow picture, which shows more above and below.
+#[test]
+fn a_frame_in_a_narrow_picture() {
+    let mut settings = scenes::look();
+    settings.shadows.algorithm = ShadowAlgorithm::Off;
+    let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let size = [48, 128];
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        settings.camera = Camera { projection, fit: Fit::Frame, ..settings.camera };
+        let options = Options { rounding: Some(round_to_f16), ..Options::default() };
+        let reference = Reference::new(loaded.volume(), &settings, options);
+        let expected = flat64(&reference.picture(size, &reference.attenuations()));
+        let found = flat32(&render(&mut renderer, &loaded, &settings, size).light);
+        compare(&format!("{projection:?}"), &found, &expected, SAME_WEIGHTS)
+            .unwrap_or_else(|err| panic!("{err}"));
+        // It is another picture than that of an angle of the height.
+        settings.camera.fit = Fit::Height;
+        let cut_off = flat32(&render(&mut renderer, &loaded, &settings, size).light);
+        assert!(compare("cut off", &cut_off, &expected, SAME_WEIGHTS).is_err(), "{projection:?}");
+    }
 }
 
 /// Lights of both kinds, one of them near, and voxels that are no cubes.

@@ -1,7 +1,9 @@
 //! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Camera, ControlPoint, Engine, Kernel, LightKind, Settings, ShadowAlgorithm, Slabs};
+use chiaroscuro::model::{
+    Camera, ControlPoint, Engine, Gradients, Kernel, LightKind, Settings, ShadowAlgorithm, Slabs,
+};
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
@@ -293,11 +295,28 @@ scatter_mutation!(
     "let centre = vec3f(voxel) + vec3f(0.5, 0.0, 0.0);"
 );
 scatter_mutation!(
-    scattered_gradient_flipped,
+    scattered_and_lit_without_rays_nearby,
     "scatter/eye.wgsl",
-    "/ (2.0 * f32(slabs) * met.thickness)",
-    "/ (-2.0 * f32(slabs) * met.thickness)"
+    "if (NEAR_STEPS > 0u)",
+    "if (NEAR_STEPS > 99u)"
 );
+scatter_mutation!(
+    scattered_with_the_gradient_flipped,
+    "scatter/eye.wgsl",
+    "gradient_to_scene(eye.space, volume_slope(p, level))",
+    "-gradient_to_scene(eye.space, volume_slope(p, level))"
+);
+
+#[test]
+fn scattered_gradient_of_sheets_flipped() {
+    let from = "/ (2.0 * f32(slabs) * met.thickness)";
+    in_shader("scatter/eye.wgsl", from);
+    let mut settings = look();
+    settings.sampling.engine = Engine::Scatter;
+    settings.sampling.gradients = Gradients::Sheets;
+    assert!(!disagree_in(&settings, 28, "\u{0}", "", Fault::None));
+    assert!(disagree_in(&settings, 28, from, "/ (-2.0 * f32(slabs) * met.thickness)", Fault::None));
+}
 
 macro_rules! reference_mutation {
     ($name:ident, $fault:expr) => {

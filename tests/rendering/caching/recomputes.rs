@@ -85,6 +85,7 @@ fn every_setting_costs_what_it_should() {
         ("camera.azimuth_deg", "10", Cost::Eye),
         ("camera.target", "[0.1,0,0]", Cost::Eye),
         ("camera.fov_y_deg", "40", Cost::Eye),
+        ("camera.fit", "frame", Cost::Eye),
         ("camera.projection", "orthographic", Cost::Eye),
         ("lights.1.name", "Fill", Cost::Nothing),
         ("lights.1.color", "[1,0,0]", Cost::Eye),

@@ -2,7 +2,7 @@
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Background, Camera, Deposit, Floor, Hood, Kernel, Length, LightKind, Projection, Settings,
+    Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, Projection, Settings,
     ShadowAlgorithm, ToneMap,
 };
 use chiaroscuro::reference::{Options, Reference};
@@ -14,19 +14,20 @@ use crate::scenes::{self, linear_extinction, straight};
 use crate::thresholds::{EIGHT_BITS, F16_STEP, FLOOR_EDGE, FLOOR_SHADOW, SAME_WEIGHTS};
 
 const SIZE: [u32; 2] = [96, 80];
+const NARROW: [u32; 2] = [48, 128];
 
 fn on(settings: Settings) -> Settings {
     Settings { floor: Floor { on: true, height: -0.9, ..Floor::default() }, ..settings }
 }
 
 /// What is seen of the floor past the volume, by both sides.
-fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
+fn check(name: &str, size: [u32; 2], spacing_mm: DVec3, settings: &Settings) {
     let loaded = Dataset::new(scenes::creature(40, spacing_mm));
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { rounding: Some(rounding), ..Options::default() };
     let reference = Reference::new(loaded.volume(), settings, options);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
-    let picture = render(&mut renderer, &loaded, settings, SIZE);
+    let picture = render(&mut renderer, &loaded, settings, size);
     let floor = renderer.read_floor().expect("a floor");
     let past = |floor: [f64; 4], at: usize| {
         let through = 1.0 - f64::from(picture.light[at][3]);
@@ -35,7 +36,7 @@ fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
     let found: Vec<f64> =
         floor.iter().enumerate().flat_map(|(at, texel)| past(texel.map(f64::from), at)).collect();
     let expected: Vec<f64> =
-        reference.floor(SIZE).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
+        reference.floor(size).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
     assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
     compare(name, &found, &expected, SAME_WEIGHTS).unwrap_or_else(|err| panic!("{err}"));
 }
@@ -44,7 +45,9 @@ fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
 fn floor_and_shadows_as_in_the_reference() {
     let mut settings = on(scenes::look());
     settings.shadows.balance = 1.7;
-    check("parallel light, perspective camera", DVec3::ONE, &settings);
+    check("parallel light, perspective camera", SIZE, DVec3::ONE, &settings);
+    settings.camera.fit = Fit::Frame;
+    check("a frame in a narrow picture", NARROW, DVec3::ONE, &settings);
     settings.camera.projection = Projection::Orthographic;
     settings.camera.elevation_deg = 50.0;
     let mut lamp = scenes::light(LightKind::Perspective, [1.1, -0.8, 1.6]);
@@ -55,12 +58,12 @@ fn floor_and_shadows_as_in_the_reference() {
     settings.shadows.ambient_offset = 0.1;
     settings.shadows.kernel = Kernel::Prefiltered;
     settings.shadows.deposit = Deposit::Front;
-    check("hood, cures, orthographic camera", DVec3::new(1.0, 0.8, 1.6), &settings);
+    check("hood, cures, orthographic camera", NARROW, DVec3::new(1.0, 0.8, 1.6), &settings);
     settings.floor.shadow_only = true;
     settings.floor.opacity = 0.8;
     settings.lights[0].casts_shadows = true;
     settings.cuts.plane.on = true;
-    check("shadow alone, and cut", DVec3::ONE, &settings);
+    check("shadow alone, and cut", SIZE, DVec3::ONE, &settings);
 }
 
 #[test]

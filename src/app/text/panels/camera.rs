@@ -16,6 +16,14 @@ pub(crate) const DISTANCE: Named = named(
     "From the eye to the middle of the view; the volume's longest edge is 2 long. The wheel does the same",
 );
 pub(crate) const FIELD_OF_VIEW: Named =
-    named("Field of view", "Vertical angle of view: wide exaggerates depth");
+    named("Field of view", "Vertical angle of view, of what it is fitted to: wide exaggerates depth");
+pub(crate) const FIT: Named =
+    named("Fit to", "What the field of view belongs to: it matters in pictures narrower than 4:3");
+pub(crate) const FRAME: Named = named(
+    "4:3 frame",
+    "A frame in the middle that is always seen whole: narrow pictures show more above and below",
+);
+pub(crate) const HEIGHT: Named =
+    named("Height", "The picture's height: narrow pictures show less at the sides");
 
 pub(crate) const RESET_VIEW: Named = named("Reset view", "The view with which the volume was opened");

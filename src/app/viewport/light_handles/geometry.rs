@@ -45,7 +45,7 @@ impl View {
         let room = camera
             .pixel_from_scene(DVec3::ZERO, width, height)
             .map_or(half, |(x, y, _)| x.min(width - x).min(y).min(height - y).clamp(LEAST_ROOM * half, half));
-        let tan = camera.half_height_at_target() * room / (height / 2.0) * SPHERE_PER_VIEW / camera.distance;
+        let tan = camera.pixel_at_target(width, height) * room * SPHERE_PER_VIEW / camera.distance;
         let fits = match camera.projection {
             // The silhouette of a sphere seen from a finite distance is larger than its radius.
             Projection::Perspective => camera.distance * tan / (1.0 + tan * tan).sqrt(),
