@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{ControlPoint, Interpolation, Length, Rig, Sampling, Settings, Slabs, TransferFunction};
+use super::{ControlPoint, Interpolation, Length, Rig, Sampling, Settings, Shadows, Slabs, TransferFunction};
 use crate::data::{HISTOGRAM_BINS, Histogram, Volume};
 
 /// Share of the picture's height (and width, at 4:3) that the object fills.
@@ -24,6 +24,8 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
         lights: Vec::new(),
         // Even slabs as thick show on steep surfaces as wood grain.
         sampling: Sampling { slab: 1.0, slabs: Slabs::ByNeed, ..Sampling::default() },
+        // A look that nobody has made by hand stays as bright as without shadows.
+        shadows: Shadows { keep_balanced: true, ..Shadows::default() },
         ..Settings::default()
     };
     frame_object(&mut settings, volume);
