@@ -27,6 +27,7 @@ use self::windows::files;
 use self::common::commands::Command;
 use self::common::volume_facts::VolumeFacts;
 use self::shell::history::History;
+use self::shell::keep_balanced::KeepBalanced;
 use self::shell::memory::Memory;
 use self::shell::messages::Messages;
 use self::shell::opening::PendingLook;
@@ -74,6 +75,9 @@ pub struct App {
     /// Settings of the volume that is being opened.
     pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
+    keep_balanced: KeepBalanced,
+    /// What *Keep balanced* measures.
+    kept_balance: Option<Work<Result<f64, GpuError>>>,
     export: Export,
     files: Files,
     session: Option<PathBuf>,
@@ -148,6 +152,8 @@ impl App {
             keeps_look: false,
             pending: None,
             balance: None,
+            keep_balanced: KeepBalanced::new(&Settings::default(), true),
+            kept_balance: None,
             export: Export::default(),
             files: Files::default(),
             session_is_due: session.is_some(),
@@ -183,8 +189,14 @@ impl App {
         &self.settings
     }
 
-    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
+    /// Whether the full-quality picture of the current settings is on screen, nothing is being opened, and the balance
+    /// is that of the settings, if it is kept.
     pub fn is_idle(&self) -> bool {
+        self.is_complete() && !self.keep_balanced.is_due(&self.settings)
+    }
+
+    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
+    fn is_complete(&self) -> bool {
         self.loader.progress().is_none() && self.viewport.is_idle(&self.compare.looks(&self.settings))
     }
 
@@ -338,6 +350,7 @@ impl eframe::App for App {
         for command in commands {
             self.execute(command, frame, &ctx);
         }
+        self.keep_balanced(&ctx);
         let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
         if ui_ms > LONG_FRAME_MS {
             log::debug!("the window's thread was busy for {ui_ms:.0} ms");

@@ -9,7 +9,7 @@ use super::{CliError, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
-use crate::gpu::{Context, Renderer, balance, fitted};
+use crate::gpu::{Context, Renderer, balance_quickly, fitted};
 use crate::model::{
     Engine, MAX_EDGE, Preset, Quality, Settings, ShadowAlgorithm, apply_path, apply_relative, auto,
 };
@@ -275,13 +275,7 @@ impl Look {
     pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Dataset) -> Result<Settings, CliError> {
         let mut settings = self.settings.clone();
         if !self.balanced {
-            let mut measured = settings.clone();
-            // How bright a picture is hardly depends on the way to it: the quickest will do.
-            measured.sampling.engine = Engine::Gather;
-            if !measured.shadows.algorithm.has_volume() {
-                measured.shadows.algorithm = ShadowAlgorithm::Splat;
-            }
-            settings.shadows.balance = balance(renderer, loaded, &measured)?;
+            settings.shadows.balance = balance_quickly(renderer, loaded, &settings)?;
         }
         Ok(settings)
     }

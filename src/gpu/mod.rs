@@ -20,7 +20,7 @@ pub use self::readback::tiled::Bands;
 pub use crate::plan::RenderOptions;
 pub use context::error::GpuError;
 pub use context::{Context, device_descriptor};
-pub use frame::first_look::{balance, dark_share, first_look, mean_luminance};
+pub use frame::first_look::{balance, balance_quickly, dark_share, first_look, mean_luminance};
 pub use frame::fit::fitted;
 pub use frame::job::Job;
 pub use frame::renderer::Renderer;

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    ControlPoint, FRAME_ASPECT, Fit, Interpolation, Length, Quality, Rig, Settings, TransferFunction,
+    ControlPoint, FRAME_ASPECT, Fit, Interpolation, Length, Quality, Rig, Settings, Shadows, TransferFunction,
 };
 use crate::data::{HISTOGRAM_BINS, Histogram, Volume};
 
@@ -24,6 +24,8 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
         transfer: transfer(volume, histogram),
         opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
+        // A look that nobody has made by hand stays as bright as without shadows.
+        shadows: Shadows { keep_balanced: true, ..Shadows::default() },
         ..Settings::default()
     };
     Quality::Standard.apply(&mut settings);

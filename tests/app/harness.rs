@@ -23,8 +23,15 @@ pub(crate) fn window() -> Harness<'static, App> {
     window_with(options, Vec2::new(760.0, 1100.0))
 }
 
-/// A window of some size, in points.
-pub(crate) fn window_with(options: Options, size: Vec2) -> Harness<'static, App> {
+/// A window of some size, in points. Unless the options say something of the first look, its balance is not kept:
+/// settings change when the test changes them, and only then.
+pub(crate) fn window_with(mut options: Options, size: Vec2) -> Harness<'static, App> {
+    options.adjust.get_or_insert_with(|| {
+        Box::new(|mut settings| {
+            settings.shadows.keep_balanced = false;
+            settings
+        })
+    });
     let mut setup = wgpu_setup();
     // As the tests of the renderer: the first adapter that there is, software included.
     setup.power_preference = wgpu::PowerPreference::None;

@@ -5,6 +5,7 @@ mod editor;
 mod export;
 mod gestures;
 mod harness;
+mod keep_balanced;
 mod lights;
 mod names;
 mod opening;

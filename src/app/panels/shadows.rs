@@ -106,7 +106,13 @@ fn live(ui: &mut Ui, panels: &mut Panels<'_>) {
 
 fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {
     let balance = Number::new(text::shadows::BALANCE, 0.1..=10.0).unit(TIMES).log();
-    balance.show(ui, &mut panels.settings.shadows.balance, panels.defaults.shadows.balance);
+    let shadows = &mut panels.settings.shadows;
+    let before = shadows.balance;
+    balance.show(ui, &mut shadows.balance, panels.defaults.shadows.balance);
+    if shadows.balance.to_bits() != before.to_bits() {
+        // Set by hand, it stays.
+        shadows.keep_balanced = false;
+    }
     unlabelled(ui, |ui| {
         let idle = !panels.balancing && panels.volume.is_some();
         let measure = text::shadows::MEASURE_BALANCE;
@@ -117,6 +123,9 @@ fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {
         if panels.balancing {
             ui.spinner();
         }
+    });
+    unlabelled(ui, |ui| {
+        switch(ui, text::shadows::KEEP_BALANCED, &mut panels.settings.shadows.keep_balanced);
     });
 }
 

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use eframe::egui;
 
 use crate::app::common::commands::Command;
 use crate::app::common::light_keys;
+use crate::app::shell::keep_balanced::{Act, Moment};
 use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;
@@ -15,8 +17,15 @@ use crate::app::windows::{export, light_slice};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
+use crate::data::Dataset;
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{COLOR_MAPS, Camera, auto};
+use crate::model::{COLOR_MAPS, Camera, Settings, auto};
+
+/// Finds the balance of a look.
+type MeasureBalance = fn(&mut Renderer, &Dataset, &Settings) -> Result<f64, GpuError>;
+
+/// A balance that is being measured.
+type BalanceWork = Work<Result<f64, GpuError>>;
 
 impl App {
     /// Does what the user asked for.
@@ -40,8 +49,15 @@ impl App {
             Command::CopyPicture => self.copy_picture(ctx),
             Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            Command::Undo => self.history.undo(&mut self.settings),
-            Command::Redo => self.history.redo(&mut self.settings),
+            Command::Undo | Command::Redo => {
+                if command == Command::Undo {
+                    self.history.undo(&mut self.settings);
+                } else {
+                    self.history.redo(&mut self.settings);
+                }
+                // With the balance that it had.
+                self.keep_balanced.accept(&self.settings);
+            }
             Command::ResetView => self.settings.camera = self.defaults.camera.clone(),
             Command::AddLight => {
                 if let Some(index) = panels::add_light(&mut self.settings) {
@@ -160,6 +176,18 @@ impl App {
                 Err(panic) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, panic),
             }
         }
+        if let Some(result) = self.kept_balance.as_ref().and_then(Work::take) {
+            self.kept_balance = None;
+            let found = match result {
+                Ok(Ok(balance)) => Ok(balance),
+                Ok(Err(err)) => Err(err.to_string()),
+                Err(panic) => Err(panic),
+            };
+            self.keep_balanced.found(ctx.input(|input| input.time), found.as_ref().ok().copied());
+            if let Err(why) = found {
+                self.messages.error(text::messages::BALANCE_NOT_MEASURED, why);
+            }
+        }
         match self.export.take() {
             None => {}
             Some(Ok(Exported::File(path))) => self.messages.note(text::messages::exported(&path)),
@@ -203,7 +231,7 @@ impl App {
             settings: &self.settings,
             dataset: self.viewport.dataset(),
             context: self.viewport.context(),
-            at_rest: self.is_idle(),
+            at_rest: self.is_complete(),
         };
         match self.light_slice.ui(ctx, &scene) {
             Ok(false) => {}
@@ -256,17 +284,50 @@ impl App {
     }
 
     fn start_balance(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
-            return;
-        };
+        if self.balance.is_none() {
+            self.balance = self.measure_balance(ctx, crate::gpu::balance);
+        }
+    }
+
+    /// Starts to measure the balance of the settings, on a device of its own; nothing without a volume.
+    fn measure_balance(&mut self, ctx: &egui::Context, measure: MeasureBalance) -> Option<BalanceWork> {
+        let dataset = self.viewport.dataset()?;
         let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
         let task = move || {
             let mut renderer = Renderer::new(&context.sibling()?)?;
-            crate::gpu::balance(&mut renderer, &dataset, &settings)
+            measure(&mut renderer, &dataset, &settings)
         };
-        match Work::start("balance", ctx, task) {
-            Ok(work) => self.balance = Some(work),
-            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+        let started = Work::start("balance", ctx, task);
+        if let Err(err) = &started {
+            self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string());
+        }
+        started.ok()
+    }
+
+    /// Keeps the picture as bright as without shadows, if that is wanted.
+    pub(crate) fn keep_balanced(&mut self, ctx: &egui::Context) {
+        let now_s = ctx.input(|input| input.time);
+        let act = self.keep_balanced.act(Moment {
+            now_s,
+            settings: &self.settings,
+            complete: self.is_complete(),
+            held: ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty())
+                || ctx.text_edit_focused(),
+            busy: self.balance.is_some() || self.kept_balance.is_some(),
+        });
+        match act {
+            Act::Nothing => {}
+            Act::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
+            Act::Measure => match self.measure_balance(ctx, crate::gpu::balance_quickly) {
+                Some(work) => self.kept_balance = Some(work),
+                None => self.keep_balanced.found(now_s, None),
+            },
+            Act::Set(balance) => {
+                let before = self.settings.clone();
+                self.settings.shadows.balance = balance;
+                self.history.follow(now_s, &before, &self.settings);
+                ctx.request_repaint();
+            }
         }
     }
 

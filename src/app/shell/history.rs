@@ -32,6 +32,20 @@ impl History {
         }
     }
 
+    /// A change has been followed by another that the window makes by itself: both are one step.
+    pub(crate) fn follow(&mut self, now_s: f64, before: &Settings, after: &Settings) {
+        // The change is at rest, whether or not it has been for long enough to be a step.
+        self.undoer.add_undo(before);
+        if self.undoer.has_undo(before) {
+            // Its step goes, and so does the way forward to it.
+            self.undoer.undo(before);
+            self.undoer.feed_state(now_s, after);
+        } else {
+            *self = Self::default();
+        }
+        self.undoer.add_undo(after);
+    }
+
     /// Whether there is a step back.
     pub(crate) fn can_undo(&self, settings: &Settings) -> bool {
         self.undoer.has_undo(settings)
@@ -86,6 +100,38 @@ mod tests {
             )),
             6 => drop(settings.views.insert((amount % 9) as u8 + 1, settings.camera.clone())),
             _ => settings.lighting.scale = share + 0.5,
+        }
+    }
+
+    #[test]
+    fn what_follows_a_change_is_undone_with_it() {
+        let (mut history, start) = (History::default(), Settings::default());
+        let mut settings = start.clone();
+        history.undoer.feed_state(0.0, &settings);
+        // Nothing was changed: there is nothing to undo.
+        settings.shadows.balance = 1.1;
+        history.follow(0.5, &start, &settings);
+        assert!(!history.can_undo(&settings));
+        let start = settings.clone();
+        // At once, and after the change became a step.
+        for rest_s in [0.1, 3.0] {
+            settings.lights[0].intensity = 2.0;
+            history.undoer.feed_state(1.0, &settings);
+            history.undoer.feed_state(1.0 + rest_s, &settings);
+            for balance in [1.2, 1.3, 1.4] {
+                let before = settings.clone();
+                settings.shadows.balance = balance;
+                history.follow(5.0, &before, &settings);
+                history.undoer.feed_state(5.0, &settings);
+            }
+            let end = settings.clone();
+            history.undo(&mut settings);
+            assert_eq!(settings, start);
+            assert!(!history.can_undo(&settings));
+            history.redo(&mut settings);
+            assert_eq!(settings, end);
+            history.undo(&mut settings);
+            assert_eq!(settings, start);
         }
     }
 

@@ -1,8 +1,10 @@
-//! What holds the window together: start, picture, menu, history, memory of earlier sessions, messages.
+//! What holds the window together: start, picture, menu, history, memory of earlier sessions, messages, the balance
+//! that is kept.
 
 pub(super) mod execute;
 pub(super) mod history;
 pub(super) mod icon;
+pub(super) mod keep_balanced;
 pub(super) mod memory;
 pub(super) mod menu;
 pub(super) mod messages;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use super::history::History;
+use super::keep_balanced::KeepBalanced;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
@@ -152,7 +153,12 @@ impl App {
 
     fn apply_record(&mut self, record: &Record, range: ValueRange) {
         match self.with_record(record, range) {
-            Ok(settings) => self.settings = settings,
+            Ok(settings) => {
+                self.settings = settings;
+                if record.names_balance() {
+                    self.keep_balanced.accept(&self.settings);
+                }
+            }
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         }
     }
@@ -188,7 +194,8 @@ impl App {
             self.messages.note(text::opening::averaged(before, volume.dims()));
         }
         self.defaults = settings.clone();
-        if self.keeps_look && self.volume.is_some() {
+        let is_kept = self.keeps_look && self.volume.is_some();
+        if is_kept {
             // As it was, but for where the object is: that is another one.
             let mut kept = Settings { camera: settings.camera.clone(), ..std::mem::take(&mut self.settings) };
             kept.floor.height = settings.floor.height;
@@ -196,6 +203,9 @@ impl App {
         } else {
             self.settings = settings;
         }
+        // What is measured is of the volume before; a first look is balanced, a look from there is not.
+        self.kept_balance = None;
+        self.keep_balanced = KeepBalanced::new(&self.settings, !is_kept);
         let range = volume.value_range();
         // Session and command line speak of the first volume.
         if std::mem::take(&mut self.session_is_due)
@@ -209,7 +219,10 @@ impl App {
         self.memory.opened(&source);
         match self.pending.take() {
             None => {}
-            Some(PendingLook::Settings(settings)) => self.settings = *settings,
+            Some(PendingLook::Settings(settings)) => {
+                self.settings = *settings;
+                self.keep_balanced.accept(&self.settings);
+            }
             Some(PendingLook::Record(record)) => {
                 if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
                     self.messages.note(text::opening::OF_OTHER_VALUES);

@@ -6,7 +6,7 @@
 //! {"count": n, "mean": n, "worst": n}, "errors": […]}`. A response is from the frame that reads an input to the
 //! one that shows its effect, preview or not.
 //! Lengths are physical pixels from the window's inner top left. `idle` means that the full-quality picture of the
-//! current settings is on screen.
+//! current settings is on screen, and that their balance will not change by itself.
 
 use std::path::PathBuf;
 

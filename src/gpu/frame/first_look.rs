@@ -2,7 +2,7 @@
 
 use crate::data::Dataset;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
-use crate::model::{Settings, ShadowAlgorithm, auto};
+use crate::model::{Engine, Settings, ShadowAlgorithm, auto};
 
 /// Size of the pictures from which brightness is measured: means over some thousand pixels.
 const MEASURED_SIZE: [u32; 2] = [160, 120];
@@ -49,6 +49,24 @@ pub fn balance(renderer: &mut Renderer, dataset: &Dataset, settings: &Settings) 
     let (without, ambient) = (brightness(&unshadowed)?, brightness(&dark)?);
     let factor = (without - ambient) / (with - ambient);
     Ok(if factor.is_finite() { factor.clamp(BALANCE_RANGE.0, BALANCE_RANGE.1) } else { 1.0 })
+}
+
+/// As [`balance`], by the quickest way to light and picture, whichever the settings go: how bright a picture is hardly
+/// depends on it.
+///
+/// # Errors
+/// When the GPU cannot do it.
+pub fn balance_quickly(
+    renderer: &mut Renderer,
+    dataset: &Dataset,
+    settings: &Settings,
+) -> Result<f64, GpuError> {
+    let mut measured = settings.clone();
+    measured.sampling.engine = Engine::Gather;
+    if !measured.shadows.algorithm.has_volume() {
+        measured.shadows.algorithm = ShadowAlgorithm::Splat;
+    }
+    balance(renderer, dataset, &measured)
 }
 
 /// Linear luminance below which material counts as nearly black: a tenth of the way to white as

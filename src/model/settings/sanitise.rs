@@ -115,6 +115,7 @@ impl Settings {
             gain,
             bias_voxels,
             balance,
+            keep_balanced: _,
             first_touch: _,
             deposit: _,
             kernel: light_kernel,

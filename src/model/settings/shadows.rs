@@ -151,6 +151,9 @@ pub struct Shadows {
     pub bias_voxels: f64,
     /// Multiplies the lights while shadows are on, so that the picture is as bright as without.
     pub balance: f64,
+    /// Whether the window measures the balance anew after changes that light depends on. No picture depends on it:
+    /// what is found stands in `balance`.
+    pub keep_balanced: bool,
     /// Each voxel takes the light of the first sheet that touches it (the paper's mode without
     /// weight volume).
     pub first_touch: bool,
@@ -183,6 +186,7 @@ impl Default for Shadows {
             gain: 1.0,
             bias_voxels: 0.0,
             balance: 1.0,
+            keep_balanced: false,
             first_touch: false,
             deposit: Deposit::SlabMean,
             kernel: Kernel::BSpline,

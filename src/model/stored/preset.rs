@@ -5,7 +5,7 @@
 use serde_json::Value;
 
 use super::renames::{current_path, rename};
-use super::schemas::complete;
+use super::schemas::{complete, keep_named_balance};
 use crate::model::{SCHEMA, Settings};
 
 /// Why JSON does not become settings.
@@ -49,6 +49,7 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     let mut overlay = overlay.clone();
     rename("", &mut overlay);
     complete(&mut overlay);
+    keep_named_balance(&mut overlay);
     let mut merged = serde_json::to_value(settings).map_err(PresetError::Form)?;
     merge(&mut merged, &overlay);
     let mut result: Settings = serde_json::from_value(merged).map_err(PresetError::Form)?;
@@ -102,6 +103,8 @@ pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Setting
     *node = serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.to_owned()));
     rename(&current, node);
     let mut result: Settings = serde_json::from_value(tree).map_err(PresetError::Form)?;
+    // As in a preset: whoever names the balance means it.
+    result.shadows.keep_balanced &= current != "shadows.balance";
     result.sanitise();
     Ok(result)
 }
@@ -159,6 +162,20 @@ mod tests {
         assert_eq!(settings.shadows.strength, 0.5);
         assert_eq!(settings.shadows.gain, 1.0);
         assert_eq!(warnings, ["unknown setting `shadows.glow` was ignored"]);
+    }
+
+    #[test]
+    fn a_balance_that_is_named_stays() {
+        let mut kept = Settings::default();
+        kept.shadows.keep_balanced = true;
+        let keeps = |text: &str| load_json(&kept, text).unwrap().0.shadows.keep_balanced;
+        assert!(keeps(r#"{"shadows": {"gain": 2.0}}"#));
+        assert!(!keeps(r#"{"shadows": {"balance": 1.0}}"#), "even the one that it has");
+        assert!(keeps(r#"{"shadows": {"balance": 1.5, "keep_balanced": true}}"#));
+        let set = |path: &str, value: &str| apply_path(&kept, path, value).unwrap().shadows.keep_balanced;
+        assert!(!set("shadows.balance", "1.5"));
+        assert!(!set("shadows", r#"{"balance": 1.5}"#));
+        assert!(set("shadows.gain", "2") && set("shadows.keep_balanced", "true"));
     }
 
     #[test]

@@ -117,6 +117,11 @@ impl Record {
         self.overlay.get("schema").and_then(Value::as_u64).is_some_and(|schema| schema < SCHEMA.into())
     }
 
+    /// Whether the record says how the lights are balanced.
+    pub fn names_balance(&self) -> bool {
+        self.overlay.pointer("/shadows/balance").is_some()
+    }
+
     /// The settings of the record laid over others, for a volume with these values, and warnings of what was not
     /// understood.
     ///

@@ -1,14 +1,17 @@
 //! What earlier schemas did where there was nothing to set yet: what was saved looks as it looked then.
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 /// Settings that came with a schema, and what schemas before it did: (schema, group, setting, value).
-const ADDED: [(u64, &str, &str, &str); 4] = [
-    (2, "sampling", "slabs", "even"),
-    (2, "shading", "sides", "two"),
-    (2, "shadows", "reverse_kernel", "forward"),
-    (2, "shadows", "near_field", "off"),
-];
+fn added() -> [(u64, &'static str, &'static str, Value); 5] {
+    [
+        (2, "sampling", "slabs", json!("even")),
+        (2, "shading", "sides", json!("two")),
+        (2, "shadows", "reverse_kernel", json!("forward")),
+        (2, "shadows", "near_field", json!("off")),
+        (2, "shadows", "keep_balanced", json!(false)),
+    ]
+}
 
 /// Adds to a record that names its schema what that schema did, for every setting that it did not have. A preset
 /// that names no schema is of none: it leaves open what it does not name.
@@ -22,10 +25,10 @@ pub(super) fn complete(record: &mut Value) {
     if let Some(camera) = groups.get_mut("camera") {
         complete_camera(camera);
     }
-    for (_, group, setting, value) in ADDED.iter().filter(|(since, ..)| schema < *since) {
-        let group = groups.entry(*group).or_insert_with(|| Value::Object(Map::new()));
+    for (_, group, setting, value) in added().into_iter().filter(|(since, ..)| schema < *since) {
+        let group = groups.entry(group).or_insert_with(|| Value::Object(Map::new()));
         if let Value::Object(group) = group {
-            group.entry(*setting).or_insert_with(|| Value::String((*value).to_owned()));
+            group.entry(setting).or_insert(value);
         }
     }
     if schema < 2 {
@@ -53,6 +56,16 @@ fn complete_camera(camera: &mut Value) {
     }
 }
 
+/// Lets a balance be that a preset or record names: unless it also says that the balance is to be kept, whoever wrote
+/// it means the number.
+pub(super) fn keep_named_balance(record: &mut Value) {
+    if let Some(Value::Object(shadows)) = record.get_mut("shadows")
+        && shadows.contains_key("balance")
+    {
+        shadows.entry("keep_balanced").or_insert(Value::Bool(false));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,6 +80,10 @@ mod tests {
         assert_eq!(old.shading.sides, Sides::Two);
         assert_eq!(old.shadows.reverse_kernel, ReverseKernel::Forward);
         assert_eq!(old.shadows.near_field, NearField::Off);
+        let mut kept = Settings::default();
+        kept.shadows.keep_balanced = true;
+        assert!(!load_json(&kept, r#"{"schema": 1}"#).expect("settings").0.shadows.keep_balanced);
+        assert!(load_json(&kept, r#"{"schema": 2}"#).expect("settings").0.shadows.keep_balanced);
         assert_eq!((old.shadows.gain, old.schema), (2.0, SCHEMA));
         let scattered = load(r#"{"schema": 1, "sampling": {"engine": "scatter", "gradients": "volume"}}"#);
         assert_eq!(scattered.sampling.gradients, Gradients::Sheets);

@@ -97,6 +97,7 @@ impl LightKey {
             gain: _,
             bias_voxels: _,
             balance: _,
+            keep_balanced: _,
             first_touch,
             deposit,
             kernel,

@@ -52,6 +52,8 @@ impl ReceivedLight {
             gain,
             bias_voxels,
             balance,
+            // Nobody sees it.
+            keep_balanced: _,
             // In the keys of light volumes and of rays.
             first_touch: _,
             deposit: _,

@@ -101,6 +101,7 @@ fn every_setting_causes_what_the_design_says() {
         // Rays nearby take its place.
         ("shadows.bias_voxels", "1", Effect::Nothing),
         ("shadows.balance", "1.5", Effect::Eye),
+        ("shadows.keep_balanced", "true", Effect::Nothing),
         ("shadows.first_touch", "true", Effect::AllLights),
         ("shadows.deposit", "front", Effect::AllLights),
         ("shadows.kernel", "prefiltered", Effect::AllLights),

@@ -35,6 +35,12 @@ pub(crate) const BALANCE: Named = named(
 /// The button that finds the balance.
 pub(crate) const MEASURE_BALANCE: Named =
     named("Balance brightness", "Measures the picture with and without shadows and sets the balance");
+/// The switch that has it found by itself.
+pub(crate) const KEEP_BALANCED: Named = named(
+    "Keep balanced",
+    "Balances the brightness again when a change of lights, opacities or shadows has come to rest; a balance set \
+     by hand switches it off",
+);
 
 pub(crate) const NEARLY_BLACK: Named = named(
     "Nearly black",

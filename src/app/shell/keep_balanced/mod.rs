@@ -1,0 +1,203 @@
+//! *Keep balanced*: when the balance is measured anew, and how it gets from one value to the next. Times are in
+//! seconds, of any clock that does not go back.
+//!
+//! It acts only on a picture at rest, and what it finds is written into the settings: a picture depends on these
+//! alone, whenever and wherever it is made.
+
+use crate::model::{Engine, Sampling, Settings, Shadows};
+
+/// How long nothing may have changed: longer than the pauses within one movement of a hand.
+const REST_S: f64 = 0.25;
+
+/// How long the balance takes to its new value: seen as a change of light, and not as a jump.
+const EASE_S: f64 = 0.3;
+
+/// Relative differences up to this are left alone: brightness that differs by so little is not told apart, and the
+/// measurement itself, in a small picture, is not much truer.
+const TOLERANCE: f64 = 0.02;
+
+/// The window in one of its frames.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moment<'a> {
+    /// When it is.
+    pub now_s: f64,
+    /// The look.
+    pub settings: &'a Settings,
+    /// The full-quality picture of the look is on screen.
+    pub complete: bool,
+    /// Somebody holds a button of the pointer or a key, or writes.
+    pub held: bool,
+    /// An earlier measurement still runs.
+    pub busy: bool,
+}
+
+/// What the window has to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Act {
+    /// Nothing, until something else happens.
+    Nothing,
+    /// Ask again after so many seconds.
+    Wait(f64),
+    /// Measure the balance of the settings.
+    Measure,
+    /// Set the balance, and ask again in the next frame.
+    Set(f64),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    Rest,
+    Measuring,
+    Easing { from: f64, to: f64, since_s: f64 },
+}
+
+/// Decides when to measure and what to set.
+#[derive(Debug)]
+pub(crate) struct KeepBalanced {
+    /// The look of the frame before.
+    seen: Settings,
+    /// What the balance was last found for.
+    balanced: Option<Settings>,
+    /// When something last changed or was held.
+    stirred_s: f64,
+    phase: Phase,
+}
+
+impl KeepBalanced {
+    /// Begins with a look, whose balance has been measured or not.
+    pub(crate) fn new(settings: &Settings, is_balanced: bool) -> Self {
+        let balanced = is_balanced.then(|| brightness(settings));
+        Self { seen: settings.clone(), balanced, stirred_s: 0.0, phase: Phase::Rest }
+    }
+
+    /// Takes a look as it comes: its balance is part of it, as of a step that is undone or of a session.
+    pub(crate) fn accept(&mut self, settings: &Settings) {
+        *self = Self { stirred_s: self.stirred_s, ..Self::new(settings, true) };
+    }
+
+    /// Whether the balance of the settings will change without anybody's doing.
+    pub(crate) fn is_due(&self, settings: &Settings) -> bool {
+        let Shadows { keep_balanced, algorithm, .. } = settings.shadows;
+        // Without shadows a balance has no effect.
+        keep_balanced && algorithm.is_on() && self.balanced.as_ref() != Some(&brightness(settings))
+    }
+
+    /// What is to be done in this frame.
+    pub(crate) fn act(&mut self, moment: Moment<'_>) -> Act {
+        let Moment { now_s, settings, complete, held, busy } = moment;
+        let is_changed = *settings != self.seen;
+        if is_changed {
+            if settings.shadows.balance.to_bits() != self.seen.shadows.balance.to_bits() {
+                // Whoever sets it means it.
+                self.balanced = Some(brightness(settings));
+            }
+            self.seen.clone_from(settings);
+        }
+        if is_changed || held {
+            self.stirred_s = now_s;
+            self.phase = Phase::Rest;
+        }
+        if !settings.shadows.keep_balanced {
+            // Nobody looks after it: when the switch is on again, it is measured.
+            self.balanced = None;
+        }
+        if !self.is_due(settings) {
+            self.phase = Phase::Rest;
+            return Act::Nothing;
+        }
+        match self.phase {
+            Phase::Easing { from, to, since_s } => self.ease(from, to, (now_s - since_s) / EASE_S),
+            Phase::Measuring => Act::Nothing,
+            // The window draws a frame when any of these ends.
+            Phase::Rest if held || busy || !complete => Act::Nothing,
+            Phase::Rest => {
+                let wait_s = self.stirred_s + REST_S - now_s;
+                if wait_s > 0.0 {
+                    return Act::Wait(wait_s);
+                }
+                self.phase = Phase::Measuring;
+                Act::Measure
+            }
+        }
+    }
+
+    fn ease(&mut self, from: f64, to: f64, share: f64) -> Act {
+        if share >= 1.0 {
+            self.set(to);
+            self.settle();
+            return Act::Set(to);
+        }
+        let share = share.max(0.0);
+        // Slow at both ends, 3t² − 2t³; equal ratios are equal steps for the eye.
+        let balance = from * (to / from).powf(share * share * (3.0 - 2.0 * share));
+        self.set(balance);
+        Act::Set(balance)
+    }
+
+    /// Its own change is none.
+    fn set(&mut self, balance: f64) {
+        self.seen.shadows.balance = balance;
+    }
+
+    /// The balance is what it should be.
+    fn settle(&mut self) {
+        self.balanced = Some(brightness(&self.seen));
+        self.phase = Phase::Rest;
+    }
+
+    /// A measurement has ended; without a balance it failed, and is not tried again until something changes. What
+    /// was measured before the last change is dropped.
+    pub(crate) fn found(&mut self, now_s: f64, balance: Option<f64>) {
+        if self.phase != Phase::Measuring {
+            return;
+        }
+        let from = self.seen.shadows.balance;
+        match balance {
+            Some(to) if (to / from - 1.0).abs() > TOLERANCE => {
+                self.phase = Phase::Easing { from, to, since_s: now_s };
+            }
+            _ => self.settle(),
+        }
+    }
+}
+
+/// The part of a look on which it depends how much darker shadows make it, and the balance, without which an eased one
+/// that is half there could pass for the one that was found. That the view matters a little is let
+/// pass: turning a volume must not change its light.
+fn brightness(settings: &Settings) -> Settings {
+    let Settings {
+        schema,
+        camera: _,
+        lights,
+        transfer,
+        lighting,
+        opacity_unit,
+        shading,
+        shadows,
+        cuts,
+        floor: _,
+        sampling,
+        output: _,
+        views: _,
+    } = settings;
+    let mut lights = lights.clone();
+    for light in &mut lights {
+        light.name.clear();
+    }
+    Settings {
+        schema: *schema,
+        lights,
+        transfer: transfer.clone(),
+        lighting: lighting.clone(),
+        opacity_unit: *opacity_unit,
+        shading: shading.clone(),
+        shadows: Shadows { keep_balanced: true, ..shadows.clone() },
+        cuts: cuts.clone(),
+        // Both engines make the same picture.
+        sampling: Sampling { engine: Engine::Gather, ..sampling.clone() },
+        ..Settings::default()
+    }
+}
+
+#[cfg(test)]
+mod tests;
