@@ -76,8 +76,6 @@ pub struct App {
     pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
     keep_balanced: KeepBalanced,
-    /// What *Keep balanced* measures.
-    kept_balance: Option<Work<Result<f64, GpuError>>>,
     export: Export,
     files: Files,
     session: Option<PathBuf>,
@@ -153,7 +151,6 @@ impl App {
             pending: None,
             balance: None,
             keep_balanced: KeepBalanced::new(&Settings::default(), true),
-            kept_balance: None,
             export: Export::default(),
             files: Files::default(),
             session_is_due: session.is_some(),

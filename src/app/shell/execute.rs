@@ -17,15 +17,8 @@ use crate::app::windows::{export, light_slice};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
-use crate::data::Dataset;
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{COLOR_MAPS, Camera, Settings, auto};
-
-/// Finds the balance of a look.
-type MeasureBalance = fn(&mut Renderer, &Dataset, &Settings) -> Result<f64, GpuError>;
-
-/// A balance that is being measured.
-type BalanceWork = Work<Result<f64, GpuError>>;
+use crate::model::{COLOR_MAPS, Camera, auto};
 
 impl App {
     /// Does what the user asked for.
@@ -176,16 +169,10 @@ impl App {
                 Err(panic) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, panic),
             }
         }
-        if let Some(result) = self.kept_balance.as_ref().and_then(Work::take) {
-            self.kept_balance = None;
-            let found = match result {
-                Ok(Ok(balance)) => Ok(balance),
-                Ok(Err(err)) => Err(err.to_string()),
-                Err(panic) => Err(panic),
-            };
+        if let Some(found) = self.viewport.take_balance() {
             self.keep_balanced.found(ctx.input(|input| input.time), found.as_ref().ok().copied());
-            if let Err(why) = found {
-                self.messages.error(text::messages::BALANCE_NOT_MEASURED, why);
+            if let Err(err) = found {
+                self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string());
             }
         }
         match self.export.take() {
@@ -283,25 +270,20 @@ impl App {
         }
     }
 
+    /// Starts to measure the balance of the settings as they are, on a device of its own; nothing without a volume.
     fn start_balance(&mut self, ctx: &egui::Context) {
-        if self.balance.is_none() {
-            self.balance = self.measure_balance(ctx, crate::gpu::balance);
-        }
-    }
-
-    /// Starts to measure the balance of the settings, on a device of its own; nothing without a volume.
-    fn measure_balance(&mut self, ctx: &egui::Context, measure: MeasureBalance) -> Option<BalanceWork> {
-        let dataset = self.viewport.dataset()?;
+        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
+            return;
+        };
         let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
         let task = move || {
             let mut renderer = Renderer::new(&context.sibling()?)?;
-            measure(&mut renderer, &dataset, &settings)
+            crate::gpu::balance(&mut renderer, &dataset, &settings)
         };
-        let started = Work::start("balance", ctx, task);
-        if let Err(err) = &started {
-            self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string());
+        match Work::start("balance", ctx, task) {
+            Ok(work) => self.balance = Some(work),
+            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
         }
-        started.ok()
     }
 
     /// Keeps the picture as bright as without shadows, if that is wanted.
@@ -313,15 +295,12 @@ impl App {
             complete: self.is_complete(),
             held: ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty())
                 || ctx.text_edit_focused(),
-            busy: self.balance.is_some() || self.kept_balance.is_some(),
+            busy: self.balance.is_some(),
         });
         match act {
             Act::Nothing => {}
             Act::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
-            Act::Measure => match self.measure_balance(ctx, crate::gpu::balance_quickly) {
-                Some(work) => self.kept_balance = Some(work),
-                None => self.keep_balanced.found(now_s, None),
-            },
+            Act::Measure => self.viewport.measure_balance(&self.settings),
             Act::Set(balance) => {
                 let before = self.settings.clone();
                 self.settings.shadows.balance = balance;

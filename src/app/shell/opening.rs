@@ -204,7 +204,6 @@ impl App {
             self.settings = settings;
         }
         // What is measured is of the volume before; a first look is balanced, a look from there is not.
-        self.kept_balance = None;
         self.keep_balanced = KeepBalanced::new(&self.settings, !is_kept);
         let range = volume.value_range();
         // Session and command line speak of the first volume.

@@ -31,6 +31,7 @@ use super::worker::response::Waiting;
 use crate::data::Dataset;
 pub(super) use crate::gpu::LightFigures;
 use crate::gpu::{Context, Distance, GpuError, Renderer, WindowPainter, WindowPicture};
+use crate::model::Settings;
 
 /// How long a frame of the window waits for a preview: what is left of 1/60 s.
 const PREVIEW_WAIT: Duration = Duration::from_millis(12);
@@ -72,6 +73,8 @@ pub(super) struct Viewport {
     /// Draws pictures into the window.
     window: WindowPainter,
     thread: RenderThread,
+    /// The balance that is being measured.
+    measurement: Option<u64>,
     /// What the render thread was asked for last.
     frame_request: Option<FrameRequest>,
     waiting: Waiting<FrameRequest>,
@@ -102,6 +105,7 @@ impl Viewport {
             context,
             window,
             thread,
+            measurement: None,
             frame_request: None,
             waiting: Waiting::default(),
             waited_in_vain: false,
@@ -124,6 +128,18 @@ impl Viewport {
         self.thread.set_scene(Scene { renderer, dataset });
         (self.frame_request, self.shown, self.failed, self.waited_in_vain) = (None, None, None, false);
         self.waiting.clear();
+    }
+
+    /// Asks for the balance of a look of the volume, which is measured when its picture is finished.
+    pub(super) fn measure_balance(&mut self, settings: &Settings) {
+        self.measurement = Some(self.thread.measure_balance(settings));
+    }
+
+    /// The balance that was asked for last, once.
+    pub(super) fn take_balance(&mut self) -> Option<Result<f64, GpuError>> {
+        let balance = self.thread.take_balance(self.measurement?)?;
+        self.measurement = None;
+        Some(balance)
     }
 
     /// The device of the pictures.

@@ -118,6 +118,11 @@ impl Agenda {
         }
     }
 
+    /// Whether nothing is to be drawn, now or soon.
+    pub(super) fn is_at_rest(&self) -> bool {
+        matches!(self.due(), Due::WithNews) && !self.is_frame_pending && self.next_scene.is_none()
+    }
+
     /// A picture is on its way to the screen.
     pub(super) fn publish(&mut self, frame_request: FrameRequest, quality: QualityLevel) {
         self.shown = Some((frame_request, quality));

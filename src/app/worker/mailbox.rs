@@ -8,6 +8,7 @@ use super::difference::Difference;
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, Scene};
 use crate::gpu::{GpuError, LightFigures, Stage};
+use crate::model::Settings;
 
 /// A finished picture.
 pub(crate) struct Frame {
@@ -40,6 +41,14 @@ pub(crate) struct Figures {
     pub(crate) refining: Option<(Stage, f32)>,
 }
 
+/// A balance that the window wants to know.
+#[derive(Debug, Clone)]
+pub(crate) struct Measurement {
+    /// Counts up.
+    pub(crate) id: u64,
+    pub(crate) settings: Box<Settings>,
+}
+
 /// What passes between the window and its render thread.
 #[derive(Default)]
 pub(crate) struct Mailbox {
@@ -51,6 +60,10 @@ pub(crate) struct Mailbox {
     pub(crate) frame: Option<Frame>,
     pub(crate) error: Option<GpuError>,
     pub(crate) figures: Figures,
+    /// Waits until pictures leave time for it.
+    pub(crate) measurement: Option<Measurement>,
+    /// The balance of the last measurement, and which one that was.
+    pub(crate) measured: Option<(u64, Result<f64, GpuError>)>,
 }
 
 impl Mailbox {

@@ -1,5 +1,6 @@
 //! The window's end of the thread that renders its pictures.
 
+use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
@@ -7,16 +8,19 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use super::mailbox::{Figures, Frame, Mailbox, Shared};
+use super::mailbox::{Figures, Frame, Mailbox, Measurement, Shared};
 use super::render_worker::RenderWorker;
 use super::request::{FrameRequest, Scene};
 use super::task::panic_message;
 use crate::gpu::{Context, GpuError};
+use crate::model::Settings;
 
 /// The window's end of the thread, which ends with it.
 pub(crate) struct RenderThread {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
+    /// How many balances have been asked for.
+    measurements: Cell<u64>,
 }
 
 impl std::fmt::Debug for RenderThread {
@@ -48,13 +52,14 @@ impl RenderThread {
                 worker.report(GpuError::Lost(panic_message(&*panic)));
             }
         })?;
-        Ok(Self { shared, thread: Some(thread) })
+        Ok(Self { shared, thread: Some(thread), measurements: Cell::new(0) })
     }
 
     /// Renders this from now on.
     pub(crate) fn set_scene(&self, scene: Scene) {
         let mut mailbox = self.shared.mailbox();
         (mailbox.scene, mailbox.frame_request, mailbox.frame) = (Some(scene), None, None);
+        (mailbox.measurement, mailbox.measured) = (None, None);
         self.shared.changed.notify_one();
     }
 
@@ -62,6 +67,23 @@ impl RenderThread {
     pub(crate) fn set_request(&self, frame_request: FrameRequest) {
         self.shared.mailbox().frame_request = Some(frame_request);
         self.shared.changed.notify_one();
+    }
+
+    /// Measures the balance of a look with the light volumes that are there, when its picture is finished; what was to
+    /// be measured before is not. Returns the number of the measurement.
+    pub(crate) fn measure_balance(&self, settings: &Settings) -> u64 {
+        let mut mailbox = self.shared.mailbox();
+        self.measurements.set(self.measurements.get() + 1);
+        let id = self.measurements.get();
+        mailbox.measurement = Some(Measurement { id, settings: Box::new(settings.clone()) });
+        self.shared.changed.notify_one();
+        id
+    }
+
+    /// The balance of a measurement, once.
+    pub(crate) fn take_balance(&self, id: u64) -> Option<Result<f64, GpuError>> {
+        let measured = self.shared.mailbox().measured.take_if(|(measured, _)| *measured == id);
+        measured.map(|(_, balance)| balance)
     }
 
     /// What previews may take from now on.

@@ -12,10 +12,10 @@ use eframe::egui::{self, ColorImage};
 use super::agenda::{Agenda, Due, Purpose};
 use super::brightness::Brightness;
 use super::difference::Difference;
-use super::mailbox::{Figures, Frame, Shared};
+use super::mailbox::{Figures, Frame, Measurement, Shared};
 use super::quality::{Missing, QualityController, QualityLevel};
 use super::request::{FrameRequest, Scene};
-use crate::gpu::{Context, GpuError, RenderOptions, Stage};
+use crate::gpu::{Context, GpuError, RenderOptions, Stage, balance_quickly};
 use crate::model::Settings;
 use crate::plan::{FrameKeys, Request};
 
@@ -95,6 +95,7 @@ impl RenderWorker {
                 self.last_full = None;
                 self.scene = Some(scene);
             }
+            self.measure_balance();
             let due = if self.scene.is_some() { self.agenda.due() } else { Due::WithNews };
             let rest = match due {
                 Due::Now(purpose, frame_request) => {
@@ -105,7 +106,7 @@ impl RenderWorker {
             };
             let mailbox = shared.mailbox();
             // Something may have come since it was read.
-            if self.agenda.has_news(&mailbox) {
+            if self.agenda.has_news(&mailbox) || mailbox.measurement.is_some() && self.can_measure() {
                 continue;
             }
             match rest {
@@ -115,6 +116,23 @@ impl RenderWorker {
                 }
             }
         }
+    }
+
+    /// Whether there is time to measure a balance: pictures come first.
+    fn can_measure(&self) -> bool {
+        self.scene.is_some() && self.agenda.is_at_rest()
+    }
+
+    /// Measures the balance that the window wants to know: three small pictures with the light volumes that are there.
+    fn measure_balance(&mut self) {
+        if !self.can_measure() {
+            return;
+        }
+        let Some(Measurement { id, settings }) = self.shared.mailbox().measurement.take() else { return };
+        let Some(scene) = &mut self.scene else { return };
+        let balance = balance_quickly(&mut scene.renderer, &scene.dataset, &settings);
+        self.shared.mailbox().measured = Some((id, balance));
+        self.ctx.request_repaint();
     }
 
     /// Takes note of what the window requests now.

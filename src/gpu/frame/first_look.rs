@@ -42,7 +42,9 @@ pub fn balance(renderer: &mut Renderer, dataset: &Dataset, settings: &Settings) 
         light.intensity = 0.0;
     }
     let mut brightness = |settings: &Settings| -> Result<f64, GpuError> {
-        let picture = renderer.render(dataset, settings, MEASURED_SIZE, &RenderOptions::default())?;
+        // As a preview, it makes do with the light volumes of larger pictures.
+        let options = RenderOptions { preview: true, ..RenderOptions::default() };
+        let picture = renderer.render(dataset, settings, MEASURED_SIZE, &options)?;
         Ok(mean_luminance(&picture.light))
     };
     let with = brightness(&shadowed)?;

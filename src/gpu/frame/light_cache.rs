@@ -164,7 +164,9 @@ impl Loaded {
         let Self { volume, tables, lights, .. } = self;
         let reach = picture_reach(volume, request, options.samples);
         let shadowed = full_keys.iter().flatten().count();
-        let most_kept = shadowed + SPARE_LIGHT_VOLUMES.max(shadowed);
+        // Without shadows none is pushed out: whoever compares comes back to them.
+        let most_kept =
+            if shadowed == 0 { lights.len() } else { shadowed + SPARE_LIGHT_VOLUMES.max(shadowed) };
         let at_coarse = |full: &LightKey| request.coarse.map(|resolution| full.at_resolution(resolution));
         let is_wanted = |key: &LightKey| {
             full_keys.iter().flatten().any(|full| full == key || at_coarse(full).as_ref() == Some(key))
@@ -183,7 +185,7 @@ impl Loaded {
             lookups_ahead(volume, settings, &light, key.resolution().divisor())
         };
         // A preview makes do with what a picture at full quality looks up; the margin lets all light pass.
-        let least_reach = if request.coarse.is_some() { 0 } else { reach };
+        let least_reach = if request.coarse.is_some() || options.preview { 0 } else { reach };
         let usable = |known: &Cached<LightKey, LightVolume>, index: usize, key: &LightKey| {
             let least = needed(key, least_reach, ahead_of(index, key));
             known.key() == key && is_within(&least, &known.value.filled)
