@@ -21,7 +21,7 @@ use super::scene::{LookArgs, parse_size};
 use super::{CliError, print_line};
 use crate::data::Dataset;
 use crate::gpu::{Context, RenderOptions, Renderer};
-use crate::model::{Kernel, Resolution, Settings, ShadowAlgorithm};
+use crate::model::{Kernel, NearField, Resolution, Settings, ShadowAlgorithm};
 
 /// Frames before the clock runs: pipelines are compiled, caches are warm.
 const WARM_UP: usize = 2;
@@ -241,12 +241,14 @@ fn describe(
     case
 }
 
-/// Whether settings ask for exact kernels, slabs no thicker than voxels and whole light volumes.
+/// Whether settings ask for exact kernels, slabs no thicker than voxels and whole light volumes. Light volumes may do with
+/// the prefiltered kernel where rays nearby see what it blurs.
 fn is_full_quality(settings: &Settings) -> bool {
     let (sampling, shadows) = (&settings.sampling, &settings.shadows);
     let exact = |kernel: Kernel, slab: f64| kernel != Kernel::Prefiltered && slab <= 1.0;
     exact(sampling.kernel, sampling.slab)
-        && exact(shadows.kernel, shadows.slab)
+        && (exact(shadows.kernel, shadows.slab)
+            || settings.near_field() != NearField::Off && shadows.slab <= 1.0)
         && shadows.resolution == Resolution::Full
 }
 
