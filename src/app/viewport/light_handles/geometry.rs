@@ -175,6 +175,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Fit;
     use eframe::egui::vec2;
 
     fn view(projection: Projection) -> View {
@@ -228,6 +229,37 @@ mod tests {
             SceneLight { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..SceneLight::default() };
         if let Some(handle) = view.handle(&far) {
             assert!(view.view_projection.picture.contains(handle.position));
+        }
+    }
+
+    /// In a picture that is narrower than the frame, which the angle of view of its height would cut off.
+    #[test]
+    fn handles_lie_over_narrow_pictures_of_a_frame() {
+        let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(200.0, 600.0));
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let camera = Camera { projection, fit: Fit::Frame, ..Camera::default() };
+            let view = View::new(camera.clone(), picture, 1.8);
+            let silhouette = view.silhouette();
+            assert!(!silhouette.is_empty() && silhouette.iter().all(|at| picture.contains(*at)));
+            // The sphere that lights are dragged on reaches well out to both sides.
+            let widest = silhouette.iter().map(|at| (at.x - picture.center().x).abs()).fold(0.0, f32::max);
+            assert!(widest > 0.6 * picture.width() / 2.0, "{projection:?}: {widest}");
+            for kind in [LightKind::Parallel, LightKind::Perspective] {
+                let mut light = light(kind);
+                let before = view.handle(&light).unwrap();
+                // Where the picture shows what the handle stands for.
+                let shown = match kind {
+                    LightKind::Parallel => light.direction() * view.radius(),
+                    LightKind::Perspective => DVec3::from(light.position),
+                };
+                let (x, y, _) = camera.pixel_from_scene(shown, 200.0, 600.0).unwrap();
+                let there = picture.min + vec2(x as f32, y as f32);
+                assert!(before.position.distance(there) < 0.1, "{projection:?} {kind:?}: {before:?}");
+                let to = before.position + vec2(8.0, 6.0);
+                view.move_light(&mut light, to, before.behind);
+                let after = view.handle(&light).unwrap();
+                assert!(after.position.distance(to) < 0.1, "{projection:?} {kind:?}: {after:?}, not {to:?}");
+            }
         }
     }
 
