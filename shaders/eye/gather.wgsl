@@ -34,9 +34,9 @@ fn light_distance(cell: vec3f) -> i32 {
     return near(light_distances, cell).y;
 }
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
+fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
     if (!DIRECT) {
-        return near_or_looked_up(light, volume, surface, towards, weight);
+        return near_or_looked_up(light, volume, surface, towards);
     }
     let p = biased(light, surface, towards);
     let s = eye.shading;
@@ -67,24 +67,24 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
 }
 
 // The light from the material of slab k where the ray crosses it.
-fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample, weight: f32) -> vec3f {
+fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
     let level = kernel_level(eye.frame, depth);
     if (SHEET_GRADIENTS) {
-        return lit_material(p, level, gradient_between_sheets(vec2f(pixel), f32(k)), found, weight);
+        return lit_material(p, level, gradient_between_sheets(vec2f(pixel), f32(k)), found);
     }
-    return lit_material(p, level, gradient_to_scene(eye.space, volume_slope(p, level)), found, weight);
+    return lit_material(p, level, gradient_to_scene(eye.space, volume_slope(p, level)), found);
 }
 
 // The light from material where the gradient is `volume_slope` in scene space.
-fn lit_material(p: vec3f, level: f32, volume_slope: vec3f, found: SlabSample, weight: f32) -> vec3f {
+fn lit_material(p: vec3f, level: f32, volume_slope: vec3f, found: SlabSample) -> vec3f {
     var density = found.density;
     if (PRECLASSIFY && ONE_SIDED) {
         density = pyramid(p, level);
     }
     let slope = volume_slope + face_slope(p, level, density);
-    return shade(Sampled(p, slope, density, level, weight), found.material.rgb);
+    return shade(Sampled(p, slope, density, level), found.material.rgb);
 }
 
 // The next slab, from `first` on, in a cell that may show something; or one beyond the last.
@@ -164,7 +164,7 @@ fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2u) -> Seen {
         if (at.found.material.a > 0.0) {
             let passed = exp(-at.found.material.a * eye.frame.slab * ray.obliquity);
             let weight = t * (1.0 - passed);
-            color += weight * shaded(ray, pixel, at.k, at.found, weight);
+            color += weight * shaded(ray, pixel, at.k, at.found);
             t *= passed;
         }
         if (t < eye.dark) {

@@ -48,8 +48,7 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         if (needed == width) {
             if (found.material.a > 0.0) {
                 let passed = exp(-found.material.a * f32(width) * eye.frame.slab * ray.obliquity);
-                let weight = t * (1.0 - passed);
-                color += weight * lit_material(p, level, gradient_to_scene(eye.space, slope), found, weight);
+                color += t * (1.0 - passed) * lit_material(p, level, gradient_to_scene(eye.space, slope), found);
                 t *= passed;
             }
             k = start + width;

@@ -15,8 +15,8 @@
 // Take gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = true;
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
-    return near_or_looked_up(light, volume, surface, towards, weight);
+fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
+    return near_or_looked_up(light, volume, surface, towards);
 }
 
 // The sheet's value at a pixel; nothing lies before the first or behind the last.
@@ -88,7 +88,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 slope = gradient_to_scene(eye.space, volume_slope(p, level));
             }
             slope += face_slope(p, level, density);
-            let rgb = shade(Sampled(p, slope, density, level, left * opacity), material.rgb);
+            let rgb = shade(Sampled(p, slope, density, level), material.rgb);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);
         }
     }

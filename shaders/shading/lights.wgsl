@@ -83,8 +83,6 @@ struct Surface {
     side: f32,
     // Of the pyramid, as stretched as the kernel of the sample.
     level: f32,
-    // Its share in the picture.
-    weight: f32,
 }
 
 // Lights that cast shadows light the side of a surface to which opacity falls, and highlights lie there, too.

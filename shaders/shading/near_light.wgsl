@@ -9,23 +9,18 @@
 
 // Steps of the near field (src/model/settings/shadows.rs), or none.
 override NEAR_STEPS: u32 = 0u;
-// Samples whose share in the picture is less go the whole way in one step: a few such shares make a step of 8 bits,
-// and light differs by a part of itself.
-const NEAR_LEAST = 1.0 / 128.0;
 
 // Light as a ray finds it close by, and as its volume knows it from there on: a volume blurs what lies within a voxel
 // or two, which is where a surface shades itself. The last step goes half a voxel of the light volume further, to where
 // the trilinear fetch sees little of what the ray has met already; no piece of the way is left out. Every sample looks
 // light up equally far away, so that light volumes hold no more than that takes (src/plan/geometry/ahead.rs).
-fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards, weight: f32) -> f32 {
+fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
     let forward = (light.place_in_index - surface.point * light.perspective) * towards.per_length;
-    let counts = weight > NEAR_LEAST;
     var way = 0.0;
     var depth = 0.0;
-    var step = select(max(NEAR_STEPS, 1u) - 1u, 0u, counts);
+    var step = 0u;
     loop {
-        let usual = select(eye.near_whole, near_width(step) * eye.near_edge, counts);
-        let width = usual + select(0.0, light.near_ahead, step + 1u == NEAR_STEPS);
+        let width = near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == NEAR_STEPS);
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
         let extinction = lighting_table.entries[nearest_entry(pyramid(p, surface.level))].a;
@@ -41,15 +36,9 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
 }
 
 // What is left of a light that has a volume.
-fn near_or_looked_up(
-    light: Light,
-    volume: texture_3d<f32>,
-    surface: Surface,
-    towards: Towards,
-    weight: f32,
-) -> f32 {
+fn near_or_looked_up(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
     if (NEAR_STEPS > 0u) {
-        return near_light(light, volume, surface, towards, weight);
+        return near_light(light, volume, surface, towards);
     }
     return looked_up(light, volume, biased(light, surface, towards));
 }

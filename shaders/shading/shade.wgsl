@@ -31,8 +31,7 @@ struct Eye {
     near_edge: f32,
     // Index space to texture coordinates of the volume into which lights have been combined.
     combined_lookup: vec3f,
-    // How far rays nearby go, but for what the last step has more, in scene units.
-    near_whole: f32,
+    pad0: f32,
     // What is seen.
     seen: Cut,
     // What attenuates light.
@@ -72,8 +71,7 @@ fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> f32 {
 fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
     let towards = to_light(light, surface.position);
-    let weight = surface.weight * diffuse_share(light, surface, dot(surface.normal, towards.direction));
-    let share = received(eye.shading, attenuation_at(light, volume, surface, towards, weight));
+    let share = received(eye.shading, attenuation_at(light, volume, surface, towards));
     return reflect_light(eye.shading, light, surface, towards.direction, share);
 }
 
@@ -90,8 +88,6 @@ struct Sampled {
     density: f32,
     // Of the pyramid, as stretched as its kernel.
     level: f32,
-    // Its share in the picture.
-    weight: f32,
 }
 
 // The gradient, in scene space, that faces of what is seen have of their own: into the solid that ends there, in
@@ -117,7 +113,6 @@ fn surface_of(found: Sampled) -> Surface {
         away * (1.0 / max(length(away), 1e-9)),
         select(1.0, side_of(found.density), ONE_SIDED),
         found.level,
-        found.weight,
     );
 }
 

@@ -86,9 +86,6 @@ pub(crate) const STRETCHED_FOG: f64 = 0.005;
 /// Scattering against gathering with the same weights: f16 sheets and light volumes on both sides.
 pub(crate) const ENGINES: Limit = Limit { max: f64::INFINITY, rmse: 2.5e-4 };
 
-/// The same with the default settings of both: light splatted back with kernels of different widths.
-pub(crate) const ENGINES_BY_DEFAULT: Limit = Limit { max: f64::INFINITY, rmse: 0.5 / 255.0 };
-
 /// Optical depth of a single voxel's footprint: what lies beyond two voxels along the ray (0.09 % of
 /// 0.22 at σ = 0.6), table and 8-bit steps.
 pub(crate) const FOOTPRINT: f64 = 3e-4;

@@ -175,7 +175,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 runs,
                 near_edge,
                 combined_lookup,
-                near_whole,
+                pad0,
                 seen,
                 shading_cut,
                 lights

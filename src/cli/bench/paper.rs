@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::Bench;
 use super::report::round;
 use crate::cli::CliError;
-use crate::model::ShadowAlgorithm;
+use crate::model::{Kernel, ShadowAlgorithm};
 
 impl Bench<'_> {
     /// P §5: what a light volume and a picture take by each algorithm, and the paper's ratios of its
@@ -20,6 +20,8 @@ impl Bench<'_> {
             ("paper-2-raycast", ShadowAlgorithm::Raycast),
             ("paper-3-splat", ShadowAlgorithm::Splat),
         ];
+        // All three with the same kernel.
+        self.settings.shadows.kernel = Kernel::BSpline;
         let mut took = Vec::new();
         for (name, algorithm) in algorithms {
             self.settings.shadows.algorithm = algorithm;

@@ -69,7 +69,7 @@ impl EyePass {
             runs: 1,
             near_edge: scene.smallest_edge() as f32,
             combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
-            near_whole: (settings.near_field().length_voxels() * scene.smallest_edge()) as f32,
+            pad0: 0.0,
             seen: uniforms::Cut::new(&remains.region(scene)),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
             lights: packed,

@@ -323,7 +323,7 @@ pub struct Eye {
     pub runs: u32,
     pub near_edge: f32,
     pub combined_lookup: [f32; 3],
-    pub near_whole: f32,
+    pub pad0: f32,
     pub seen: Cut,
     pub shading_cut: Cut,
     pub lights: [Light; crate::model::MAX_LIGHTS],

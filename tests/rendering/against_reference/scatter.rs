@@ -5,7 +5,7 @@ use super::check_against;
 use crate::common::{Dataset, context, render};
 use crate::compare::{compare, flat32, wide};
 use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
-use crate::thresholds::{ENGINES, ENGINES_BY_DEFAULT, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
+use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{Renderer, SHADERS};
@@ -123,13 +123,8 @@ fn both_engines_make_nearly_the_same_picture_by_default() {
     let gathered = render(&mut renderer, &loaded, &settings, [128, 96]);
     settings.sampling.engine = Engine::Scatter;
     let scattered = render(&mut renderer, &loaded, &settings, [128, 96]);
-    compare(
-        "engines by default",
-        &flat32(&scattered.light),
-        &wide(&gathered.light.concat()),
-        ENGINES_BY_DEFAULT,
-    )
-    .unwrap_or_else(|err| panic!("{err}"));
+    compare("engines by default", &flat32(&scattered.light), &wide(&gathered.light.concat()), ENGINES)
+        .unwrap_or_else(|err| panic!("{err}"));
 }
 
 /// One voxel under twenty shifts of the camera by parts of a pixel: the sheets together hold its

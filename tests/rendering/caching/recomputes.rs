@@ -113,8 +113,9 @@ fn every_setting_costs_what_it_should() {
         ("shadows.gain", "2", Cost::Eye),
         // Rays nearby take its place (without them: `a_light_bias_fills_more_once_and_is_live_from_then_on`).
         ("shadows.bias_voxels", "1", Cost::Nothing),
-        // Looks further from material, which in so small a volume is everywhere.
-        ("shadows.near_field", "off", Cost::Eye),
+        // Light volumes are filled where they are looked up: as far ahead of samples as rays nearby go.
+        ("shadows.near_field", "off", Cost::Lights(3)),
+        // So small a volume is filled to its border, beyond which longer rays find nothing else.
         ("shadows.near_field", "long", Cost::Eye),
         ("shadows.reverse_kernel", "forward", Cost::Lights(3)),
         ("shading.sides", "two", Cost::Eye),
