@@ -86,6 +86,15 @@ pub(crate) const STRETCHED_FOG: f64 = 0.005;
 /// Scattering against gathering with the same weights: f16 sheets and light volumes on both sides.
 pub(crate) const ENGINES: Limit = Limit { max: f64::INFINITY, rmse: 2.5e-4 };
 
+/// A shell a tenth of a voxel thick, in slabs by need against even slabs that are as thin: where these lie differs.
+pub(crate) const PEAK: Limit = Limit { max: f64::INFINITY, rmse: 2.0 / 255.0 };
+/// The same in the mean, relative.
+pub(crate) const PEAK_MEAN: f64 = 0.03;
+
+/// By how much rays nearby may be further from rays all the way where the light pass has the prefiltered kernel: the
+/// other way round it is as much nearer.
+pub(crate) const PREFILTERED_LIGHT: f64 = 1.05;
+
 /// Optical depth of a single voxel's footprint: what lies beyond two voxels along the ray (0.09 % of
 /// 0.22 at σ = 0.6), table and 8-bit steps.
 pub(crate) const FOOTPRINT: f64 = 3e-4;

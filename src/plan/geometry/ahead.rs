@@ -66,13 +66,13 @@ impl CellsAhead {
     #[must_use]
     pub fn of(&self, set: CellSet, last: [usize; 3]) -> CellSet {
         let mut moved = set;
-        for axis in 0..3 {
+        for (axis, &last) in last.iter().enumerate() {
             let (least, most) = (self.least[axis], self.most[axis]);
             for _ in 0..least.unsigned_abs() {
-                moved = moved.stepped(axis, least > 0, last[axis]);
+                moved = moved.stepped(axis, least > 0, last);
             }
             for _ in least..most {
-                let next = moved.stepped(axis, true, last[axis]);
+                let next = moved.stepped(axis, true, last);
                 moved = moved.with(&next);
             }
         }

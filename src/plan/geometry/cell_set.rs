@@ -143,7 +143,9 @@ mod tests {
     /// Cells of 3 × 2 × 2 bricks.
     fn set(members: &[[usize; 3]]) -> CellSet {
         let mut set = CellSet { dims: [3, 2, 2], masks: vec![0; 12] };
-        members.iter().for_each(|&cell| set.insert(cell));
+        for &cell in members {
+            set.insert(cell);
+        }
         set
     }
 

@@ -200,6 +200,8 @@ fn damaged_slabs_by_need_are_noticed() {
         ("let share = t * (1.0 - exp", "let share = (1.0 - exp"),
         ("const MUCH = 0.125", "const MUCH = 0.25"),
         ("const CURVED = 1.25", "const CURVED = 0.5"),
+        // Blind to what lies between this sample and a denser one.
+        ("found.density - change, found.density + change", "found.density, found.density"),
     ];
     for (from, to) in damages {
         in_shader("eye/gather.wgsl", from);

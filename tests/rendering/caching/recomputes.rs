@@ -124,7 +124,8 @@ fn every_setting_costs_what_it_should() {
         ("shadows.first_touch", "true", Cost::Lights(3)),
         ("shadows.kernel", "prefiltered", Cost::Lights(3)),
         ("shadows.resolution", "half", Cost::Lights(3)),
-        ("shadows.storage", "combined", Cost::Eye),
+        // Of combined light nothing lies ahead.
+        ("shadows.storage", "combined", Cost::Lights(3)),
         ("cuts.crop", r#"{"on": true}"#, Cost::Nothing),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, Cost::Lights(3)),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0], "effect": "hidden"}"#, Cost::Eye),

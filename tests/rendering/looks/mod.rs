@@ -4,6 +4,7 @@ mod combine;
 mod cuts;
 mod floor;
 mod near_field;
+mod peaks;
 mod sides;
 mod stretch;
 mod variants;

@@ -1,11 +1,16 @@
 //! Rays nearby: what shades a point from within a few voxels is found by a short ray.
 
+use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{Camera, Length, LightKind, LightingTransfer, NearField, Projection, Settings};
+use chiaroscuro::model::{
+    Camera, Kernel, Length, LightKind, LightingTransfer, NearField, Projection, Settings, ShadowAlgorithm,
+    auto,
+};
 
 use crate::common::{Dataset, context, render};
+use crate::compare::wide;
 use crate::scenes::{self, isotropic, linear_extinction, straight};
-use crate::thresholds::{LOOKED_UP_BELOW_A_FACE, NEAR_A_FACE};
+use crate::thresholds::{LOOKED_UP_BELOW_A_FACE, NEAR_A_FACE, PREFILTERED_LIGHT};
 
 /// Mass of the cubic B-spline beyond `depth` voxels below the face of homogeneous material, which is half a voxel from
 /// its last voxels: ∫ from there to the light of the density that the kernel reconstructs.
@@ -69,4 +74,30 @@ fn light_below_a_face_is_what_arrives_there() {
     println!("below a face, RMSE: looked up {looked_up:.4}, short rays {short:.4}, long {long:.4}");
     assert!(looked_up > LOOKED_UP_BELOW_A_FACE, "{looked_up}");
     assert!(short <= NEAR_A_FACE && long <= NEAR_A_FACE, "{short} {long}");
+}
+
+/// What the prefiltered kernel blurs more than the B-spline of the light pass is nearer to a surface than rays nearby end.
+#[test]
+fn a_prefiltered_light_pass_is_as_true_behind_rays_nearby() {
+    let loaded = Dataset::new(builtin("chair", Some(64)).expect("the chair"));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
+    settings.lights = vec![scenes::light(LightKind::Parallel, [-2.2, -1.2, 1.6])];
+    let mut picture = |near, kernel, algorithm| {
+        let shadows = &mut settings.shadows;
+        (shadows.near_field, shadows.kernel, shadows.algorithm) = (near, kernel, algorithm);
+        wide(&render(&mut renderer, &loaded, &settings, [160, 160]).light.concat())
+    };
+    let limit = picture(NearField::Short, Kernel::BSpline, ShadowAlgorithm::Direct);
+    let mut error = |near, kernel| {
+        let found = picture(near, kernel, ShadowAlgorithm::Splat);
+        let squares: f64 = found.iter().zip(&limit).map(|(a, b)| (a - b).powi(2)).sum();
+        (squares / limit.len() as f64).sqrt()
+    };
+    let without = error(NearField::Off, Kernel::BSpline);
+    let exact = error(NearField::Short, Kernel::BSpline);
+    let prefiltered = error(NearField::Short, Kernel::Prefiltered);
+    println!("from rays: {without:.5} looked up, {exact:.5} with rays nearby, {prefiltered:.5} prefiltered");
+    assert!(without > 1.5 * exact, "rays nearby help: {without} {exact}");
+    assert!(prefiltered <= PREFILTERED_LIGHT * exact, "{prefiltered} {exact}");
 }
