@@ -10,6 +10,7 @@ mod absorption;
 mod brightness;
 mod kernels;
 mod lights;
+mod path_tracer;
 
 pub(crate) fn renderer() -> Renderer {
     Renderer::new(&context().with_full_precision()).expect("a renderer")
