@@ -41,14 +41,17 @@ fn pyramid(p: vec3f, level: f32) -> f32 {
     return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
 }
 
-// Σ over the 4³ neighbours of density × kernel. The four weights of an axis are two pairs, and a
-// pair is one linear fetch between its members: eight trilinear fetches for 64 voxels.
+// Σ over the 4³ neighbours of density × kernel.
 fn density_by_kernel(p: vec3f) -> f32 {
     let cell = floor(p);
     let f = p - cell;
-    let wx = kernel_weights(f.x);
-    let wy = kernel_weights(f.y);
-    let wz = kernel_weights(f.z);
+    return weighed(cell, kernel_weights(f.x), kernel_weights(f.y), kernel_weights(f.z));
+}
+
+// Σ over the 4³ voxels from the one before `cell` on along each axis, of density × weights. The four weights of an
+// axis are two pairs of one sign each, and a pair is one linear fetch between its members: eight trilinear fetches for
+// 64 voxels.
+fn weighed(cell: vec3f, wx: vec4f, wy: vec4f, wz: vec4f) -> f32 {
     let low = vec3f(wx.x + wx.y, wy.x + wy.y, wz.x + wz.y);
     let high = vec3f(wx.z + wx.w, wy.z + wy.w, wz.z + wz.w);
     // Texel centres: one voxel of padding and half a texel.

@@ -7,7 +7,7 @@
 #import "shading/shadow_ray.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/near_light.wgsl"
-#import "density/stored_gradient.wgsl"
+#import "density/kernel_gradient.wgsl"
 #import "sheets/tiles.wgsl"
 #import "eye/slabs_by_need.wgsl"
 
@@ -74,7 +74,7 @@ fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
     if (SHEET_GRADIENTS) {
         return lit_material(p, level, gradient_between_sheets(vec2f(pixel), f32(k)), found);
     }
-    return lit_material(p, level, gradient_to_scene(eye.space, volume_slope(p, level)), found);
+    return lit_material(p, level, gradient_to_scene(eye.space, slope_at(p, level)), found);
 }
 
 // The light from material where the gradient is `volume_slope` in scene space.

@@ -8,6 +8,13 @@ fn value(texel: vec3i) -> f32 {
     return textureLoad(source, clamp(texel, vec3i(0), vec3i(textureDimensions(source)) - 1), 0).r;
 }
 
+// Change of the density per texel (density/gradient.wgsl).
+fn slope_along(texel: vec3i, step: vec3i) -> f32 {
+    let near = value(texel + step) - value(texel - step);
+    let far = value(texel + 2 * step) - value(texel - 2 * step);
+    return (8.0 * near - far) / 12.0;
+}
+
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     resample = bound_resample;
@@ -16,11 +23,11 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     let at = vec3i(texel);
-    let differences = vec3f(
-        value(at + vec3i(1, 0, 0)) - value(at - vec3i(1, 0, 0)),
-        value(at + vec3i(0, 1, 0)) - value(at - vec3i(0, 1, 0)),
-        value(at + vec3i(0, 0, 1)) - value(at - vec3i(0, 0, 1)),
+    let slopes = vec3f(
+        slope_along(at, vec3i(1, 0, 0)),
+        slope_along(at, vec3i(0, 1, 0)),
+        slope_along(at, vec3i(0, 0, 1)),
     );
     // Texels of the level are `spacing` voxels apart.
-    textureStore(gradients, texel, vec4f(differences / (2.0 * resample.spacing), 0.0));
+    textureStore(gradients, texel, vec4f(slopes / resample.spacing, 0.0));
 }

@@ -142,7 +142,7 @@ impl Reference<'_> {
         let density = stack.density_at([i, j, middle]);
         // Scene space has the length of the ray in it: one unit of depth is 1 / cos θ long there.
         let along = self.scene.scene_from_index.transform_vector3(frame.direction.at(i, j));
-        let change = shader.gradient(point, frame.stretch_level(depth)).dot(along).abs();
+        let change = shader.prefiltered_gradient(point, frame.stretch_level(depth)).dot(along).abs();
         let change = 0.5 * CURVED * thickness * change;
         let largest = table.largest_extinction(density - change, density + change);
         let share = ray.seen[3] * -(-largest * thickness * frame.obliquity(i, j)).exp_m1();

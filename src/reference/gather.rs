@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::Reference;
-use super::kernel::Profile;
+use super::kernel::{Profile, cubic_b_spline, cubic_b_spline_slope};
 use super::pyramid::MAX_LEVEL;
 use crate::model::{BakedTransfer, Kernel, Quadrature};
 use crate::plan::SheetFrame;
@@ -25,6 +25,27 @@ pub(super) fn density(reference: &Reference<'_>, profile: &Profile, point: DVec3
 /// Σ ρ(v) · w(v) over the 4³ voxels around a point.
 fn with_kernel(reference: &Reference<'_>, profile: &Profile, point: DVec3) -> f64 {
     neighbours(reference, profile, point).map(|(weight, density)| weight * density).sum()
+}
+
+/// ∇ Σ ρ(v) · w(v) with the cubic B-spline, in index space.
+pub(super) fn slope(reference: &Reference<'_>, point: DVec3) -> DVec3 {
+    let cell = point.floor();
+    let distances = (point - cell).to_array().map(|f| [f + 1.0, f, f - 1.0, f - 2.0]);
+    let weights = distances.map(|axis| axis.map(cubic_b_spline));
+    let slopes = distances.map(|axis| axis.map(cubic_b_spline_slope));
+    let [x, y, z] = cell.to_array().map(|c| c as i64 - 1);
+    (0..64)
+        .map(|at| {
+            let place = [at % 4, at / 4 % 4, at / 16];
+            let density = reference.field.at(x + place[0] as i64, y + place[1] as i64, z + place[2] as i64);
+            // Along one axis the slope, along the others the weight.
+            let along = |sloped: usize| -> f64 {
+                let factor = |axis: usize| if axis == sloped { &slopes } else { &weights }[axis][place[axis]];
+                (0..3).map(factor).product()
+            };
+            density * DVec3::new(along(0), along(1), along(2))
+        })
+        .sum()
 }
 
 /// (w(v), ρ(v)) of the 4³ voxels around a point.

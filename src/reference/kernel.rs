@@ -20,6 +20,19 @@ pub fn cubic_b_spline(t: f64) -> f64 {
     }
 }
 
+/// The derivative of [`cubic_b_spline`]: −sign(t) · (2|t| − 3t²/2) up to 1, −sign(t) · (2 − |t|)²/2 up to 2.
+pub(super) fn cubic_b_spline_slope(t: f64) -> f64 {
+    let d = t.abs();
+    let fall = if d >= 2.0 {
+        0.0
+    } else if d >= 1.0 {
+        (2.0 - d).powi(2) / 2.0
+    } else {
+        2.0 * d - 1.5 * d * d
+    };
+    -fall * t.signum()
+}
+
 /// exp(−t²/2σ²): not normalised.
 pub fn gaussian(t: f64, sigma: f64) -> f64 {
     (-t * t / (2.0 * sigma * sigma)).exp()

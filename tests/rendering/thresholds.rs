@@ -113,9 +113,9 @@ pub(crate) const BYTES: Limit = Limit { max: 0.55 / 255.0 + 5e-4, rmse: 0.32 / 2
 /// applied before the look-up instead of behind it (the cut at full light is no straight line).
 pub(crate) const COMBINED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };
 
-/// Mean luminance of previews, exposed as at the beginning of a drag, against whole pictures: above
-/// that a swap is seen.
-pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.03;
+/// Mean luminance of previews, exposed as at the beginning of a drag, against whole pictures: above a hundredth a swap
+/// is seen, and only previews with a quarter of the pixels and of the light's resolution have more, 0.0103.
+pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.011;
 
 /// What a crop box and a plane leave of the sum of opacities, in other orders of sheets than image-aligned:
 /// single footprints are cut by whole voxels, of which faces of 32 voxels' edge have 3 % to either side.

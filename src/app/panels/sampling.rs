@@ -30,8 +30,9 @@ const ORDERS: [(SheetOrder, Named); 3] = [
     (SheetOrder::EveryFootprint, text::sampling::EVERY_FOOTPRINT),
 ];
 
-const GRADIENTS: [(Gradients, Named); 2] = [
+const GRADIENTS: [(Gradients, Named); 3] = [
     (Gradients::Volume, text::sampling::NORMALS_OF_VOLUME),
+    (Gradients::Kernel, text::sampling::NORMALS_OF_KERNEL),
     (Gradients::Sheets, text::sampling::NORMALS_OF_SHEETS),
 ];
 

@@ -24,8 +24,6 @@ pub(crate) struct EyePass {
     uniform: uniforms::Eye,
     /// Cells around a sample's own that it sees.
     dilation: i32,
-    /// Whether normals may come from the texture of gradients.
-    takes_gradients: bool,
     /// What kernels reach of the pyramid.
     levels: Levels,
     variant: GatherVariant,
@@ -79,13 +77,11 @@ impl EyePass {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
         let dilation = if options.empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
-        // Between levels of the pyramid differences and interpolation do not commute exactly.
-        let takes_gradients = stretch_level <= 0.0 || options.preview;
         let levels = Levels::of(stretch_level > 0.0);
         let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
         let variant =
             GatherVariant::of(settings, count, stretch_level > 0.0).with_combined(combined.is_some());
-        Self { frame, uniform, dilation, takes_gradients, levels, variant }
+        Self { frame, uniform, dilation, levels, variant }
     }
 
     /// Slabs of the stack.
@@ -119,10 +115,9 @@ impl EyePass {
         SamplingVariant { has_gradients, ..self.variant.sampling }
     }
 
-    /// The texture of gradients, if there is one and normals may come from it.
+    /// The texture of gradients, if there is one.
     pub(crate) fn gradients<'a>(&self, gpu: Gpu<'a>) -> Option<&'a wgpu::TextureView> {
-        let views = gpu.volume.gradients_views.as_ref().filter(|_| self.takes_gradients);
-        views.map(|views| self.levels.choose(views))
+        gpu.volume.gradients_views.as_ref().map(|views| self.levels.choose(views))
     }
 
     /// Levels of the pyramid that kernels reach.
@@ -180,6 +175,8 @@ pub(crate) struct GatherVariant {
     sampling: SamplingVariant,
     /// Slabs are as thin as they need to be.
     by_need: bool,
+    /// Normals are those of the kernel.
+    kernel_gradients: bool,
     shading: ShadingVariant,
     /// Samples cast rays to lights, which deposit so.
     rays: Option<Deposit>,
@@ -223,6 +220,7 @@ impl GatherVariant {
                 has_gradients: false,
                 near_steps,
             },
+            kernel_gradients: settings.has_kernel_gradients(),
             by_need: settings.has_slabs_by_need(),
             shading: ShadingVariant {
                 lights,
@@ -260,6 +258,7 @@ impl Variant for GatherVariant {
             classification_constant(self.classification),
             flag("STRETCH", self.is_stretched),
             flag("BY_NEED", self.by_need),
+            flag("KERNEL_GRADIENTS", self.kernel_gradients),
         ]);
         constants.extend(self.sampling.constants());
         if let Some(deposit) = self.rays {

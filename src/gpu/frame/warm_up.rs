@@ -65,9 +65,7 @@ impl ShaderLibrary {
                     ..Settings::default()
                 };
                 let eye = GatherVariant::of(&settings, FIRST_LIGHTS, is_stretched);
-                // Of stretched kernels only in previews.
-                let has_gradients = !is_stretched || kernel == Kernel::Prefiltered;
-                self.warm(&eye.with_gradients(has_gradients), stop)?;
+                self.warm(&eye.with_gradients(true), stop)?;
                 self.warm(&BackprojectVariant::of(&self.context, &settings.shadows, is_stretched), stop)?;
                 self.warm(&MarchVariant::of(&settings, is_stretched), stop)?;
             }

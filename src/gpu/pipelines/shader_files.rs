@@ -18,6 +18,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "density/cut.wgsl",
     "density/gradient.wgsl",
     "density/kernel.wgsl",
+    "density/kernel_gradient.wgsl",
     "density/stored_gradient.wgsl",
     "density/table.wgsl",
     "density/volume.wgsl",

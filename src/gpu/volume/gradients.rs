@@ -11,7 +11,7 @@ use crate::gpu::volume::listed_bricks;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 
 /// Most bytes that gradients may take: 512³ voxels need 1.29 GB, with coarser levels. Beyond that, a
-/// volume's gradients are six fetches of the pyramid each.
+/// volume's gradients are twelve fetches of the pyramid each.
 const MAX_BYTES: u64 = 3 << 29;
 
 /// Makes the texture beside a pyramid; `None` where it would take too much memory.

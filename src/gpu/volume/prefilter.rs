@@ -22,7 +22,7 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture) -> Vec<Vec
     let dims = |level: u32| size.map(|n| (n >> level).max(1).div_ceil(8));
     let [nx, ny, nz] = bricks.dims;
     let is_empty = |x: usize, y: usize, z: usize| {
-        // A brick's range looks three voxels beyond it: the blur sees one, a difference one more.
+        // A brick's range looks three voxels beyond it: the blur sees one, a difference two more.
         x >= nx || y >= ny || z >= nz || bricks.ranges[x + nx * (y + ny * z)] == [0.0, 0.0]
     };
     let finest = dims(0);
@@ -36,7 +36,7 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture) -> Vec<Vec
     let mut levels = Vec::new();
     for level in 0..pyramid.mip_level_count() {
         if level > 0 {
-            // Texel i is made of 2i − 1 … 2i + 2, and differences see one texel further.
+            // Texel i is made of 2i − 1 … 2i + 2, and differences see two texels further.
             set = set.dilated(1).coarsened(2, dims(level));
         }
         levels.push(set.positions().map(listed_bricks::packed).collect());

@@ -222,7 +222,7 @@ impl Settings {
         slabs == Slabs::ByNeed
             && !self.scatters()
             && quadrature == Quadrature::One
-            && gradients == Gradients::Volume
+            && gradients != Gradients::Sheets
             && classification == Classification::Post
     }
 
@@ -256,6 +256,13 @@ impl Settings {
     /// Whether normals come from sheets.
     pub fn has_sheet_gradients(&self) -> bool {
         self.sampling.gradients == Gradients::Sheets
+    }
+
+    /// Whether normals are those of what the kernel reconstructs: not where voxels are splatted and no density is
+    /// sampled, and only of the B-spline, whose slope is continuous.
+    pub fn has_kernel_gradients(&self) -> bool {
+        let Sampling { gradients, kernel, .. } = self.sampling;
+        gradients == Gradients::Kernel && kernel == Kernel::BSpline && !self.scatters()
     }
 
     /// Whether voxels are composited one by one, and never summed in sheets.

@@ -1,6 +1,6 @@
 //! How truly light is computed, in one word that stands for several settings.
 
-use crate::model::{Kernel, NearField, ReverseKernel, Settings, ShadowAlgorithm, Slabs};
+use crate::model::{Gradients, Kernel, NearField, ReverseKernel, Settings, ShadowAlgorithm, Slabs};
 
 /// A level of quality. Settings hold what it stands for, and not the word: a level can be chosen and then refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +26,7 @@ struct Level {
     shadow_slab: f64,
     /// Of the light pass or of the rays.
     shadow_kernel: Kernel,
+    gradients: Gradients,
 }
 
 impl Quality {
@@ -41,13 +42,16 @@ impl Quality {
             shadow_slab: 1.0,
             // What it blurs more than the B-spline is less than a light volume does, and a sixth of the fetches.
             shadow_kernel: Kernel::Prefiltered,
+            gradients: Gradients::Volume,
         };
         match self {
             Self::Fast => splat(NearField::Off, Slabs::Even, 0.5),
             // Even slabs as thick show on steep surfaces as wood grain.
             Self::Standard => splat(NearField::Short, Slabs::ByNeed, 1.0),
             // Thinner slabs come no nearer to the limit.
-            Self::Fine => splat(NearField::Long, Slabs::ByNeed, 1.0),
+            Self::Fine => {
+                Level { gradients: Gradients::Kernel, ..splat(NearField::Long, Slabs::ByNeed, 1.0) }
+            }
             Self::Exact => Level {
                 algorithm: ShadowAlgorithm::Direct,
                 near_field: NearField::Short,
@@ -55,14 +59,17 @@ impl Quality {
                 slabs: Slabs::Even,
                 shadow_slab: 0.25,
                 shadow_kernel: Kernel::BSpline,
+                gradients: Gradients::Kernel,
             },
         }
     }
 
     /// Sets all that the level stands for. Shadows that are off stay off.
     pub fn apply(self, settings: &mut Settings) {
-        let Level { algorithm, near_field, slab, slabs, shadow_slab, shadow_kernel } = self.level();
+        let Level { algorithm, near_field, slab, slabs, shadow_slab, shadow_kernel, gradients } =
+            self.level();
         (settings.sampling.slab, settings.sampling.slabs) = (slab, slabs);
+        settings.sampling.gradients = gradients;
         let shadows = &mut settings.shadows;
         (shadows.slab, shadows.kernel) = (shadow_slab, shadow_kernel);
         shadows.near_field = near_field;

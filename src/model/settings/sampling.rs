@@ -44,8 +44,10 @@ impl Quadrature {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gradients {
-    /// Differences of the reconstructed volume around the sample.
+    /// Differences of the prefiltered volume around the sample: what the B-spline's slope would be, nearly.
     Volume,
+    /// The slope of what the B-spline reconstructs, exactly; with other kernels, and scattered, as [`Self::Volume`].
+    Kernel,
     /// Differences between neighbouring sheets and their pixels (the paper's reference 16).
     Sheets,
 }

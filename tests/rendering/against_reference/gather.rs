@@ -259,6 +259,16 @@ fn gradients_from_neighbouring_sheets() {
     check("gradients from sheets, near", DVec3::ONE, &settings);
 }
 
+/// Gradients of the kernel itself, and of one that is stretched by less than, and more than, a voxel.
+#[test]
+fn gradients_of_the_kernel() {
+    let mut settings = scenes::look();
+    settings.sampling.gradients = Gradients::Kernel;
+    check("gradients of the kernel", DVec3::new(1.0, 1.2, 1.7), &settings);
+    settings.camera.distance = 7.0;
+    check("gradients of the kernel, far", DVec3::ONE, &settings);
+}
+
 /// A byte per voxel: 256 steps, which filtering smooths.
 #[test]
 fn light_volumes_of_bytes() {

@@ -177,6 +177,23 @@ sided_mutation!(
     "vec4f(0.0, f.z, 1.0 - f.z, 0.0)"
 );
 
+#[test]
+fn damaged_gradients_are_noticed() {
+    let mut settings = scenes::look();
+    let damages = [
+        // Plain central differences.
+        (Gradients::Volume, "volume/gradients.wgsl", "(8.0 * near - far) / 12.0", "0.5 * near"),
+        (Gradients::Kernel, "eye/gather.wgsl", "g * (2.0 - 1.5 * g)", "g * (2.0 - 1.4 * g)"),
+        (Gradients::Kernel, "eye/gather.wgsl", "weighed(cell, wx, wy, kernel_slopes(f.z))", "0.0"),
+    ];
+    for (gradients, shader, from, to) in damages {
+        settings.sampling.gradients = gradients;
+        in_shader(shader, from);
+        assert!(!disagree_in(&settings, 40, "\u{0}", "", Fault::None));
+        assert!(disagree_in(&settings, 40, from, to, Fault::None), "the comparison does not notice {to:?}");
+    }
+}
+
 /// Slabs that are as thin as they need to be.
 fn look_by_need() -> Settings {
     let mut settings = look();

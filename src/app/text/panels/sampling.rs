@@ -51,5 +51,7 @@ pub(crate) const EVERY_FOOTPRINT: Named =
 pub(crate) const NORMALS: Named = named("Normals", "Where the surface's direction comes from");
 pub(crate) const NORMALS_OF_VOLUME: Named =
     named("Volume", "Differences around the sample: the same from every side");
+pub(crate) const NORMALS_OF_KERNEL: Named =
+    named("Kernel", "The slope of the reconstruction itself: the sharpest relief, and slower");
 pub(crate) const NORMALS_OF_SHEETS: Named =
     named("Sheets", "Differences between neighbouring sheets and pixels: as splatting has them");

@@ -1,0 +1,45 @@
+// Normals from the volume: the slope of the kernel itself, or what is stored of it.
+#import "density/stored_gradient.wgsl"
+
+// Take gradients from the kernel.
+override KERNEL_GRADIENTS: bool = false;
+
+// Derivatives of the cubic B-spline's weights by f (kernel.wgsl); their sum is 0.
+fn kernel_slopes(f: f32) -> vec4f {
+    let g = 1.0 - f;
+    return vec4f(-0.5 * g * g, f * (1.5 * f - 2.0), g * (2.0 - 1.5 * g), 0.5 * f * f);
+}
+
+// The gradient, in index space, of what the B-spline reconstructs.
+fn gradient_by_kernel(p: vec3f) -> vec3f {
+    let cell = floor(p);
+    let f = p - cell;
+    let wx = kernel_weights(f.x);
+    let wy = kernel_weights(f.y);
+    let wz = kernel_weights(f.z);
+    return vec3f(
+        weighed(cell, kernel_slopes(f.x), wy, wz),
+        weighed(cell, wx, kernel_slopes(f.y), wz),
+        weighed(cell, wx, wy, kernel_slopes(f.z)),
+    );
+}
+
+// The same with the kernel stretched to pyramid level `level`, as densities are.
+fn stretched_gradient(p: vec3f, level: f32) -> vec3f {
+    if (!STRETCH) {
+        return gradient_by_kernel(p);
+    }
+    let blurred = volume_slope(p, max(level, 1.0));
+    if (level >= 1.0) {
+        return blurred;
+    }
+    return mix(gradient_by_kernel(p), blurred, level);
+}
+
+// The gradient of the volume in index space.
+fn slope_at(p: vec3f, level: f32) -> vec3f {
+    if (KERNEL_GRADIENTS) {
+        return stretched_gradient(p, level);
+    }
+    return volume_slope(p, level);
+}
