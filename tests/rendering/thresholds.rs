@@ -208,3 +208,8 @@ pub(crate) const LOOKED_UP_BELOW_A_FACE: f64 = 0.03;
 pub(crate) const TRACED_EXACT: f64 = 0.007;
 /// The default's: light volumes are a voxel coarse, and so is what is left of their blur behind rays nearby.
 pub(crate) const TRACED_STANDARD: f64 = 0.04;
+
+/// Two limits whose slabs differ by a factor of two, in steps of 8 bits: no more than rounding to them hides.
+pub(crate) const LIMITS_AGREE: f64 = 0.1;
+/// *Exact* against the limit, likewise: its slabs are a quarter of a voxel, and its numbers have 16 and 32 bits.
+pub(crate) const EXACT_OF_LIMIT: f64 = 0.3;

@@ -11,6 +11,7 @@ use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
 mod gather;
+mod limit;
 mod mutations;
 mod scatter;
 

@@ -1,0 +1,63 @@
+//! The truest level of quality beside the limit: rays from every sample in f64, through slabs so thin that thinner
+//! ones change nothing, with the slope of the kernel for normals.
+
+use chiaroscuro::data::synthetic::builtin;
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{LightKind, Quality, Settings, Slabs, auto};
+use chiaroscuro::reference::{Options, Reference};
+
+use crate::common::{Dataset, context, render};
+use crate::scenes;
+use crate::thresholds::{EXACT_OF_LIMIT, LIMITS_AGREE};
+
+/// Pixels are narrower than voxels, so that no kernel is stretched.
+const SIZE: [u32; 2] = [64, 64];
+
+/// The limit, with slabs of `1 / parts` voxel.
+fn limit(loaded: &Dataset, settings: &Settings, parts: f64) -> Vec<[f64; 4]> {
+    let mut settings = settings.clone();
+    Quality::Exact.apply(&mut settings);
+    settings.sampling.slabs = Slabs::Even;
+    settings.sampling.slab = 1.0 / parts;
+    settings.shadows.slab = 1.0 / parts;
+    Reference::new(loaded.volume(), &settings, Options::default()).picture(SIZE, &[None])
+}
+
+/// Root mean square over the object of what is seen before black, in steps of 8 bits.
+fn distance(found: &[[f64; 4]], limit: &[[f64; 4]]) -> f64 {
+    let steps = |c: f64| {
+        let c = c.clamp(0.0, 1.0);
+        255.0 * if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+    };
+    let object: Vec<_> = found.iter().zip(limit).filter(|(_, limit)| limit[3] > 0.5).collect();
+    assert!(object.len() > 200, "the object is seen");
+    let squares = |(a, b): &(&[f64; 4], &[f64; 4])| -> f64 {
+        (0..3).map(|channel| (steps(a[channel]) - steps(b[channel])).powi(2)).sum()
+    };
+    (object.iter().map(squares).sum::<f64>() / (3 * object.len()) as f64).sqrt()
+}
+
+/// At a resolution at which details are a voxel wide, and light volumes far from the limit.
+#[test]
+fn exact_is_the_limit() {
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    for name in ["chair", "cloud"] {
+        let loaded = Dataset::new(builtin(name, Some(24)).expect("a built-in volume"));
+        let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
+        settings.lights = vec![scenes::light(LightKind::Parallel, [-2.2, -1.2, 1.6])];
+        let (thin, thinner) = (limit(&loaded, &settings, 8.0), limit(&loaded, &settings, 16.0));
+        let between = distance(&thin, &thinner);
+        let [fast, standard, fine, exact] = Quality::ALL.map(|quality| {
+            quality.apply(&mut settings);
+            let found = render(&mut renderer, &loaded, &settings, SIZE).light;
+            let found: Vec<_> = found.into_iter().map(|texel| texel.map(f64::from)).collect();
+            distance(&found, &thinner)
+        });
+        println!(
+            "{name}: limits {between:.3} apart, {fast:.2} fast, {standard:.2} standard, {fine:.2} fine, {exact:.3} exact"
+        );
+        assert!(between <= LIMITS_AGREE, "{name}: {between}");
+        assert!(exact <= EXACT_OF_LIMIT, "{name}: {exact}");
+        assert!(fast > standard && standard > 2.0 * EXACT_OF_LIMIT, "{name}: the measure tells levels apart");
+    }
+}
