@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use super::CliError;
+use super::outputs::print_line;
 use super::scene::{SceneArgs, parse_size};
-use super::{CliError, print_line};
-use crate::export::export_png;
+use crate::export::{check_ending, check_writable, export_png};
 use crate::gpu::{Distance, Picture, RenderOptions, Renderer};
 use crate::model::Variant;
 
@@ -37,6 +38,9 @@ pub(super) struct CompareArgs {
 
 /// Renders the looks, writes them in one row and says how far each is from the first.
 pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
+    args.scene.keep_apart(&[&args.output])?;
+    check_ending(&args.output, &["png"], "looks side by side are written as .png")?;
+    check_writable(&args.output)?;
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
@@ -49,12 +53,12 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         let picture = renderer.render(&loaded, &settings, args.size, &options)?;
         let first = pictures.first().unwrap_or(&picture);
         let Distance { rmse, largest } = Distance::between(&first.shown, &picture.shown);
-        print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"));
+        print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"))?;
         pictures.push(picture);
     }
     let row = row_of(&pictures);
     export_png(row.size, &row.shown, true, None, &args.output)?;
-    print_line(&format!("{}", args.output.display()));
+    print_line(&format!("{}", args.output.display()))?;
     Ok(())
 }
 

@@ -56,6 +56,9 @@ pub enum CliError {
     /// The result could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// What is told could not be written.
+    #[error("could not write to standard output: {0}; room where it goes helps")]
+    Output(std::io::Error),
     /// The window could not be opened.
     #[error("{0}; `chiaroscuro render FILE -o OUT.png` needs no window")]
     Window(String),
@@ -75,7 +78,7 @@ impl CliError {
             },
             Self::Gpu(GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. }) => 5,
             Self::Gpu(_) | Self::Window(_) => 4,
-            Self::Read { .. } | Self::Export(_) | Self::Picture(_) => 6,
+            Self::Read { .. } | Self::Export(_) | Self::Picture(_) | Self::Output(_) => 6,
         }
     }
 }

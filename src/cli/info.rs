@@ -3,8 +3,9 @@
 use clap::Args;
 use serde_json::json;
 
+use super::CliError;
+use super::outputs::print_line;
 use super::scene::LoadArgs;
-use super::{CliError, print_line};
 use crate::data::load::LoadControl;
 use crate::data::{Dataset, ValueRange, open};
 
@@ -47,19 +48,19 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "gpu_bytes_with_one_light": gpu_bytes,
     });
     if args.json {
-        print_line(&format!("{facts:#}"));
+        print_line(&format!("{facts:#}"))?;
         return Ok(());
     }
     let [nx, ny, nz] = volume.dims();
-    print_line(volume.name());
-    print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()));
-    print_line(&format!("  spacing      {} × {} × {} mm", spacing.x, spacing.y, spacing.z));
-    print_line(&format!("  values       {low} … {high}"));
+    print_line(volume.name())?;
+    print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
+    print_line(&format!("  spacing      {} × {} × {} mm", spacing.x, spacing.y, spacing.z))?;
+    print_line(&format!("  values       {low} … {high}"))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
-    print_line(&format!("  percentiles  {}", listed.join(", ")));
+    print_line(&format!("  percentiles  {}", listed.join(", ")))?;
     if volume.non_finite_voxels() > 0 {
-        print_line(&format!("  not finite   {} voxels", volume.non_finite_voxels()));
+        print_line(&format!("  not finite   {} voxels", volume.non_finite_voxels()))?;
     }
-    print_line(&format!("  memory       {} MiB on the GPU with one light", gpu_bytes >> 20));
+    print_line(&format!("  memory       {} MiB on the GPU with one light", gpu_bytes >> 20))?;
     Ok(())
 }

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::CliError;
+use super::outputs::print_line;
 use super::scene::SceneArgs;
-use super::{CliError, print_line};
-use crate::export::write_atomically;
+use crate::export::{check_ending, write_atomically};
 use crate::gpu::{RenderOptions, Renderer, export_slice, light_volume_nrrd};
 use crate::model::LightStorage;
 use crate::plan::Request;
@@ -50,6 +51,7 @@ fn parse_slice(text: &str) -> Result<Slice, String> {
 
 /// Fills and writes one attenuation volume.
 pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
+    args.scene.keep_apart(&[&args.output])?;
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
@@ -68,7 +70,14 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
         ))
     })?;
     match args.slice {
-        None => write_atomically(&args.output, &light_volume_nrrd(loaded.volume(), &attenuation))?,
+        None => {
+            check_ending(
+                &args.output,
+                &["nrrd"],
+                "light volumes are written as .nrrd, their slices as .png",
+            )?;
+            write_atomically(&args.output, &light_volume_nrrd(loaded.volume(), &attenuation))?;
+        }
         Some(Slice { axis, index }) => {
             let slice = attenuation.slice(axis, index).ok_or_else(|| {
                 CliError::Usage(format!(
@@ -79,6 +88,6 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
             export_slice(&slice, &args.output)?;
         }
     }
-    print_line(&format!("{}", args.output.display()));
+    print_line(&format!("{}", args.output.display()))?;
     Ok(())
 }

@@ -8,17 +8,18 @@ mod error;
 mod image_args;
 mod info;
 mod light_volume;
+mod outputs;
 mod render;
 mod replay;
 mod scene;
 mod turntable;
 
-use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
 pub use error::CliError;
+use outputs::warn_line;
 use scene::LoadArgs;
 
 /// See the shape of volume data, with true volumetric shadows.
@@ -92,19 +93,8 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     match result {
         Ok(()) => 0,
         Err(err) => {
-            // Nothing can be done when standard error is closed.
-            writeln!(std::io::stderr(), "error: {err}").ok();
+            warn_line(&format!("error: {err}"));
             err.exit_code()
         }
     }
-}
-
-/// Prints a line to standard output; a closed pipe (`| head`) is no error.
-fn print_line(text: &str) {
-    writeln!(std::io::stdout(), "{text}").ok();
-}
-
-/// Prints a line to standard error.
-fn warn_line(text: &str) {
-    writeln!(std::io::stderr(), "{text}").ok();
 }

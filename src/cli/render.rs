@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
+use super::CliError;
 use super::image_args::ImageArgs;
+use super::outputs::{print_line, warn_line};
 use super::scene::SceneArgs;
-use super::{CliError, print_line, warn_line};
 use crate::export::{check_picture, check_writable, write_atomically, write_picture};
 use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
 use crate::model::{PictureRecord, Record, VolumeRecord};
@@ -37,6 +38,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             warn_line(text);
         }
     };
+    let written: Vec<_> = std::iter::once(&args.output).chain(&args.report).map(PathBuf::as_path).collect();
+    args.scene.keep_apart(&written)?;
     say("loading the volume");
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
@@ -46,7 +49,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     say("rendering");
     let shot = args.shot.spec(&args.output);
     check_picture(&args.output, &shot)?;
-    for path in std::iter::once(&args.output).chain(&args.report) {
+    for path in written {
         check_writable(path)?;
     }
     let mut report = None;
@@ -98,7 +101,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if let Some((path, report)) = args.report.as_ref().zip(report) {
         write_atomically(path, format!("{report:#}\n").as_bytes())?;
     }
-    print_line(&format!("{}", args.output.display()));
+    print_line(&format!("{}", args.output.display()))?;
     Ok(())
 }
 

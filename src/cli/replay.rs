@@ -1,13 +1,14 @@
 //! `chiaroscuro replay`: makes a picture again from what it carries, and compares.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::CliError;
+use super::outputs::{keep_apart, print_line, warn_line};
 use super::scene::LoadArgs;
-use super::{CliError, print_line, warn_line};
 use crate::data::Dataset;
-use crate::export::{Rows, check_picture, read_picture, read_record, write_picture};
+use crate::export::{Rows, check_picture, picture_size, read_picture, read_record, write_picture};
 use crate::gpu::{Distance, Renderer};
 use crate::model::{PresetError, Record, Settings};
 
@@ -41,6 +42,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let stated = record.volume.as_ref();
     let source = args.volume.clone().or_else(|| stated.map(|of| of.source_from(args.picture.parent())));
     let source = source.ok_or_else(|| unusable("it does not say of which volume".to_owned()))?;
+    if let Some(output) = &args.output {
+        keep_apart(&[&args.picture, Path::new(&source)], &[output])?;
+    }
     let (volume, context) = args.load.open(&source)?;
     if stated.is_some_and(|of| !of.is_of(volume.content_id())) {
         return Err(unusable(format!("{source} is another volume than the one that it shows")));
@@ -57,10 +61,12 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         warn_line(&format!("made by version {}, again by {}", how.version, env!("CARGO_PKG_VERSION")));
     }
     let shot = how.shot.within_limits();
-    let (size, before) = read_picture(&args.picture)?;
+    // Before any of it is decoded.
+    let size = picture_size(&args.picture)?;
     if size != shot.size {
         return Err(unusable(format!("it is {size:?} pixels and not {:?}", shot.size)));
     }
+    let (_, before) = read_picture(&args.picture)?;
     if let Some(output) = &args.output {
         check_picture(output, &shot)?;
     }
@@ -72,7 +78,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         write_picture::<CliError>(output, &shot, Some(&text), &mut || Ok(rows.take()))?;
     }
     if again == before {
-        print_line("identical");
+        print_line("identical")?;
         return Ok(());
     }
     let Distance { rmse, largest } = match (&before, &again) {
@@ -84,6 +90,6 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if args.check {
         return Err(CliError::Differs(words));
     }
-    print_line(&words);
+    print_line(&words)?;
     Ok(())
 }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde_json::Value;
 
-use super::{CliError, warn_line};
+use super::CliError;
+use super::outputs::{keep_apart, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
@@ -218,6 +219,13 @@ impl SceneArgs {
     /// What is to be loaded.
     pub(super) fn source(&self) -> &str {
         &self.file
+    }
+
+    /// Refuses to write over what is read, or twice over one file.
+    pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
+        let LookArgs { preset, session, .. } = &self.look;
+        let inputs = [Some(Path::new(&self.file)), preset.as_deref().map(Path::new), session.as_deref()];
+        keep_apart(&inputs.into_iter().flatten().collect::<Vec<_>>(), outputs)
     }
 
     /// Finds the look.

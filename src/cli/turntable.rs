@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::CliError;
+use super::outputs::{print_line, warn_line};
 use super::scene::{SceneArgs, parse_size};
-use super::{CliError, print_line, warn_line};
 use crate::export::{Animation, AnimationFormat, AnimationSpec};
 use crate::gpu::{RenderOptions, Renderer};
 use crate::model::{ImageSpec, PictureRecord, Record, VolumeRecord};
@@ -40,6 +41,7 @@ pub(super) struct TurntableArgs {
 
 /// Renders one turn.
 pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
+    args.scene.keep_apart(&[&args.output])?;
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
@@ -69,6 +71,6 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
         }
     }
     file.finish()?;
-    print_line(&format!("{}", args.output.display()));
+    print_line(&format!("{}", args.output.display()))?;
     Ok(())
 }

@@ -1,6 +1,8 @@
 //! EXR: linear, premultiplied light in 16-bit floats, for programs that grade and composite.
 
-use std::io::{BufReader, BufWriter};
+use std::cell::RefCell;
+use std::fs::File;
+use std::io::{BufRead as _, BufReader, BufWriter, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::Path;
 
 use exr::block::writer::ChunksWriter as _;
@@ -10,6 +12,7 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::Compression;
 
+use super::png_file::sizes_of_ours;
 use super::rows::RECORD;
 use super::whole_file::{open_regular, place, temporary_beside};
 use super::{ExportError, ReadPictureError, Rows};
@@ -20,6 +23,12 @@ const CHANNELS: [(&str, usize); 4] = [("A", 3), ("B", 2), ("G", 1), ("R", 0)];
 
 /// Bytes of a piece of the record: ffmpeg 5 and what is made with it cannot open files with longer texts.
 const LONGEST: usize = 255;
+
+/// A number that all EXR files begin with, and the version of the format.
+const BEFORE_ATTRIBUTES: u64 = 8;
+
+/// Most times that the format's compressions make a file smaller: deflate by 1032, and what they do before it by two.
+const MOST_COMPRESSED: u64 = 2064;
 
 /// Writes a picture in blocks of sixteen rows, as the format's lossless compression has them.
 pub(super) fn write<E: From<ExportError>>(
@@ -67,7 +76,33 @@ pub(super) fn write<E: From<ExportError>>(
         (Some(err), _) => return Err(err),
         (None, written) => written.map_err(ExportError::Exr)?,
     }
+    sort_attributes(file.as_file()).map_err(ExportError::writing(path))?;
     Ok(place(file, path)?)
+}
+
+/// Puts the attributes of a file's header into the order of their names: the library writes those of ours in another
+/// order each time, and the same picture is to have the same bytes. All together they stay as long as they were.
+fn sort_attributes(mut file: &File) -> std::io::Result<()> {
+    file.seek(SeekFrom::Start(BEFORE_ATTRIBUTES))?;
+    let mut header = BufReader::new(file);
+    let mut attributes = Vec::new();
+    loop {
+        // Name, kind, length, and as many bytes; an empty name ends the header.
+        let mut attribute = Vec::new();
+        if header.read_until(0, &mut attribute)? <= 1 {
+            break;
+        }
+        header.read_until(0, &mut attribute)?;
+        let mut length = [0; 4];
+        header.read_exact(&mut length)?;
+        attribute.extend(length);
+        let length = u64::from(u32::from_le_bytes(length));
+        header.by_ref().take(length).read_to_end(&mut attribute)?;
+        attributes.push(attribute);
+    }
+    attributes.sort_unstable();
+    file.seek(SeekFrom::Start(BEFORE_ATTRIBUTES))?;
+    file.write_all(&attributes.concat())
 }
 
 /// The name of a piece of the record.
@@ -118,25 +153,68 @@ struct Pixels {
     values: Vec<f32>,
 }
 
+/// Columns and rows of an EXR file.
+pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
+    let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
+    let file = open_regular(path)?;
+    let bytes = file.metadata().map_err(|err| failed(&err))?.len();
+    let meta = MetaData::read_from_buffered(BufReader::new(file), false).map_err(|err| failed(&err))?;
+    let size = meta.headers.first().map(|header| header.layer_size).ok_or_else(|| failed(&"it is empty"))?;
+    let edge = |edge: usize| u32::try_from(edge).unwrap_or(u32::MAX);
+    let size = sizes_of_ours(path, [edge(size.width()), edge(size.height())])?;
+    // A pixel has two bytes at least.
+    let least = 2 * u64::from(size[0]) * u64::from(size[1]) / MOST_COMPRESSED;
+    if least > bytes {
+        return Err(failed(&format!("{bytes} bytes are less than {} × {} pixels have", size[0], size[1])));
+    }
+    Ok(size)
+}
+
 /// All of an EXR file.
 pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
+    let [width, height] = size(path)?.map(|edge| edge as usize);
+    let mut room = Vec::new();
+    let no_room = |err| ReadPictureError::new(path, &format!("there is no memory for it: {err}"));
+    room.try_reserve_exact(4 * width * height).map_err(no_room)?;
+    room.resize(4 * width * height, 0.0);
+    let room = RefCell::new(room);
     let image = exr::prelude::read_first_rgba_layer_from_file(
         path,
-        |size, _| Pixels { width: size.width(), values: vec![0.0; 4 * size.area()] },
+        // Of the first layer with colours, which need not be the first.
+        move |size, _| Pixels {
+            width: size.width(),
+            values: if size.area() == width * height { room.take() } else { Vec::new() },
+        },
         |Pixels { width, values }, at, (r, g, b, a): (f32, f32, f32, f32)| {
             let first = 4 * (at.y() * *width + at.x());
-            values[first..first + 4].copy_from_slice(&[r, g, b, a]);
+            if let Some(pixel) = values.get_mut(first..first + 4) {
+                pixel.copy_from_slice(&[r, g, b, a]);
+            }
         },
     );
     let layer = image.map_err(|err| ReadPictureError::new(path, &err))?.layer_data;
-    let size = [layer.size.width() as u32, layer.size.height() as u32];
-    Ok((size, Rows::Floats(layer.channel_data.pixels.values)))
+    if [layer.size.width(), layer.size.height()] != [width, height] {
+        return Err(ReadPictureError::new(path, &"its layers differ in size"));
+    }
+    Ok(([width as u32, height as u32], Rows::Floats(layer.channel_data.pixels.values)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::model::Depth;
+
+    /// A file whose header claims another size.
+    fn claiming(file: &[u8], size: [i32; 2]) -> Vec<u8> {
+        let mut file = file.to_vec();
+        for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
+            let at = file.windows(name.len()).position(|bytes| bytes == name).unwrap() + name.len() + 4 + 8;
+            for (axis, edge) in size.into_iter().enumerate() {
+                file[at + 4 * axis..][..4].copy_from_slice(&(edge - 1).to_le_bytes());
+            }
+        }
+        file
+    }
 
     #[test]
     fn light_and_record_come_back() {
@@ -147,6 +225,7 @@ mod tests {
         let value = |i: usize| (i % 64) as f32 / 16.0;
         let pixels: Vec<f32> = (0..4 * width * height).map(value).collect();
         let mut bands: Vec<_> = pixels.chunks(4 * width * 10).map(<[f32]>::to_vec).rev().collect();
+        let mut again = Some(Rows::Floats(pixels.clone()));
         let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new([width as u32, height as u32]) };
         let record = format!("{{\"name\": \"Größe, 体積 🫁\", \"long\": \"{}\"}}", "x".repeat(700));
         let record = record.as_str();
@@ -158,6 +237,15 @@ mod tests {
             [text.as_str(), record].map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap());
         assert_eq!(found, written);
         assert_eq!(read(&path).unwrap(), ([3, 37], Rows::Floats(pixels)));
+        // The same once more has the same bytes.
+        let before = std::fs::read(&path).unwrap();
+        let mut next = || Ok::<_, ExportError>(again.take());
+        super::super::write_picture(&path, &shot, Some(record), &mut next).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), before);
+        // A header alone claims a thousand times what its bytes can hold.
+        std::fs::write(&path, claiming(&before, [16_384, 16_384])).unwrap();
+        let refused = read(&path).unwrap_err().to_string();
+        assert!(refused.contains("bytes are less than"), "{refused}");
         std::fs::write(&path, b"no picture").unwrap();
         assert!(read_record(&path).is_err() && read(&path).is_err());
     }

@@ -13,7 +13,9 @@ mod whole_file;
 
 pub use animation::{Animation, AnimationFormat, AnimationSpec};
 pub use error::{ExportError, ReadPictureError};
-pub use picture_file::{PictureFormat, check_picture, read_picture, read_record, write_picture};
+pub use picture_file::{
+    PictureFormat, check_picture, picture_size, read_picture, read_record, write_picture,
+};
 pub use png_file::{encode_png, export_png};
 pub use rows::Rows;
-pub use whole_file::{check_writable, write_atomically};
+pub use whole_file::{check_ending, check_writable, write_atomically};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{ExportError, ReadPictureError, Rows, exr_file, png_file};
+use super::{ExportError, ReadPictureError, Rows, check_ending, exr_file, png_file};
 use crate::model::{Depth, ImageSpec};
 
 /// Kinds of picture files.
@@ -57,21 +57,13 @@ pub fn write_picture<E: From<ExportError>>(
     }
 }
 
-/// Endings of pictures and videos that are no name for a PNG file.
-const OTHERS: [&str; 13] =
-    ["apng", "avif", "avi", "bmp", "gif", "jpeg", "jpg", "mkv", "mov", "mp4", "tif", "tiff", "webp"];
-
 /// Says before anything is drawn whether a picture cannot be written under a name.
 ///
 /// # Errors
 /// When the name stands for another kind of file, or that kind does not fit the depth.
 pub fn check_picture(path: &Path, shot: &ImageSpec) -> Result<(), ExportError> {
-    let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase).unwrap_or_default();
+    check_ending(path, &["png", "exr"], "pictures are written as .png or .exr, and the name says as which")?;
     let format = PictureFormat::of_path(path);
-    if OTHERS.iter().any(|other| ending == *other) {
-        let what = "pictures are written as .png or .exr";
-        return Err(ExportError::Unfit { what, path: path.to_owned() });
-    }
     if format.depth(shot.depth) != shot.depth {
         let what = match format {
             PictureFormat::Png => "PNG files hold 8 or 16 bits; EXR files hold linear light",
@@ -80,6 +72,17 @@ pub fn check_picture(path: &Path, shot: &ImageSpec) -> Result<(), ExportError> {
         return Err(ExportError::Unfit { what, path: path.to_owned() });
     }
     Ok(())
+}
+
+/// A picture's columns and rows: what its header says, and nothing is decoded.
+///
+/// # Errors
+/// When the file cannot be read, is no picture, or claims more pixels than any that this program makes.
+pub fn picture_size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
+    match PictureFormat::of_path(path) {
+        PictureFormat::Png => png_file::size(path),
+        PictureFormat::Exr => exr_file::size(path),
+    }
 }
 
 /// A picture's columns and rows, and all its rows: bytes of 8-bit PNG, else floats.
@@ -120,7 +123,9 @@ mod tests {
             ("a.EXR", Depth::Linear, true),
             ("a.gif", Depth::Eight, false),
             ("a.JPG", Depth::Eight, false),
-            ("v1.5", Depth::Eight, true),
+            ("v1.5", Depth::Eight, false),
+            ("a.nrrd", Depth::Eight, false),
+            ("a", Depth::Eight, false),
         ] {
             shot.depth = depth;
             let mut rows = match depth {

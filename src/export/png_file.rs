@@ -4,7 +4,7 @@ use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
 use super::rows::{RECORD, word};
-use super::whole_file::{open_regular, place, temporary_beside, write_atomically};
+use super::whole_file::{check_ending, open_regular, place, temporary_beside, write_atomically};
 use super::{ExportError, ReadPictureError, Rows};
 use crate::model::{Depth, ImageSpec, MAX_EDGE};
 
@@ -23,6 +23,7 @@ pub fn export_png(
     record: Option<&str>,
     path: &Path,
 ) -> Result<(), ExportError> {
+    check_ending(path, &["png"], "pictures of this kind are written as .png")?;
     let bytes = if transparent {
         encode_png(size, png::ColorType::Rgba, shown, record)?
     } else {
@@ -98,19 +99,33 @@ fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
     texels.flat_map(|texel| texel[..kept].iter().flat_map(|&value| word(value).to_be_bytes())).collect()
 }
 
+/// Reads a PNG file.
+fn reader(path: &Path) -> Result<image::ImageReader<BufReader<std::fs::File>>, ReadPictureError> {
+    Ok(image::ImageReader::with_format(BufReader::new(open_regular(path)?), image::ImageFormat::Png))
+}
+
+/// Columns and rows of a PNG file.
+pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
+    let size = reader(path)?.into_dimensions().map_err(|err| ReadPictureError::new(path, &err))?;
+    sizes_of_ours(path, size.into())
+}
+
+/// Columns and rows, unless they are more than those of any picture of this program.
+pub(super) fn sizes_of_ours(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPictureError> {
+    let [width, height] = size;
+    if size.iter().all(|edge| (1..=MAX_EDGE).contains(edge)) {
+        return Ok(size);
+    }
+    let why = format!("it has {width} × {height} pixels, which none of this program has");
+    Err(ReadPictureError::new(path, &why))
+}
+
 /// All of a PNG file.
 pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
-    let reader = || {
-        let file = open_regular(path)?;
-        Ok(image::ImageReader::with_format(BufReader::new(file), image::ImageFormat::Png))
-    };
-    let (width, height) = reader()?.into_dimensions().map_err(|err| failed(&err))?;
-    let size = [width, height];
-    if size.iter().any(|&edge| edge > MAX_EDGE) {
-        return Err(failed(&format!("it has {width} × {height} pixels, which none of this program has")));
-    }
-    let mut reader = reader()?;
+    let size = size(path)?;
+    let [width, height] = size;
+    let mut reader = reader(path)?;
     // As much as our own largest pictures need, twice: not what the file makes of its text or colours.
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(16 * u64::from(width) * u64::from(height) + (1 << 20));

@@ -1,18 +1,33 @@
-//! Files that are written whole or not at all.
+//! Files that are written whole or not at all, and never in place of what is no file.
 
-use std::io::Write as _;
-use std::path::Path;
+use std::fs::FileType;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
 
 use super::{ExportError, ReadPictureError};
 
 /// Writes a file whole or not at all: to a temporary file beside it, which then takes its name.
 ///
 /// # Errors
-/// When the folder cannot be written to or the disk is full; an older file of that name stays.
+/// When the folder cannot be written to or the disk is full; an older file of that name stays. When what has that name
+/// may not be replaced: a folder, a device, a pipe, a socket, or a file that may only be read.
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), ExportError> {
     let mut file = temporary_beside(path)?;
     file.write_all(contents).map_err(ExportError::writing(path))?;
     place(file, path)
+}
+
+/// Whether a name says that a file is of one of some kinds, by its ending; what is written under another would be taken
+/// for something else, and might replace it.
+///
+/// # Errors
+/// With `what` where it does not: which kinds there are.
+pub fn check_ending(path: &Path, endings: &[&str], what: &'static str) -> Result<(), ExportError> {
+    let is_one = |found: &std::ffi::OsStr| endings.iter().any(|ending| found.eq_ignore_ascii_case(ending));
+    if path.extension().is_some_and(is_one) {
+        return Ok(());
+    }
+    Err(ExportError::Unfit { what, path: path.to_owned() })
 }
 
 /// Whether something can be written under a name: said before the work that is to be written.
@@ -23,18 +38,63 @@ pub fn check_writable(path: &Path) -> Result<(), ExportError> {
     temporary_beside(path).map(drop)
 }
 
+/// Where what is written under a name ends up: the name, or what a link of that name points to.
+///
+/// # Errors
+/// When something has that name that may not be replaced.
+fn place_of(path: &Path) -> Result<PathBuf, ExportError> {
+    let unfit = |what| Err(ExportError::Unfit { what, path: path.to_owned() });
+    let link = match std::fs::symlink_metadata(path) {
+        Ok(found) if found.is_symlink() => std::fs::read_link(path).map_err(ExportError::writing(path))?,
+        Ok(found) => return may_be_replaced(&found).map_or_else(unfit, |()| Ok(path.to_owned())),
+        // What is wrong with the folder shows when a file is made in it.
+        Err(_) => return Ok(path.to_owned()),
+    };
+    // A link says where from the folder that it is in.
+    let target = path.parent().unwrap_or(Path::new("")).join(link);
+    match std::fs::symlink_metadata(&target) {
+        Ok(found) if found.is_symlink() => unfit("it is a link to a link; the name of the file itself helps"),
+        Ok(found) => may_be_replaced(&found).map_or_else(unfit, |()| Ok(target)),
+        Err(err) if err.kind() == ErrorKind::NotFound => Ok(target),
+        Err(err) => Err(ExportError::writing(path)(err)),
+    }
+}
+
+/// Whether a new file may take the place of something; else what speaks against it.
+fn may_be_replaced(found: &std::fs::Metadata) -> Result<(), &'static str> {
+    let kind: FileType = found.file_type();
+    if kind.is_dir() {
+        return Err("there is a folder of that name");
+    }
+    if !kind.is_file() {
+        return Err("it is a device, a pipe or a socket; the name of a file helps");
+    }
+    if found.permissions().readonly() {
+        return Err("the file of that name may only be read; another name, or leave to write it, helps");
+    }
+    Ok(())
+}
+
+/// The folder in which a file is.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// A file for what will take a name when it is complete.
 pub(super) fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, ExportError> {
-    if path.is_dir() {
-        // Known before anything has been made, and not when it is to take its name.
-        return Err(ExportError::Unfit { what: "there is a folder of that name", path: path.to_owned() });
+    // Known before anything has been made, and not when it is to take its name.
+    let place = place_of(path)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".chiaroscuro-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        // As files are made that are no temporary ones: the user's mask takes away what it takes away.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     // The temporary file's own name means nothing to the user: keep the kind of error alone.
-    tempfile::Builder::new()
-        .prefix(".chiaroscuro-")
-        .suffix(".part")
-        .tempfile_in(folder)
+    builder
+        .tempfile_in(folder_of(&place))
         .map_err(|err| ExportError::Write { path: path.to_owned(), source: err.kind().into() })
 }
 
@@ -50,16 +110,19 @@ pub(super) fn open_regular(path: &Path) -> Result<std::fs::File, ReadPictureErro
 /// Gives a complete file its name.
 pub(super) fn place(file: tempfile::NamedTempFile, path: &Path) -> Result<(), ExportError> {
     let failed = ExportError::writing(path);
+    let place = place_of(path)?;
     // Otherwise a crash just after the rename could leave an empty file under the old name.
     file.as_file().sync_all().map_err(&failed)?;
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // Temporary files are private; an ordinary file is readable by everyone.
-        let mode = std::fs::metadata(path).map_or(0o644, |old| old.permissions().mode());
-        file.as_file().set_permissions(std::fs::Permissions::from_mode(mode)).map_err(&failed)?;
+    if let Ok(old) = std::fs::metadata(&place) {
+        // Shares of other systems have no such thing, and hold files all the same.
+        file.as_file()
+            .set_permissions(old.permissions())
+            .inspect_err(|err| log::warn!("{}: who may read it could not be kept: {err}", place.display()))
+            .ok();
     }
-    file.persist(path).map_err(|err| failed(err.error))?;
+    file.persist(&place).map_err(|err| failed(err.error))?;
+    // The new name is on the disk when the folder is. Some systems cannot say so, and it is there all the same.
+    std::fs::File::open(folder_of(&place)).and_then(|folder| folder.sync_all()).ok();
     Ok(())
 }
 
@@ -79,5 +142,48 @@ mod tests {
         check_writable(&path).unwrap();
         assert!(write_atomically(folder.path(), b"x").unwrap_err().to_string().contains("folder"));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn only_files_are_replaced() {
+        use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let _socket = std::os::unix::net::UnixListener::bind(path("socket")).unwrap();
+        std::os::unix::fs::symlink("socket", path("to socket")).unwrap();
+        std::fs::write(path("kept.txt"), b"kept").unwrap();
+        std::fs::set_permissions(path("kept.txt"), std::fs::Permissions::from_mode(0o444)).unwrap();
+        std::os::unix::fs::symlink("to socket", path("to link")).unwrap();
+        for name in ["socket", "to socket", "to link", "kept.txt"] {
+            assert!(check_writable(&path(name)).is_err(), "{name}");
+            let refused = write_atomically(&path(name), b"x").unwrap_err();
+            assert!(matches!(refused, ExportError::Unfit { .. }), "{name}: {refused}");
+        }
+        assert!(std::fs::symlink_metadata(path("socket")).unwrap().file_type().is_socket());
+        assert_eq!(std::fs::read(path("kept.txt")).unwrap(), b"kept");
+        // The real thing, as it is on every system, and nothing is tried that could replace it.
+        assert!(place_of(Path::new("/dev/null")).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_stay_links_and_modes_stay_modes() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::create_dir(path("sub")).unwrap();
+        std::os::unix::fs::symlink("sub/file", path("link")).unwrap();
+        for contents in [b"new", b"old"] {
+            write_atomically(&path("link"), contents).unwrap();
+            assert!(std::fs::symlink_metadata(path("link")).unwrap().is_symlink());
+            assert_eq!(std::fs::read(path("sub/file")).unwrap(), contents);
+        }
+        let mode = |name: &str| std::fs::metadata(path(name)).unwrap().permissions().mode() & 0o777;
+        std::fs::File::create(path("plain")).unwrap();
+        assert_eq!(mode("sub/file"), mode("plain"), "as the user's mask has new files");
+        std::fs::set_permissions(path("plain"), std::fs::Permissions::from_mode(0o640)).unwrap();
+        write_atomically(&path("plain"), b"x").unwrap();
+        assert_eq!(mode("plain"), 0o640);
     }
 }

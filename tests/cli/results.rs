@@ -51,6 +51,70 @@ fn a_report_that_cannot_be_written_fails_the_command() {
     assert_eq!(folder.names(), Vec::<String>::new(), "a failed command writes nothing");
 }
 
+#[test]
+fn what_is_read_is_never_replaced() {
+    let folder = Folder::new();
+    folder.succeed("light-volume builtin:sphere:16 -o v.nrrd");
+    folder.succeed("render builtin:sphere:16 --size 16x16 -o s.png --report s.json");
+    let names = ["v.nrrd", "s.png", "s.json"];
+    let before = names.map(|name| folder.read(name));
+    for (args, code) in [
+        ("light-volume v.nrrd -o ./v.nrrd", 2),
+        ("render v.nrrd -o v.nrrd", 2),
+        ("render builtin:sphere:16 --session s.png -o s.png", 2),
+        ("render builtin:sphere:16 --preset s.json -o a.png --report ./s.json", 2),
+        ("render builtin:sphere:16 -o a.png --report a.png", 2),
+        ("turntable builtin:sphere:16 --session s.png -o s.png --frames 2 --size 16x16", 2),
+        ("replay s.png -o s.png", 2),
+        // Nor do pictures get names of other things.
+        ("render builtin:sphere:16 --size 16x16 -o v.nrrd", 6),
+        ("render builtin:sphere:16 --size 16x16 -o s.json", 6),
+        ("compare builtin:sphere:16 --size 16x16 -o v.nrrd", 6),
+        ("light-volume builtin:sphere:16 -o s.json", 6),
+        ("light-volume builtin:sphere:16 --slice z:3 -o v.nrrd", 6),
+    ] {
+        let said = folder.fail(args, code);
+        assert!(said.contains("help") || said.contains("are written as"), "`{args}`: {said}");
+        assert_eq!(names.map(|name| folder.read(name)), before, "`{args}` changed a file");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn only_files_are_replaced() {
+    use std::os::unix::fs::FileTypeExt as _;
+    let folder = Folder::new();
+    let _socket = std::os::unix::net::UnixListener::bind(folder.path("x.png")).expect("a socket");
+    std::os::unix::fs::symlink("x.png", folder.path("link.png")).expect("a link");
+    for name in ["x.png", "link.png"] {
+        let said = folder.fail(&format!("render builtin:sphere:16 --size 16x16 -o {name}"), 6);
+        assert!(said.contains("socket") && said.contains(name), "{said}");
+    }
+    let kind = fs::metadata(folder.path("x.png")).expect("it is there").file_type();
+    assert!(kind.is_socket(), "it is what it was");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_an_error() {
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("the device that is always full");
+    let status = std::process::Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
+        .args(["info", "builtin:sphere:16", "--json"])
+        .stdout(full)
+        .status()
+        .expect("the program can be started");
+    assert_eq!(status.code(), Some(6));
+}
+
+#[test]
+fn names_from_files_cannot_talk_to_the_terminal() {
+    let folder = Folder::new();
+    folder.write("e.json", "{\"\\u001b]0;taken\\u0007\": 1, \"shadows\": {\"\\u001b[2J\": 2}}");
+    let outcome = folder.run("render builtin:sphere:16 --size 16x16 -o out.png --session e.json");
+    assert!(outcome.stderr.contains("taken"), "what is unknown is named: {outcome:?}");
+    assert!(!outcome.stderr.contains('\u{1b}') && !outcome.stderr.contains('\u{7}'), "{outcome:?}");
+}
+
 /// On other systems the drivers cannot be hidden from a program.
 #[cfg(target_os = "linux")]
 #[test]

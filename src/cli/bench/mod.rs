@@ -17,8 +17,9 @@ mod report;
 
 use report::{Samples, round};
 
+use super::CliError;
+use super::outputs::print_line;
 use super::scene::{LookArgs, parse_size};
-use super::{CliError, print_line};
 use crate::data::Dataset;
 use crate::gpu::{Context, RenderOptions, Renderer};
 use crate::model::{Kernel, NearField, Resolution, Settings, ShadowAlgorithm};
@@ -127,9 +128,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         "ratios": ratios,
     });
     if args.json {
-        print_line(&result.to_string());
+        print_line(&result.to_string())?;
     } else {
-        print_table(&result);
+        print_table(&result)?;
     }
     Ok(())
 }
@@ -252,12 +253,12 @@ fn is_full_quality(settings: &Settings) -> bool {
         && shadows.resolution == Resolution::Full
 }
 
-fn print_table(result: &Value) {
+fn print_table(result: &Value) -> Result<(), CliError> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])));
+    print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])))?;
     print_line(
         "case                        volume         wall ms    cpu ms    eye    march  back-project     rays",
-    );
+    )?;
     for case in result["cases"].as_array().into_iter().flatten() {
         let number = |value: &Value| value.as_f64().map_or("–".to_owned(), |ms| format!("{ms:.1}"));
         print_line(&format!(
@@ -270,13 +271,14 @@ fn print_table(result: &Value) {
             number(&case["stages"]["light_march"]),
             number(&case["stages"]["light_backproject"]),
             number(&case["stages"]["light_raycast"]),
-        ));
+        ))?;
     }
     let memory = |case: &&Value| case["name"] == "memory";
     for case in result["cases"].as_array().into_iter().flatten().filter(memory) {
-        print_line(&format!("memory of {}: {} bytes per voxel", case["volume"], case["bytes_per_voxel"]));
+        print_line(&format!("memory of {}: {} bytes per voxel", case["volume"], case["bytes_per_voxel"]))?;
     }
     for (name, ratio) in result["ratios"].as_object().into_iter().flatten() {
-        print_line(&format!("{name:<40} {ratio}"));
+        print_line(&format!("{name:<40} {ratio}"))?;
     }
+    Ok(())
 }

@@ -150,6 +150,11 @@ pub(in crate::data) fn plain(text: &str, longest: usize) -> String {
     short
 }
 
+/// Text that may hold words from outside, for a terminal: control characters other than the ends of lines become `·`.
+pub fn without_controls(text: &str) -> String {
+    text.chars().map(|c| if c != '\n' && is_odd(c) { '·' } else { c }).collect()
+}
+
 /// Whether a character could disturb a terminal or turn the direction of a line.
 fn is_odd(c: char) -> bool {
     c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

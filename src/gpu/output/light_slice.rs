@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::data::Volume;
-use crate::export::{ExportError, encode_png, write_atomically};
+use crate::export::{ExportError, check_ending, encode_png, write_atomically};
 use crate::gpu::resources::readback::Attenuation;
 use crate::math::false_color;
 
@@ -45,9 +45,10 @@ impl LightSlice {
 /// Writes a slice as PNG, in false colours.
 ///
 /// # Errors
-/// As [`write_atomically`].
+/// When the name is not one of a PNG file, else as [`write_atomically`].
 pub fn export_slice(slice: &LightSlice, path: &Path) -> Result<(), ExportError> {
     let png = encode_png(slice.size.map(|n| n as u32), png::ColorType::Rgb, &slice.colors(), None)?;
+    check_ending(path, &["png"], "slices of light volumes are written as .png")?;
     write_atomically(path, &png)
 }
 
