@@ -1,6 +1,5 @@
 //! Files that are written whole or not at all, and never in place of what is no file.
 
-use std::fs::FileType;
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -62,7 +61,7 @@ fn place_of(path: &Path) -> Result<PathBuf, ExportError> {
 
 /// Whether a new file may take the place of something; else what speaks against it.
 fn may_be_replaced(found: &std::fs::Metadata) -> Result<(), &'static str> {
-    let kind: FileType = found.file_type();
+    let kind = found.file_type();
     if kind.is_dir() {
         return Err("there is a folder of that name");
     }

@@ -24,39 +24,35 @@ pub(super) fn density(reference: &Reference<'_>, profile: &Profile, point: DVec3
 
 /// Σ ρ(v) · w(v) over the 4³ voxels around a point.
 fn with_kernel(reference: &Reference<'_>, profile: &Profile, point: DVec3) -> f64 {
-    neighbours(reference, profile, point).map(|(weight, density)| weight * density).sum()
+    weighed(reference, point, weights(profile, point))
 }
 
-/// ∇ Σ ρ(v) · w(v) with the cubic B-spline, in index space.
+/// ∇ Σ ρ(v) · w(v) with the cubic B-spline, in index space: along one axis the slope, along the others the weight.
 pub(super) fn slope(reference: &Reference<'_>, point: DVec3) -> DVec3 {
-    let cell = point.floor();
-    let distances = (point - cell).to_array().map(|f| [f + 1.0, f, f - 1.0, f - 2.0]);
-    let weights = distances.map(|axis| axis.map(cubic_b_spline));
-    let slopes = distances.map(|axis| axis.map(cubic_b_spline_slope));
-    let [x, y, z] = cell.to_array().map(|c| c as i64 - 1);
-    (0..64)
-        .map(|at| {
-            let place = [at % 4, at / 4 % 4, at / 16];
-            let density = reference.field.at(x + place[0] as i64, y + place[1] as i64, z + place[2] as i64);
-            // Along one axis the slope, along the others the weight.
-            let along = |sloped: usize| -> f64 {
-                let factor = |axis: usize| if axis == sloped { &slopes } else { &weights }[axis][place[axis]];
-                (0..3).map(factor).product()
-            };
-            density * DVec3::new(along(0), along(1), along(2))
-        })
-        .sum()
+    let distances = point.fract_gl().to_array().map(|f| [f + 1.0, f, f - 1.0, f - 2.0]);
+    let [wx, wy, wz] = distances.map(|axis| axis.map(cubic_b_spline));
+    let [sx, sy, sz] = distances.map(|axis| axis.map(cubic_b_spline_slope));
+    let along = |of| weighed(reference, point, of);
+    DVec3::new(along([sx, wy, wz]), along([wx, sy, wz]), along([wx, wy, sz]))
+}
+
+/// The weights along each axis of the voxels around a point.
+fn weights(profile: &Profile, point: DVec3) -> [[f64; 4]; 3] {
+    point.fract_gl().to_array().map(|fraction| profile.four_weights(fraction))
+}
+
+/// Σ ρ(v) · w(v) with these weights along each axis.
+fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f64 {
+    neighbours(reference, point, weights).map(|(weight, density)| weight * density).sum()
 }
 
 /// (w(v), ρ(v)) of the 4³ voxels around a point.
 fn neighbours(
     reference: &Reference<'_>,
-    profile: &Profile,
     point: DVec3,
+    [wx, wy, wz]: [[f64; 4]; 3],
 ) -> impl Iterator<Item = (f64, f64)> {
-    let cell = point.floor();
-    let [wx, wy, wz] = (point - cell).to_array().map(|fraction| profile.four_weights(fraction));
-    let [x, y, z] = cell.to_array().map(|c| c as i64 - 1);
+    let [x, y, z] = point.floor().to_array().map(|c| c as i64 - 1);
     (0..64).map(move |at| {
         let [dx, dy, dz] = [at % 4, at / 4 % 4, at / 16];
         let density = reference.field.at(x + dx as i64, y + dy as i64, z + dz as i64);
@@ -79,7 +75,7 @@ pub(super) fn material(
         return blurred(level);
     }
     let mut narrow = [0.0; 4];
-    for (weight, density) in neighbours(reference, profile, point) {
+    for (weight, density) in neighbours(reference, point, weights(profile, point)) {
         let voxel = associated(table.sample(density));
         for (sum, value) in narrow.iter_mut().zip(voxel) {
             *sum += weight * value;
