@@ -5,6 +5,7 @@
 //! measurement of the brightness. Panels see settings and read-only facts.
 
 mod common;
+mod memory;
 mod panels;
 mod shell;
 mod text;
@@ -15,7 +16,7 @@ mod worker;
 
 pub use self::shell::start::{Adjustment, AppError, Options, run, storage_folder, wgpu_setup};
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use eframe::egui;
@@ -26,12 +27,13 @@ use self::windows::files;
 
 use self::common::commands::Command;
 use self::common::volume_facts::VolumeFacts;
+use self::memory::Memory;
 use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
-use self::shell::memory::Memory;
 use self::shell::messages::Messages;
 use self::shell::opening::PendingLook;
 use self::shell::picture::PictureInputs;
+use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
 use self::transfer_editor::TransferEditor;
 use self::viewport::canvas::Canvas;
@@ -48,7 +50,9 @@ use self::windows::files::Files;
 use self::windows::help::Help;
 use self::windows::light_slice::LightSlice;
 use self::windows::palette::Palette;
+use self::windows::quit::Quit;
 use self::windows::raw_dialog::RawDialog;
+use self::windows::recovery::Recovery;
 use self::windows::slices::Slices;
 use self::worker::loader::Loader;
 use self::worker::task::{self, Work};
@@ -78,7 +82,9 @@ pub struct App {
     keep_balanced: KeepBalanced,
     export: Export,
     files: Files,
-    session: Option<PathBuf>,
+    session: Option<Session>,
+    recovery: Recovery,
+    quit: Quit,
     /// The session has not been laid over the first look yet.
     session_is_due: bool,
     adjust: Option<Adjustment>,
@@ -137,7 +143,8 @@ impl App {
         let Options { source, load, session, adjust, storage } = options;
         let source = source.or_else(|| opening::volume_of_session(session.as_deref()?));
         let pipelines = storage.as_deref().map(Path::to_owned);
-        let memory = Memory::new(storage);
+        let memory = Memory::new(storage.as_deref(), &cc.egui_ctx);
+        let recovery = Recovery::of(memory.earlier(), &cc.egui_ctx);
         let hints = Hints { on: memory.is_first() };
         let mut app = Self {
             settings: Settings::default(),
@@ -154,7 +161,9 @@ impl App {
             export: Export::default(),
             files: Files::default(),
             session_is_due: session.is_some(),
-            session,
+            session: session.map(Session::named),
+            recovery,
+            quit: Quit::default(),
             adjust,
             history: History::default(),
             handles: LightHandles::default(),
@@ -261,7 +270,7 @@ impl App {
                 shown,
                 recent: self.memory.recent(),
                 keeps_look: self.keeps_look,
-                can_go_on: self.memory.before().is_some(),
+                earlier: self.memory.earlier(),
                 frame_ms: &mut self.viewport.frame_ms,
                 commands,
             },
@@ -323,6 +332,8 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.collect(ctx);
+        // Also when nothing is drawn.
+        self.keep_look();
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
@@ -341,13 +352,11 @@ impl eframe::App for App {
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
         self.history.observe(&ctx, &self.settings);
-        if self.memory.is_due() {
-            self.keep_look();
-        }
         for command in commands {
             self.execute(command, frame, &ctx);
         }
         self.keep_balanced(&ctx);
+        self.keep_look();
         let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
         if ui_ms > LONG_FRAME_MS {
             log::debug!("the window's thread was busy for {ui_ms:.0} ms");

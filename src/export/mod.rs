@@ -18,4 +18,4 @@ pub use picture_file::{
 };
 pub use png_file::{encode_png, export_png};
 pub use rows::Rows;
-pub use whole_file::{check_ending, check_writable, write_atomically};
+pub use whole_file::{check_ending, check_writable, keep_backup, write_atomically};

@@ -16,6 +16,35 @@ pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), ExportError>
     place(file, path)
 }
 
+/// Keeps the file of a name, if there is one, also under that name with `.bak` behind it, where an older one goes: to
+/// be called before it is written again.
+///
+/// # Errors
+/// When it is no file that may be replaced, or the folder cannot be written to; then nothing has changed.
+pub fn keep_backup(path: &Path) -> Result<(), ExportError> {
+    let failed = ExportError::writing(path);
+    let place = place_of(path)?;
+    if !place.exists() {
+        return Ok(());
+    }
+    // A second name of the same file costs nothing, whatever its size; not all file systems have such.
+    let second =
+        |name: &Path| std::fs::hard_link(&place, name).or_else(|_| std::fs::copy(&place, name).map(drop));
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".bak");
+    let backup = path.with_file_name(name);
+    place_of(&backup)?;
+    let kept = named_temporary().make_in(folder_of(&backup), second).map_err(&failed)?;
+    kept.into_temp_path().persist(&backup).map_err(|err| failed(err.error))
+}
+
+/// How temporary files are called.
+fn named_temporary() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".chiaroscuro-").suffix(".part");
+    builder
+}
+
 /// Whether a name says that a file is of one of some kinds, by its ending; what is written under another would be taken
 /// for something else, and might replace it.
 ///
@@ -83,8 +112,8 @@ fn folder_of(path: &Path) -> &Path {
 pub(super) fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, ExportError> {
     // Known before anything has been made, and not when it is to take its name.
     let place = place_of(path)?;
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".chiaroscuro-").suffix(".part");
+    #[cfg_attr(not(unix), expect(unused_mut, reason = "modes are there on Unix alone"))]
+    let mut builder = named_temporary();
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -141,6 +170,21 @@ mod tests {
         check_writable(&path).unwrap();
         assert!(write_atomically(folder.path(), b"x").unwrap_err().to_string().contains("folder"));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
+    }
+
+    #[test]
+    fn what_was_there_stays_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        keep_backup(&path).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "there was nothing");
+        for (at, contents) in [b"1", b"2", b"3"].into_iter().enumerate() {
+            keep_backup(&path).unwrap();
+            write_atomically(&path, contents).unwrap();
+            assert_eq!(std::fs::read(folder.path().join("a.json.bak")).is_ok(), at > 0);
+        }
+        assert_eq!(std::fs::read(folder.path().join("a.json.bak")).unwrap(), b"2");
+        assert!(keep_backup(folder.path()).is_err(), "a folder is no file");
     }
 
     #[cfg(unix)]

@@ -10,6 +10,7 @@ mod lights;
 mod names;
 mod opening;
 mod panels;
+mod sessions;
 mod snapshots;
 mod thresholds;
 mod views;

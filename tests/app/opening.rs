@@ -9,7 +9,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{
-    Dropped, PATIENCE, SCENE, bare_window, click, drag, wait_until, wait_until_idle, window, window_with,
+    Dropped, PATIENCE, SCENE, bare_window, click, drag, kept_look, wait_until, wait_until_idle, window,
+    window_with,
 };
 
 #[test]
@@ -154,22 +155,11 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     harness.run_steps(20);
     assert!(harness.query_by_label("Close the hints").is_none(), "gone with the first drag");
     wait_until_idle(&mut harness);
-    // The look is kept some seconds after it was kept last.
-    let kept = folder.path().join("now.json");
-    let begin = Instant::now();
+    // No further frame is drawn: the look is kept all the same.
     let wanted = harness.state().settings().clone();
-    while !std::fs::read_to_string(&kept).is_ok_and(|text| {
-        let read = chiaroscuro::model::Record::read(&text).expect("a record");
-        read.apply(&wanted, chiaroscuro::data::ValueRange::UNIT).expect("settings").0 == wanted
-            && text.contains("builtin:chair")
-            && read
-                .apply(&chiaroscuro::model::Settings::default(), chiaroscuro::data::ValueRange::UNIT)
-                .expect("settings")
-                .0
-                == wanted
-    }) {
+    let begin = Instant::now();
+    while kept_look(folder.path()).as_ref() != Some(&wanted) {
         assert!(begin.elapsed() < PATIENCE, "the look was not kept");
-        harness.step();
         std::thread::sleep(Duration::from_millis(20));
     }
     drop(harness);

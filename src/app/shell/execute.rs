@@ -13,7 +13,7 @@ use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;
 use crate::app::windows::files::{self, Purpose};
-use crate::app::windows::{export, light_slice};
+use crate::app::windows::{export, light_slice, recovery};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
@@ -28,12 +28,12 @@ impl App {
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
             Command::Open(source) => self.open(&source, ctx),
             Command::Average(reduce) => self.average(reduce, ctx),
-            Command::GoOn => match self.memory.before().map(Path::to_owned) {
+            Command::GoOn => match self.memory.before() {
                 Some(path) => self.open_record(&path, ctx),
                 None => self.messages.note(text::messages::NOTHING_TO_GO_ON_WITH),
             },
             Command::CancelOpening => self.loader.cancel(),
-            Command::SaveSettings => match self.session.clone() {
+            Command::SaveSettings => match self.session_to_save() {
                 Some(path) => self.save_settings(&path),
                 None => self.files.ask(Purpose::SaveSettings, frame, ctx),
             },
@@ -197,6 +197,16 @@ impl App {
         ctx: &egui::Context,
         commands: &mut Vec<Command>,
     ) {
+        match self.recovery.ui(ctx) {
+            None => {}
+            Some(answer) => {
+                self.memory.settle();
+                if let recovery::Answer::GoOn(look) = answer {
+                    self.open_record(&look, ctx);
+                }
+            }
+        }
+        self.quit.ui(ctx, self.export.is_busy());
         if self.contact_sheet.is_due
             && let Some(subject) = self.subject()
             && let Err(err) = self.contact_sheet.start(subject, ctx)
@@ -343,19 +353,20 @@ impl App {
         }
     }
 
-    /// The renderer gave up on something. When the device is gone, the settings are made safe.
+    /// The renderer gave up on something. When the device is gone, the look is made safe.
     pub(crate) fn rendering_failed(&mut self, err: &GpuError) {
         if !self.viewport.is_lost() {
             self.messages.error(text::messages::NOT_RENDERED, err.to_string());
             return;
         }
-        let path =
-            self.session.clone().unwrap_or_else(|| std::env::temp_dir().join("chiaroscuro-rescued.json"));
-        let rescue = match files::save_settings(&path, &self.settings, self.volume_record()) {
-            Ok(()) => text::messages::rescued(&path),
-            Err(failure) => text::messages::not_rescued(&failure),
+        let rescue = match self.memory.last_words() {
+            Some(last_words) => {
+                last_words.write();
+                text::messages::RESCUED
+            }
+            None => text::messages::NOT_RESCUED,
         };
-        let details = text::messages::lost_and_rescued(&err.to_string(), &rescue);
+        let details = text::messages::lost_and_rescued(&err.to_string(), rescue);
         self.messages.error(text::messages::DEVICE_LOST, details);
     }
 }

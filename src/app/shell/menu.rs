@@ -4,7 +4,9 @@ use eframe::egui::{self, Button, ThemePreference};
 
 use crate::app::common::commands::{Command, VIEW_SLOTS};
 use crate::app::common::theme;
+use crate::app::memory::EarlierRun;
 use crate::app::text;
+use crate::app::windows::recovery;
 use crate::data::synthetic;
 use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
 
@@ -24,8 +26,8 @@ pub(crate) struct Menu<'a> {
     pub recent: &'a [String],
     /// Whether the next volume is shown as this one.
     pub keeps_look: bool,
-    /// Whether there is a look of the run before.
-    pub can_go_on: bool,
+    /// Runs that have ended, the latest first.
+    pub earlier: &'a [EarlierRun],
     /// Milliseconds that a frame may take while something moves.
     pub frame_ms: &'a mut Option<f64>,
     /// What the user asks for.
@@ -92,7 +94,16 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             }
         });
     });
-    item(ui, menu, Command::GoOn, menu.can_go_on);
+    item(ui, menu, Command::GoOn, !menu.earlier.is_empty());
+    ui.add_enabled_ui(!menu.earlier.is_empty(), |ui| {
+        ui.menu_button(text::menu::EARLIER_LOOKS, |ui| {
+            for run in menu.earlier {
+                if ui.button(recovery::name(run)).on_hover_text(&run.source).clicked() {
+                    menu.commands.push(Command::Open(run.look.display().to_string()));
+                }
+            }
+        });
+    });
     ui.menu_button(text::commands::OPEN_BUILT_IN, |ui| {
         for name in synthetic::NAMES {
             if ui.button(name).clicked() {

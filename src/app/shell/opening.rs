@@ -1,19 +1,20 @@
 //! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui;
 
 use super::history::History;
 use super::keep_balanced::KeepBalanced;
+use super::session::Session;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
 use crate::app::{App, text};
 use crate::data::ValueRange;
-use crate::model::{Length, Record, Settings, VolumeRecord};
+use crate::model::{Length, Record, Settings};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -116,7 +117,10 @@ impl App {
                 return self.pending = Some(PendingLook::Record(record));
             }
             None if open.is_none() => DEFAULT_SOURCE.to_owned(),
-            _ => return self.apply_record(&record, self.value_range()),
+            _ => {
+                self.apply_record(&record, self.value_range());
+                return;
+            }
         };
         if self.start_loading(&source, Reading::default(), ctx) {
             self.pending = Some(PendingLook::Record(record));
@@ -151,15 +155,20 @@ impl App {
         Ok(settings)
     }
 
-    fn apply_record(&mut self, record: &Record, range: ValueRange) {
+    /// Lays a record over the settings; whether that could be done.
+    fn apply_record(&mut self, record: &Record, range: ValueRange) -> bool {
         match self.with_record(record, range) {
             Ok(settings) => {
                 self.settings = settings;
                 if record.names_balance() {
                     self.keep_balanced.accept(&self.settings);
                 }
+                true
             }
-            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+            Err(err) => {
+                self.messages.error(text::opening::SETTINGS_NOT_LOADED, err);
+                false
+            }
         }
     }
 
@@ -169,19 +178,42 @@ impl App {
         Some((&self.volume.as_ref()?.source, dataset.volume().content_id()))
     }
 
+    /// Where Ctrl+S writes, if it may; else why not is said.
+    pub(crate) fn session_to_save(&mut self) -> Option<PathBuf> {
+        let session = self.session.as_ref()?;
+        let Some((path, why)) = session.protection() else { return Some(session.path().to_owned()) };
+        self.messages.note(text::memory::protected(path, why));
+        None
+    }
+
     pub(crate) fn save_settings(&mut self, path: &Path) {
-        match files::save_settings(path, &self.settings, self.volume_record()) {
+        let volume = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
+        let volume = self.volume.as_ref().map(|volume| volume.source.as_str()).zip(volume);
+        match Session::save(&mut self.session, path, &self.settings, volume) {
             Ok(()) => self.messages.note(text::opening::saved(path)),
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
         }
     }
 
-    /// Keeps the look, so that the next run can go on with it.
+    /// Something was found before there was a window to say it.
+    pub(crate) fn remember_to_say(&mut self, found: Option<String>) {
+        if let Some(notice) = found {
+            self.memory.add_notice(notice);
+        }
+    }
+
+    /// Keeps the look as it is now, so that nothing is lost however this run ends; and says what could not be kept.
     pub(crate) fn keep_look(&mut self) {
-        if let Some((source, content_id)) = self.volume_record() {
-            let volume = VolumeRecord::new(source, content_id, None);
-            let text = Record::text(&self.settings, Some(&volume), None);
-            self.memory.keep(text);
+        let open = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
+        if let Some((volume, content_id)) = self.volume.as_ref().zip(open) {
+            self.memory.keep(&self.settings, &volume.source, content_id);
+            if let Some(picture) = self.viewport.take_finished() {
+                self.memory.show(picture);
+            }
+            // Not before there is a volume, which clears what was said.
+            for notice in self.memory.take_notices() {
+                self.messages.error(text::memory::NOT_ALL_KEPT, notice);
+            }
         }
     }
 
@@ -208,12 +240,16 @@ impl App {
         let range = volume.value_range();
         // Session and command line speak of the first volume.
         if std::mem::take(&mut self.session_is_due)
-            && let Some(path) = self.session.clone().filter(|path| path.exists())
+            && let Some(mut session) = self.session.take_if(|session| session.path().exists())
         {
-            match files::load_record(&path) {
-                Ok(record) => self.apply_record(&record, range),
+            let found = files::load_record(session.path());
+            session.found(found.as_ref());
+            match found {
+                Ok(record) if !self.apply_record(&record, range) => session.not_understood(),
+                Ok(_) => {}
                 Err(err) => self.messages.error(text::opening::SESSION_NOT_LOADED, err),
             }
+            self.session = Some(session);
         }
         self.memory.opened(&source);
         match self.pending.take() {

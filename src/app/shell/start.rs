@@ -6,6 +6,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use super::icon;
+use crate::app::memory::{check_window_state, write_last_words};
 use crate::app::{App, text};
 use crate::data::load::LoadOptions;
 use crate::gpu::{GpuError, device_descriptor};
@@ -82,6 +83,17 @@ pub fn run(options: Options) -> Result<(), AppError> {
         eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup().into(), ..Default::default() };
     // Without dithering the picture reaches the screen byte for byte.
     let native = eframe::NativeOptions { viewport, wgpu_options, dithering: false, ..Default::default() };
-    eframe::run_native(text::opening::PROGRAM, native, Box::new(|cc| Ok(Box::new(App::new(cc, options)?))))?;
+    let damaged = options.storage.as_deref().and_then(check_window_state);
+    let default = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |what| {
+        write_last_words();
+        default(what);
+    }));
+    let start = |cc: &eframe::CreationContext<'_>| {
+        let mut app = App::new(cc, options)?;
+        app.remember_to_say(damaged);
+        Ok(Box::new(app) as Box<dyn eframe::App>)
+    };
+    eframe::run_native(text::opening::PROGRAM, native, Box::new(start))?;
     Ok(())
 }

@@ -17,6 +17,7 @@ pub(super) mod overlay;
 pub(super) mod paint_callback;
 pub(super) mod view_projection;
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
@@ -93,6 +94,8 @@ pub(super) struct Viewport {
     /// The request that could not be rendered; the render thread does not try it again.
     failed: Option<FrameRequest>,
     lost: bool,
+    /// The last picture at full quality that nobody has taken yet.
+    finished: Option<Arc<ColorImage>>,
 }
 
 impl Viewport {
@@ -118,6 +121,7 @@ impl Viewport {
             shown: None,
             failed: None,
             lost: false,
+            finished: None,
         })
     }
 
@@ -165,6 +169,11 @@ impl Viewport {
             fading,
             other: other.map(|((right, difference), distance)| Other { right, difference, distance }),
         }
+    }
+
+    /// The last picture at full quality of one look, once.
+    pub(super) fn take_finished(&mut self) -> Option<Arc<ColorImage>> {
+        self.finished.take()
     }
 
     /// How long the user has waited for pictures of this volume.
@@ -245,6 +254,7 @@ impl Viewport {
             ctx.request_repaint();
         }
         self.place(0, &image, exact);
+        self.finished = (quality == QualityLevel::FULL && other.is_none()).then(|| Arc::new(image));
         match other {
             Some((right, difference)) => {
                 self.differs = Some(difference.distance);

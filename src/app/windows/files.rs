@@ -10,7 +10,7 @@ use crate::app::text::files::Question;
 use crate::app::worker::task::Work;
 use crate::data::{ValueRange, read_small};
 use crate::export::PictureFormat;
-use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, VolumeRecord, export, import};
+use crate::model::{EXPORTED, IMPORTED, Record, TransferFunction, export, import};
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -181,15 +181,10 @@ pub(crate) fn dropped(ctx: &egui::Context) -> Option<PathBuf> {
     ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()))
 }
 
-/// Writes settings, and of what volume they are: whole or not at all.
-pub(crate) fn save_settings(
-    path: &Path,
-    settings: &Settings,
-    volume: Option<(&str, u64)>,
-) -> Result<(), String> {
-    let volume = volume.map(|(source, content_id)| VolumeRecord::new(source, content_id, path.parent()));
-    let text = Record::text(settings, volume.as_ref(), None);
-    crate::export::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
+/// Writes a file whole or not at all; what was there stays beside it, as `.bak`.
+pub(crate) fn write_with_backup(path: &Path, contents: &[u8]) -> Result<(), String> {
+    crate::export::keep_backup(path).map_err(|err| err.to_string())?;
+    crate::export::write_atomically(path, contents).map_err(|err| err.to_string())
 }
 
 /// A small file as text.
@@ -234,6 +229,7 @@ pub(crate) fn is_record(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Settings;
 
     #[test]
     fn settings_are_small_texts() {

@@ -6,5 +6,7 @@ pub(super) mod files;
 pub(super) mod help;
 pub(super) mod light_slice;
 pub(super) mod palette;
+pub(super) mod quit;
 pub(super) mod raw_dialog;
+pub(super) mod recovery;
 pub(super) mod slices;

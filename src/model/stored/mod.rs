@@ -5,3 +5,4 @@ pub(super) mod preset;
 pub(super) mod record;
 mod renames;
 mod schemas;
+mod unknown;

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::renames::rename;
+use super::unknown;
 use crate::data::ValueRange;
 use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, apply_relative};
 
@@ -87,6 +89,17 @@ impl Record {
         volume: Option<&VolumeRecord>,
         picture: Option<&PictureRecord>,
     ) -> String {
+        Self::text_with(settings, volume, picture, &Value::Null)
+    }
+
+    /// The text of a record that takes the place of another, which said something that this version does not know;
+    /// see [`Self::unknown`].
+    pub fn text_with(
+        settings: &Settings,
+        volume: Option<&VolumeRecord>,
+        picture: Option<&PictureRecord>,
+        unknown: &Value,
+    ) -> String {
         let mut tree = serde_json::to_value(settings).unwrap_or_default();
         if let Value::Object(fields) = &mut tree {
             let remarks = [
@@ -97,6 +110,7 @@ impl Record {
                 fields.extend(value.map(|value| (name.to_owned(), value)));
             }
         }
+        unknown::add(&mut tree, unknown);
         serde_json::to_string_pretty(&tree).unwrap_or_default()
     }
 
@@ -112,9 +126,25 @@ impl Record {
         Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
     }
 
+    /// The schema that the record names; a preset names none.
+    pub fn schema(&self) -> Option<u64> {
+        self.overlay.get("schema").and_then(Value::as_u64)
+    }
+
+    /// What the record says that this version does not know, and remarks of others; null if there is nothing.
+    pub fn unknown(&self) -> Value {
+        let understood = self.apply(&Settings::default(), ValueRange::UNIT).map(|(settings, _)| settings);
+        let Ok(tree) = understood.map(|settings| serde_json::to_value(settings).unwrap_or_default()) else {
+            return Value::Null;
+        };
+        let mut given = self.overlay.clone();
+        rename("", &mut given);
+        unknown::beyond(&given, &tree)
+    }
+
     /// Whether the record is of an earlier schema, whose pictures this version may make a little differently.
     pub fn is_earlier(&self) -> bool {
-        self.overlay.get("schema").and_then(Value::as_u64).is_some_and(|schema| schema < SCHEMA.into())
+        self.schema().is_some_and(|schema| schema < SCHEMA.into())
     }
 
     /// Whether the record says how the lights are balanced.
@@ -181,6 +211,20 @@ mod tests {
         assert_eq!(record.apply(&Settings::default(), ValueRange::UNIT).unwrap().0.shadows.gain, 2.0);
         assert!(Record::read("[1]").is_err() && Record::read("{").is_err());
         assert!(Record::read(r#"{"_volume": {"source": 3}}"#).is_err());
+    }
+
+    #[test]
+    fn what_others_have_written_is_written_again() {
+        let text =
+            r#"{"schema": 2, "_notes": "mine", "shadows": {"gain": 2.0, "glow": 3}, "ground": {"on": true}}"#;
+        let record = Record::read(text).unwrap();
+        let (settings, _) = record.apply(&Settings::default(), ValueRange::UNIT).unwrap();
+        let again = Record::text_with(&settings, None, None, &record.unknown());
+        let read = Record::read(&again).unwrap();
+        assert_eq!(read.overlay["_notes"], "mine");
+        assert_eq!((&read.overlay["shadows"]["glow"], read.overlay.get("ground")), (&Value::from(3), None));
+        assert_eq!(read.apply(&Settings::default(), ValueRange::UNIT).unwrap().0, settings);
+        assert_eq!(record.schema(), Some(2));
     }
 
     #[test]

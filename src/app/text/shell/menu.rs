@@ -7,6 +7,7 @@ pub(crate) const LIGHT: &str = "Light";
 pub(crate) const HELP: &str = "Help";
 
 pub(crate) const OPEN_RECENT: &str = "Open recent";
+pub(crate) const EARLIER_LOOKS: &str = "Earlier looks";
 pub(crate) const KEEP_LOOK_TIP: &str =
     "Lights, transfer function and shadows stay when another file is opened";
 

@@ -29,6 +29,9 @@ pub(crate) const LIGHT_VOLUME_NOT_EXPORTED: &str = "the light volume was not exp
 
 pub(crate) const NOT_RENDERED: &str = "the picture could not be rendered";
 pub(crate) const DEVICE_LOST: &str = "the graphics device was lost; start again to go on";
+/// What became of the look when the device was lost.
+pub(crate) const RESCUED: &str = "the look is kept: File, Go on where you left off, after the next start";
+pub(crate) const NOT_RESCUED: &str = "save the settings before you start again";
 /// Why the window cannot start.
 pub(crate) const NO_DEVICE: &str = "the window has no wgpu device";
 
@@ -50,16 +53,6 @@ pub(crate) fn view_kept(slot: u8) -> String {
 /// There is no view under a digit.
 pub(crate) fn no_view_kept(slot: u8) -> String {
     format!("No view is kept as {slot}: {} keeps one", store_view_keys(slot))
-}
-
-/// Where the settings are that were saved when the device was lost.
-pub(crate) fn rescued(path: &Path) -> String {
-    format!("the settings were saved to {}", path.display())
-}
-
-/// Why the settings could not be saved when the device was lost.
-pub(crate) fn not_rescued(why: &str) -> String {
-    format!("the settings could not be saved: {why}")
 }
 
 /// Why the device was lost, and what became of the settings.

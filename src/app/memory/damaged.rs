@@ -1,0 +1,61 @@
+//! Files of ours that cannot be used: they are put aside, and never in the way of a start.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use crate::app::text;
+use crate::data::read_small;
+
+/// Gives a file another name, with the time, so that somebody can look at it. Says what was done.
+pub(super) fn put_aside(path: &Path) -> String {
+    let millis = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".damaged-{millis}"));
+    let aside = path.with_file_name(name);
+    match std::fs::rename(path, &aside) {
+        Ok(()) => text::memory::put_aside(path, &aside),
+        Err(err) => text::memory::not_put_aside(path, err),
+    }
+}
+
+/// Puts aside what the window toolkit could not read of a folder, or would wait for without end. It is read before
+/// anything of ours runs, and only says where windows and panels were.
+pub(crate) fn check_window_state(folder: &Path) -> Option<String> {
+    let path = folder.join("app.ron");
+    let bytes = match read_small(&path) {
+        Err(err) if err.kind() == std::io::ErrorKind::NotFound => return None,
+        Err(_) => return Some(put_aside(&path)),
+        Ok(bytes) => bytes,
+    };
+    ron::de::from_bytes::<HashMap<String, String>>(&bytes).is_err().then(|| put_aside(&path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_damaged_is_put_aside_and_what_is_not_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = || {
+            let files = std::fs::read_dir(folder.path()).unwrap();
+            let mut names: Vec<_> =
+                files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+            names.sort();
+            names
+        };
+        let path = folder.path().join("app.ron");
+        assert!(check_window_state(folder.path()).is_none(), "nothing there, nothing said");
+        std::fs::write(&path, "{ \"window\": \"(x: 1)\" }").unwrap();
+        assert!(check_window_state(folder.path()).is_none());
+        assert_eq!(names(), ["app.ron"]);
+        std::fs::write(&path, "{ \"window\": ").unwrap();
+        assert!(check_window_state(folder.path()).unwrap().contains("app.ron"));
+        assert!(names()[0].starts_with("app.ron.damaged-") && names().len() == 1);
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        std::fs::create_dir(&path).unwrap();
+        assert!(check_window_state(folder.path()).is_some(), "a folder");
+        assert!(!path.exists());
+    }
+}

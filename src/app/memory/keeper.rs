@@ -1,0 +1,231 @@
+//! Keeps the look of this run on the disk while it changes, on a thread of its own: also when no frame is drawn.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError, Weak};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, ColorImage};
+
+use super::{recent, thumbnail};
+use crate::export::write_atomically;
+use crate::model::{Record, Settings, VolumeRecord};
+
+/// How long changes are collected before they are written: what is lost at most, with the time for writing, and half
+/// of the two seconds that users are promised.
+const COLLECT: Duration = Duration::from_secs(1);
+
+/// How long a process that ends in a hurry waits for a write under way.
+const LAST_WAIT: Duration = Duration::from_millis(1500);
+
+/// A look, and what it is of.
+#[derive(Debug, Clone)]
+struct Look {
+    settings: Settings,
+    source: String,
+    content_id: u64,
+}
+
+impl Look {
+    fn text(&self) -> String {
+        let volume = VolumeRecord::new(&self.source, self.content_id, None);
+        Record::text(&self.settings, Some(&volume), None)
+    }
+}
+
+/// What waits to be written.
+#[derive(Debug, Default)]
+struct Due {
+    look: Option<Look>,
+    picture: Option<Arc<ColorImage>>,
+    /// Files that were opened, the latest last.
+    opened: Vec<String>,
+    closed: bool,
+}
+
+impl Due {
+    fn is_empty(&self) -> bool {
+        self.look.is_none() && self.picture.is_none() && self.opened.is_empty()
+    }
+}
+
+/// What the window and the thread share.
+#[derive(Debug)]
+struct Shared {
+    due: Mutex<Due>,
+    changed: Condvar,
+    /// Held while files are written, so that what is older never comes last.
+    writing: Mutex<()>,
+    /// Why the last write failed; none if it did not.
+    failure: Mutex<Option<String>>,
+    /// The folder of what is remembered.
+    folder: PathBuf,
+    /// The file of this run's look; its picture lies beside it.
+    look: PathBuf,
+    wake: egui::Context,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The lock, unless it is held for longer than a process that ends can wait.
+fn locked_soon<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
+    let begin = Instant::now();
+    loop {
+        match mutex.try_lock() {
+            Ok(guard) => return Some(guard),
+            Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) if begin.elapsed() > LAST_WAIT => return None,
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(5)),
+        }
+    }
+}
+
+impl Shared {
+    /// Writes what is due. What could not be written is due again, unless there is something newer.
+    fn write(&self, due: Due) {
+        let Due { look, picture, opened, closed: _ } = due;
+        if let Some(look) = look {
+            let failed =
+                write_atomically(&self.look, look.text().as_bytes()).err().map(|err| err.to_string());
+            if failed.is_some() {
+                locked(&self.due).look.get_or_insert(look);
+            }
+            let before = std::mem::replace(&mut *locked(&self.failure), failed.clone());
+            if let Some(why) = failed.filter(|_| before.is_none()) {
+                log::warn!("the look was not kept: {why}");
+                self.wake.request_repaint();
+            }
+        }
+        // The look counts; a list is one without its picture, too, and without the latest file.
+        if let Some(picture) = picture
+            && let Err(err) = thumbnail::write(&picture, &self.look.with_extension("png"))
+        {
+            log::warn!("the small picture of the look was not kept: {err}");
+        }
+        if !opened.is_empty()
+            && let Err(err) = recent::add(&self.folder, &opened)
+        {
+            log::warn!("files that were opened were not noted: {err}");
+        }
+    }
+
+    /// Collects changes and writes them until the window closes.
+    fn run(&self) {
+        loop {
+            let due = locked(&self.due);
+            let idle = |due: &mut Due| due.is_empty() && !due.closed;
+            let due = self.changed.wait_while(due, idle).unwrap_or_else(PoisonError::into_inner);
+            let open = |due: &mut Due| !due.closed;
+            let (due, _) =
+                self.changed.wait_timeout_while(due, COLLECT, open).unwrap_or_else(PoisonError::into_inner);
+            let is_last = due.closed;
+            drop(due);
+            let _writing = locked(&self.writing);
+            let due = {
+                let mut due = locked(&self.due);
+                let closed = due.closed;
+                std::mem::replace(&mut *due, Due { closed, ..Due::default() })
+            };
+            self.write(due);
+            if is_last {
+                return;
+            }
+        }
+    }
+}
+
+/// Keeps the look of this run. Dropping this waits until all is written.
+#[derive(Debug)]
+pub(super) struct Keeper {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Writes what a keeper has not written yet, at once: for a process that is told to end, or that panics.
+#[derive(Debug, Clone)]
+pub(crate) struct LastWords(Weak<Shared>);
+
+/// Those of all windows of this process.
+static LAST_WORDS: Mutex<Vec<LastWords>> = Mutex::new(Vec::new());
+
+/// Writes what no window of this process has written yet.
+pub(crate) fn write_last_words() {
+    let all = locked_soon(&LAST_WORDS).map(|all| all.clone());
+    all.into_iter().flatten().for_each(|words| words.write());
+}
+
+impl LastWords {
+    /// Writes, unless a thread that has stopped holds what is needed.
+    pub(crate) fn write(&self) {
+        let Some(shared) = self.0.upgrade() else { return };
+        let Some(_writing) = locked_soon(&shared.writing) else { return };
+        let Some(due) = locked_soon(&shared.due).map(|mut due| std::mem::take(&mut *due)) else { return };
+        shared.write(due);
+    }
+}
+
+impl Keeper {
+    /// Keeps looks in a file, and files that were opened in a folder.
+    pub(super) fn new(folder: &Path, look: &Path, wake: &egui::Context) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared {
+            due: Mutex::default(),
+            changed: Condvar::new(),
+            writing: Mutex::default(),
+            failure: Mutex::default(),
+            folder: folder.to_owned(),
+            look: look.to_owned(),
+            wake: wake.clone(),
+        });
+        let thread = {
+            let shared = Arc::clone(&shared);
+            std::thread::Builder::new().name("memory".to_owned()).spawn(move || shared.run())?
+        };
+        let keeper = Self { shared, thread: Some(thread) };
+        let mut all = locked(&LAST_WORDS);
+        all.retain(|words| words.0.strong_count() > 0);
+        all.push(keeper.last_words());
+        drop(all);
+        Ok(keeper)
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Due)) {
+        change(&mut locked(&self.shared.due));
+        self.shared.changed.notify_one();
+    }
+
+    /// The look as it is from now on.
+    pub(super) fn keep(&self, settings: &Settings, source: &str, content_id: u64) {
+        let look = Look { settings: settings.clone(), source: source.to_owned(), content_id };
+        self.change(|due| due.look = Some(look));
+    }
+
+    /// What the look shows.
+    pub(super) fn show(&self, picture: Arc<ColorImage>) {
+        self.change(|due| due.picture = Some(picture));
+    }
+
+    /// A file was opened.
+    pub(super) fn opened(&self, source: &str) {
+        self.change(|due| due.opened.push(source.to_owned()));
+    }
+
+    /// Why the look could not be kept; none if it was.
+    pub(super) fn failure(&self) -> Option<String> {
+        locked(&self.shared.failure).clone()
+    }
+
+    /// What a process does before it ends in a hurry.
+    pub(super) fn last_words(&self) -> LastWords {
+        LastWords(Arc::downgrade(&self.shared))
+    }
+}
+
+impl Drop for Keeper {
+    fn drop(&mut self) {
+        self.change(|due| due.closed = true);
+        // That it panicked is logged where it did.
+        self.thread.take().map(JoinHandle::join);
+    }
+}

@@ -1,0 +1,144 @@
+//! What is remembered from one run to the next: files that were opened, and the looks of this run and the last ones.
+//!
+//! Each run has files of its own, so that two windows never take anything from each other.
+
+mod damaged;
+mod earlier;
+mod keeper;
+mod recent;
+mod thumbnail;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui::{self, ColorImage};
+
+pub(crate) use self::damaged::check_window_state;
+pub(crate) use self::earlier::EarlierRun;
+use self::earlier::ThisRun;
+use self::keeper::Keeper;
+pub(crate) use self::keeper::{LastWords, write_last_words};
+use crate::app::text;
+use crate::model::Settings;
+
+/// The look that was handed over last, and what it is of.
+type Kept = (Settings, u64);
+
+/// Files in the folder that the system gives us; without one, nothing is remembered.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    recent: Vec<String>,
+    /// Runs that have ended, the latest first.
+    earlier: Vec<EarlierRun>,
+    /// There was no run before.
+    is_first: bool,
+    /// What the user should know, once.
+    notices: Vec<String>,
+    kept: Option<Kept>,
+    /// The last write has failed, and that has been said.
+    is_failing: bool,
+    // In this order: all is written before the run ends.
+    keeper: Option<Keeper>,
+    run: Option<ThisRun>,
+}
+
+impl Memory {
+    /// Remembers what was written to a folder, and keeps the look of this run there. Wakes the window when something
+    /// could not be kept.
+    pub(crate) fn new(folder: Option<&Path>, wake: &egui::Context) -> Self {
+        let mut memory = Self::default();
+        let Some(folder) = folder else { return memory };
+        let runs = folder.join("runs");
+        earlier::adopt(folder, &runs);
+        memory.is_first = !runs.exists();
+        let (recent, notice) = recent::read(folder);
+        (memory.recent, memory.notices) = (recent, notice.into_iter().collect());
+        memory.recent.truncate(recent::MOST);
+        let (earlier, notices) = earlier::read(&runs);
+        memory.earlier = earlier;
+        memory.notices.extend(notices);
+        let begun = ThisRun::begin(&runs)
+            .and_then(|run| Ok((Keeper::new(folder, &run.look, wake)?, run)))
+            .map_err(|err| text::memory::not_remembered(folder, err));
+        match begun {
+            Ok((keeper, run)) => (memory.keeper, memory.run) = (Some(keeper), Some(run)),
+            Err(notice) => memory.notices.push(notice),
+        }
+        memory
+    }
+
+    /// Whether nobody has used the program here before.
+    pub(crate) fn is_first(&self) -> bool {
+        self.is_first
+    }
+
+    /// What was opened, the latest first.
+    pub(crate) fn recent(&self) -> &[String] {
+        &self.recent
+    }
+
+    /// Takes note of a file that was opened. Built-in volumes have a menu of their own.
+    pub(crate) fn opened(&mut self, source: &str) {
+        if source.starts_with("builtin:") {
+            return;
+        }
+        let whole =
+            std::path::absolute(source).map_or_else(|_| source.to_owned(), |path| path.display().to_string());
+        recent::put_first(&mut self.recent, &whole);
+        if let Some(keeper) = &self.keeper {
+            keeper.opened(&whole);
+        }
+    }
+
+    /// Runs that have ended, the latest first.
+    pub(crate) fn earlier(&self) -> &[EarlierRun] {
+        &self.earlier
+    }
+
+    /// The look of the run before, if there is one.
+    pub(crate) fn before(&self) -> Option<PathBuf> {
+        self.earlier.first().map(|run| run.look.clone())
+    }
+
+    /// The user has been told of the runs that crashed: they are among the earlier ones, and not offered again.
+    pub(crate) fn settle(&mut self) {
+        self.earlier.iter_mut().filter(|run| run.crashed).for_each(EarlierRun::settle);
+    }
+
+    /// Keeps a look of a volume, unless it is as it was.
+    pub(crate) fn keep(&mut self, settings: &Settings, source: &str, content_id: u64) {
+        let is_known = self.kept.as_ref().is_some_and(|(kept, of)| *of == content_id && kept == settings);
+        if let Some(keeper) = self.keeper.as_ref().filter(|_| !is_known) {
+            keeper.keep(settings, source, content_id);
+            self.kept = Some((settings.clone(), content_id));
+        }
+    }
+
+    /// Keeps what the look shows.
+    pub(crate) fn show(&self, picture: Arc<ColorImage>) {
+        if let Some(keeper) = self.keeper.as_ref().filter(|_| self.kept.is_some()) {
+            keeper.show(picture);
+        }
+    }
+
+    /// Something that the user should know, and that was found before there was a window.
+    pub(crate) fn add_notice(&mut self, notice: String) {
+        self.notices.push(notice);
+    }
+
+    /// What the user should know, once.
+    pub(crate) fn take_notices(&mut self) -> Vec<String> {
+        let failure = self.keeper.as_ref().and_then(Keeper::failure);
+        let was_failing = std::mem::replace(&mut self.is_failing, failure.is_some());
+        self.notices.extend(failure.filter(|_| !was_failing).map(|why| text::memory::not_kept(&why)));
+        std::mem::take(&mut self.notices)
+    }
+
+    /// What a process does before it ends in a hurry.
+    pub(crate) fn last_words(&self) -> Option<LastWords> {
+        self.keeper.as_ref().map(Keeper::last_words)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,47 @@
+//! Files that were opened, in all windows of this user.
+
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::damaged;
+use crate::data::read_small;
+use crate::export::write_atomically;
+
+/// Files that the menu offers.
+pub(super) const MOST: usize = 12;
+
+/// The list of a folder, the latest first; with a notice if it was damaged and has been put aside.
+pub(super) fn read(folder: &Path) -> (Vec<String>, Option<String>) {
+    let path = folder.join("recent.json");
+    let found = match read_small(&path) {
+        // Also where the folder is none: that is said when the run begins.
+        Err(err) if matches!(err.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return (Vec::new(), None);
+        }
+        found => found.ok(),
+    };
+    match found.and_then(|bytes| serde_json::from_slice::<Vec<String>>(&bytes).ok()) {
+        Some(list) => (list, None),
+        None => (Vec::new(), Some(damaged::put_aside(&path))),
+    }
+}
+
+/// A list with a file at its head.
+pub(super) fn put_first(list: &mut Vec<String>, source: &str) {
+    list.retain(|known| known != source);
+    list.insert(0, source.to_owned());
+    list.truncate(MOST);
+}
+
+/// Adds files to the list of a folder, the latest last. What another window has added stays.
+pub(super) fn add(folder: &Path, opened: &[String]) -> Result<(), String> {
+    // Between reading and writing nobody else writes. Without locks, two windows must be quick to lose an entry.
+    let lock = std::fs::File::create(folder.join("recent.lock")).map_err(|err| err.to_string())?;
+    lock.lock().ok();
+    let (mut list, _) = read(folder);
+    for source in opened {
+        put_first(&mut list, source);
+    }
+    let text = serde_json::to_string_pretty(&list).map_err(|err| err.to_string())?;
+    write_atomically(&folder.join("recent.json"), text.as_bytes()).map_err(|err| err.to_string())
+}

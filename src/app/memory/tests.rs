@@ -1,0 +1,207 @@
+//! Tests of what is remembered.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use super::*;
+use crate::data::ValueRange;
+use crate::model::Record;
+
+fn remember(folder: &Path) -> Memory {
+    Memory::new(Some(folder), &egui::Context::default())
+}
+
+/// A look that can be told from others.
+fn look(gain: f64) -> Settings {
+    let mut settings = Settings::default();
+    settings.shadows.gain = gain;
+    settings
+}
+
+fn gain_of(path: &Path) -> f64 {
+    let record = Record::read(&fs::read_to_string(path).unwrap()).unwrap();
+    record.apply(&Settings::default(), ValueRange::UNIT).unwrap().0.shadows.gain
+}
+
+fn wait_until(what: &str, condition: impl Fn() -> bool) -> Duration {
+    let begin = Instant::now();
+    while !condition() {
+        assert!(begin.elapsed() < Duration::from_secs(20), "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    begin.elapsed()
+}
+
+/// As a process that is killed: nothing is tidied up, and the system takes the lock away.
+fn kill(memory: Memory) {
+    let Memory { keeper, run, .. } = memory;
+    drop(keeper);
+    let look = run.as_ref().unwrap().look.clone();
+    drop(run);
+    fs::File::create(look.with_extension("lock")).unwrap();
+}
+
+#[test]
+fn files_are_remembered_by_all_windows() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut memory = remember(folder.path());
+    assert!(memory.recent().is_empty() && memory.before().is_none() && memory.is_first());
+    for file in ["/a.nrrd", "/b.nrrd", "builtin:chair", "/a.nrrd"] {
+        memory.opened(file);
+    }
+    // Another window has begun before, and does not know of these.
+    let mut other = remember(folder.path());
+    drop(memory);
+    other.opened("/c.nrrd");
+    drop(other);
+    let memory = remember(folder.path());
+    assert!(!memory.is_first());
+    assert_eq!(memory.recent(), ["/c.nrrd", "/a.nrrd", "/b.nrrd"]);
+    drop(memory);
+    for at in 0..2 * recent::MOST {
+        remember(folder.path()).opened(&format!("/{at}.nrrd"));
+    }
+    assert_eq!(remember(folder.path()).recent().len(), recent::MOST);
+}
+
+/// A change is on the disk soon, though nothing happens after it: no frame, no further change.
+#[test]
+fn the_last_change_is_kept_within_two_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut memory = remember(folder.path());
+    let file = memory.run.as_ref().unwrap().look.clone();
+    memory.keep(&look(1.5), "builtin:chair", 7);
+    wait_until("the first look is kept", || file.exists());
+    for gain in [2.0, 2.5, 3.0] {
+        memory.keep(&look(gain), "builtin:chair", 7);
+    }
+    let took = wait_until("the last look is kept", || gain_of(&file) == 3.0);
+    assert!(took < Duration::from_secs(2), "{took:?}");
+}
+
+#[test]
+fn looks_of_runs_that_were_cut_off_are_offered_until_the_user_knows() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut memory = remember(folder.path());
+    memory.keep(&look(2.0), "/data/tooth.nrrd", 7);
+    memory.show(Arc::new(ColorImage::filled([40, 20], egui::Color32::RED)));
+    kill(memory);
+    // Starts and ends do not take it away.
+    for _ in 0..3 {
+        let memory = remember(folder.path());
+        let [run] = memory.earlier() else { panic!("{:?}", memory.earlier()) };
+        assert!(run.crashed && run.source == "/data/tooth.nrrd" && gain_of(&run.look) == 2.0);
+        assert_eq!(run.picture().unwrap().size, [40, 20]);
+    }
+    remember(folder.path()).settle();
+    let memory = remember(folder.path());
+    assert!(!memory.earlier()[0].crashed, "still there, but not offered");
+    assert_eq!(memory.before(), Some(memory.earlier()[0].look.clone()));
+}
+
+#[test]
+fn two_windows_take_nothing_from_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = remember(folder.path());
+    first.keep(&look(2.0), "builtin:chair", 7);
+    let mut second = remember(folder.path());
+    assert!(second.earlier().is_empty(), "the first one goes on");
+    second.keep(&look(3.0), "builtin:fuel", 8);
+    kill(first);
+    drop(second);
+    let third = remember(folder.path());
+    let mut kept: Vec<_> = third.earlier().iter().map(|run| (gain_of(&run.look), run.crashed)).collect();
+    kept.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert_eq!(kept, [(2.0, true), (3.0, false)]);
+}
+
+#[test]
+fn ten_runs_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    for at in 0..13 {
+        let mut memory = remember(folder.path());
+        memory.keep(&look(f64::from(at)), "builtin:chair", 7);
+        drop(memory);
+        // Names are in milliseconds.
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let memory = remember(folder.path());
+    let gains: Vec<_> = memory.earlier().iter().map(|run| gain_of(&run.look)).collect();
+    assert_eq!(gains, [12.0, 11.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0]);
+    // Ten looks, and the lock of this run.
+    assert_eq!(fs::read_dir(folder.path().join("runs")).unwrap().count(), 11);
+}
+
+#[test]
+fn damaged_files_are_put_aside_and_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = folder.path().join("runs");
+    fs::create_dir(&runs).unwrap();
+    fs::write(folder.path().join("recent.json"), "{nonsense").unwrap();
+    fs::write(runs.join("0000000000001-1.json"), "[]").unwrap();
+    fs::create_dir(runs.join("0000000000002-1.json")).unwrap();
+    let mut memory = remember(folder.path());
+    assert!(memory.recent().is_empty() && memory.earlier().is_empty());
+    let notices = memory.take_notices();
+    assert_eq!(notices.len(), 3, "{notices:?}");
+    assert!(notices.iter().all(|notice| notice.contains("put aside")), "{notices:?}");
+    assert!(memory.take_notices().is_empty());
+    drop(memory);
+    assert!(remember(folder.path()).take_notices().is_empty());
+    let aside = |folder: &Path| {
+        let names = fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name());
+        names.filter(|name| name.to_string_lossy().contains(".damaged-")).count()
+    };
+    assert_eq!((aside(folder.path()), aside(&runs)), (1, 2), "nothing is thrown away");
+}
+
+#[test]
+fn what_cannot_be_kept_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut memory = remember(folder.path());
+    // Nothing can be written where there is no folder.
+    fs::remove_dir_all(folder.path().join("runs")).unwrap();
+    memory.keep(&look(2.0), "builtin:chair", 7);
+    wait_until("the failure is known", || memory.keeper.as_ref().unwrap().failure().is_some());
+    assert_eq!(memory.take_notices().len(), 1);
+    assert!(memory.take_notices().is_empty(), "once");
+    fs::create_dir(folder.path().join("runs")).unwrap();
+    // By itself: what was not written is still due.
+    let file = memory.run.as_ref().unwrap().look.clone();
+    wait_until("the look is kept after all", || file.exists());
+    let mut memory = Memory::new(Some(&folder.path().join("runs/no.txt/x")), &egui::Context::default());
+    assert!(memory.take_notices().is_empty());
+    fs::write(folder.path().join("file"), "").unwrap();
+    let mut nowhere = remember(&folder.path().join("file"));
+    assert_eq!(nowhere.take_notices().len(), 1);
+    nowhere.keep(&look(2.0), "builtin:chair", 7);
+    assert!(Memory::new(None, &egui::Context::default()).last_words().is_none());
+}
+
+#[test]
+fn last_words_are_written_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut memory = remember(folder.path());
+    memory.keep(&look(2.0), "builtin:chair", 7);
+    let begin = Instant::now();
+    memory.last_words().unwrap().write();
+    assert!(begin.elapsed() < Duration::from_millis(900), "before changes have been collected");
+    assert_eq!(gain_of(&memory.run.as_ref().unwrap().look), 2.0);
+}
+
+#[test]
+fn the_look_of_an_earlier_version_is_taken_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |gain| {
+        let volume = crate::model::VolumeRecord::new("builtin:chair", 7, None);
+        Record::text(&look(gain), Some(&volume), None)
+    };
+    fs::write(folder.path().join("before.json"), text(2.0)).unwrap();
+    std::thread::sleep(Duration::from_millis(5));
+    fs::write(folder.path().join("now.json"), text(3.0)).unwrap();
+    let memory = remember(folder.path());
+    let gains: Vec<_> = memory.earlier().iter().map(|run| gain_of(&run.look)).collect();
+    assert_eq!(gains, [3.0, 2.0]);
+    assert!(!memory.is_first());
+}

@@ -1,0 +1,86 @@
+//! What is remembered from one run to the next, and what a session file may not lose.
+
+use std::fmt::Display;
+use std::path::Path;
+use std::time::Duration;
+
+/// The window that offers looks of runs that crashed.
+pub(crate) const ENDED_BADLY: &str = "Go on where you left off?";
+pub(crate) const ENDED_BADLY_WHY: &str = "Chiaroscuro was cut off. This is how it looked:";
+pub(crate) const GO_ON: &str = "Go on";
+pub(crate) const NOT_NOW: &str = "Not now";
+pub(crate) const NOT_NOW_TIP: &str = "It stays in File, Earlier looks";
+
+/// Of what follows with the details.
+pub(crate) const NOT_ALL_KEPT: &str = "not everything is kept";
+
+/// The window that asks before an export is given up.
+pub(crate) const EXPORTING: &str = "Quit while a picture is being exported?";
+pub(crate) const EXPORTING_WHY: &str = "What has been exported so far would be given up.";
+pub(crate) const QUIT_AFTER: &str = "Quit when it is done";
+pub(crate) const QUIT_NOW: &str = "Give it up and quit";
+pub(crate) const STAY: &str = "Stay";
+
+/// Why Ctrl+S asks for another file instead of writing the session.
+pub(crate) const NO_SESSION: &str = "it is no session of this program";
+pub(crate) const NEWER_SESSION: &str = "a newer version has written it";
+pub(crate) const NOT_UNDERSTOOD: &str = "not all of it was understood";
+pub(crate) const NOT_READ_YET: &str = "it has not been read yet";
+
+/// A session that Ctrl+S does not overwrite.
+pub(crate) fn protected(file: &Path, why: &str) -> String {
+    format!("{} stays as it is: {why}. Choose another file", file.display())
+}
+
+/// The name of a volume for a list, and how long ago its look was kept.
+pub(crate) fn earlier_look(source: &str, ago: Duration) -> String {
+    let name = Path::new(source).file_name().map_or_else(|| source.into(), |name| name.to_string_lossy());
+    format!("{} · {}", name.trim_start_matches("builtin:"), since(ago))
+}
+
+/// How long ago something was.
+fn since(ago: Duration) -> String {
+    let minutes = ago.as_secs() / 60;
+    match minutes {
+        0 => "just now".to_owned(),
+        1..60 => format!("{minutes} min ago"),
+        60..2880 => format!("{} h ago", minutes / 60),
+        _ => format!("{} days ago", minutes / 1440),
+    }
+}
+
+/// A file of ours was damaged, and has another name now.
+pub(crate) fn put_aside(file: &Path, aside: &Path) -> String {
+    let name = aside.file_name().unwrap_or_default().to_string_lossy();
+    format!("{} could not be read, and was put aside as {name}", file.display())
+}
+
+/// A file of ours is damaged, and cannot even be renamed.
+pub(crate) fn not_put_aside(file: &Path, why: impl Display) -> String {
+    format!("{} cannot be read, nor put aside: {why}", file.display())
+}
+
+/// Nothing will be remembered.
+pub(crate) fn not_remembered(folder: &Path, why: impl Display) -> String {
+    format!("looks cannot be kept in {}: {why}", folder.display())
+}
+
+/// The look could not be kept.
+pub(crate) fn not_kept(why: &str) -> String {
+    format!("the look cannot be kept: {why}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_as_people_say_them() {
+        let after = |seconds| earlier_look("/data/tooth.nrrd", Duration::from_secs(seconds));
+        assert_eq!(after(59), "tooth.nrrd · just now");
+        assert_eq!(after(60), "tooth.nrrd · 1 min ago");
+        assert_eq!(after(7200), "tooth.nrrd · 2 h ago");
+        assert_eq!(after(3 * 86_400), "tooth.nrrd · 3 days ago");
+        assert_eq!(earlier_look("builtin:chair:32", Duration::ZERO), "chair:32 · just now");
+    }
+}

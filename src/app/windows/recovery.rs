@@ -1,0 +1,94 @@
+//! Offers the looks of runs that crashed.
+
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+use eframe::egui::{self, TextureHandle, TextureOptions, vec2};
+
+use crate::app::memory::EarlierRun;
+use crate::app::text;
+
+/// Points that a small picture has along its longer edge.
+const EDGE: f32 = 128.0;
+
+/// A look that is offered.
+struct Offer {
+    look: PathBuf,
+    name: String,
+    picture: Option<TextureHandle>,
+}
+
+/// What the user answers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// This look.
+    GoOn(PathBuf),
+    /// None of them.
+    NotNow,
+}
+
+/// The window; there is none when nothing crashed.
+pub(crate) struct Recovery {
+    offers: Vec<Offer>,
+}
+
+impl Recovery {
+    /// Offers those of the runs that crashed.
+    pub(crate) fn of(runs: &[EarlierRun], ctx: &egui::Context) -> Self {
+        let crashed = runs.iter().filter(|run| run.crashed);
+        let offers = crashed.map(|run| Offer {
+            look: run.look.clone(),
+            name: name(run),
+            picture: run
+                .picture()
+                .map(|picture| ctx.load_texture("earlier look", picture, TextureOptions::LINEAR)),
+        });
+        Self { offers: offers.collect() }
+    }
+
+    /// Shows the window while there is something to offer. Gives the answer, once.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Answer> {
+        if self.offers.is_empty() {
+            return None;
+        }
+        let mut answer = None;
+        let mut open = true;
+        let window = egui::Window::new(text::memory::ENDED_BADLY).open(&mut open);
+        let window = window.collapsible(false).resizable(false).default_pos([60.0, 70.0]);
+        window.show(ctx, |ui| {
+            ui.label(text::memory::ENDED_BADLY_WHY);
+            for offer in &self.offers {
+                ui.separator();
+                ui.horizontal(|ui| {
+                    if let Some(picture) = &offer.picture {
+                        let size = vec2(EDGE, EDGE).min(picture.size_vec2());
+                        ui.add(egui::Image::new(picture).fit_to_exact_size(size).corner_radius(4));
+                    }
+                    ui.vertical(|ui| {
+                        ui.label(&offer.name);
+                        if ui.button(text::memory::GO_ON).clicked() {
+                            answer = Some(Answer::GoOn(offer.look.clone()));
+                        }
+                    });
+                });
+            }
+            ui.separator();
+            if ui.button(text::memory::NOT_NOW).on_hover_text(text::memory::NOT_NOW_TIP).clicked() {
+                answer = Some(Answer::NotNow);
+            }
+        });
+        if !open || ctx.input(|input| input.key_pressed(egui::Key::Escape)) {
+            answer = Some(Answer::NotNow);
+        }
+        if answer.is_some() {
+            self.offers.clear();
+        }
+        answer
+    }
+}
+
+/// What a run is called in a list.
+pub(crate) fn name(run: &EarlierRun) -> String {
+    let ago = SystemTime::now().duration_since(run.when).unwrap_or_default();
+    text::memory::earlier_look(&run.source, ago)
+}

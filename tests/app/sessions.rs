@@ -1,0 +1,141 @@
+//! Sessions that are saved, and looks that outlive a crash.
+
+use std::path::Path;
+
+use chiaroscuro::app::{App, Options};
+use chiaroscuro::model::{Record, VolumeRecord};
+use eframe::egui::{self, Modifiers, Vec2, ViewportEvent, ViewportId};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{SCENE, click, kept_look, wait_until, window, window_with};
+
+/// A window with a session file, whose look has been changed, and Ctrl+S pressed.
+fn changed_and_saved(session: &Path) -> Harness<'static, App> {
+    let options =
+        Options { source: Some(SCENE.to_owned()), session: Some(session.to_owned()), ..Options::default() };
+    let mut harness = window_with(options, Vec2::new(760.0, 900.0));
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
+    harness.run_steps(3);
+    harness
+}
+
+fn backup(session: &Path) -> std::path::PathBuf {
+    std::path::PathBuf::from(format!("{}.bak", session.display()))
+}
+
+#[test]
+fn what_is_no_session_of_this_version_stays_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let mut harness = window();
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&path("picture.png"), [40, 30], &ctx);
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    drop(harness);
+    let written = [
+        ("newer.json", r#"{"schema": 999, "future": {"a": 1}}"#),
+        ("preset.json", r#"{"shadows": {"gain": 2.0}}"#),
+        ("wrong.json", r#"{"schema": 2, "shadows": {"gain": "much"}}"#),
+        ("broken.json", r#"{"schema": 2, "#),
+        ("volume.nrrd", "NRRD0004\n"),
+    ];
+    for (name, text) in written {
+        std::fs::write(path(name), text).unwrap();
+    }
+    for name in written.map(|(name, _)| name).into_iter().chain(["picture.png"]) {
+        let before = std::fs::read(path(name)).unwrap();
+        let harness = changed_and_saved(&path(name));
+        assert!(harness.query_by_label_contains("stays as it is").is_some(), "{name}");
+        assert!(std::fs::read(path(name)).unwrap() == before, "{name}");
+        assert!(!backup(&path(name)).exists());
+    }
+}
+
+#[test]
+fn a_session_keeps_what_others_wrote_and_what_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let session = folder.path().join("s.json");
+    let before = r#"{"schema": 2, "_notes": "mine", "shadows": {"gain": 2.0, "glow": 3}}"#;
+    std::fs::write(&session, before).unwrap();
+    let mut harness = changed_and_saved(&session);
+    let text = std::fs::read_to_string(&session).unwrap();
+    let tree: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!((&tree["_notes"], &tree["shadows"]["glow"]), (&"mine".into(), &3.into()));
+    assert_eq!(tree["shadows"]["gain"], 2.0);
+    assert_eq!(std::fs::read_to_string(backup(&session)).unwrap(), before);
+    // Again: the backup is what was there last.
+    harness.key_press(egui::Key::CloseBracket);
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
+    harness.run_steps(3);
+    assert_ne!(std::fs::read_to_string(&session).unwrap(), text);
+    assert_eq!(std::fs::read_to_string(backup(&session)).unwrap(), text);
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
+fn a_run_that_was_cut_off_is_offered() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = || {
+        let options = Options {
+            source: Some("builtin:sphere:16".to_owned()),
+            storage: Some(folder.path().to_owned()),
+            ..Options::default()
+        };
+        window_with(options, Vec2::new(760.0, 900.0))
+    };
+    // As a process leaves it that is killed.
+    let mut look = window().state().settings().clone();
+    look.shadows.gain = 1.75;
+    let volume = VolumeRecord::new(SCENE, 0, None);
+    std::fs::create_dir(folder.path().join("runs")).unwrap();
+    let file = folder.path().join("runs/0000000000001-1-0.json");
+    std::fs::write(&file, Record::text(&look, Some(&volume), None)).unwrap();
+    std::fs::write(file.with_extension("lock"), "").unwrap();
+
+    let mut harness = start();
+    let offer = "Go on where you left off?";
+    assert!(harness.query_by_label(offer).is_some());
+    click(&mut harness, "Not now");
+    assert!(harness.query_by_label(offer).is_none());
+    drop(harness);
+    let harness = start();
+    assert!(harness.query_by_label(offer).is_none(), "the user knows");
+    drop(harness);
+
+    std::fs::write(file.with_extension("lock"), "").unwrap();
+    let mut harness = start();
+    click(&mut harness, "Go on");
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair") && app.is_idle());
+    assert_eq!(harness.state().settings().shadows.gain, 1.75);
+    assert!(file.exists(), "and it stays");
+    drop(harness);
+    assert_eq!(kept_look(folder.path()).expect("a look").shadows.gain, 1.75);
+}
+
+#[test]
+fn quitting_while_a_picture_is_exported_asks() {
+    let mut harness = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turn.png");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().export(&path, [1200, 900], &ctx);
+    let close = |harness: &mut Harness<'_, App>| {
+        let viewport = harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
+        viewport.events.push(ViewportEvent::Close);
+        harness.run_steps(3);
+    };
+    close(&mut harness);
+    let question = "Quit while a picture is being exported?";
+    assert!(harness.query_by_label(question).is_some());
+    harness.get_by_label("Stay").click();
+    harness.run_steps(2);
+    assert!(harness.query_by_label(question).is_none());
+    wait_until(&mut harness, "never exported", |app| !app.is_exporting());
+    close(&mut harness);
+    assert!(harness.query_by_label(question).is_none(), "nothing is lost");
+    assert!(path.exists());
+}
