@@ -27,6 +27,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `fault` | faults on purpose, for tests |
 //! | [`math`] | spaces and boxes |
 //! | [`data`] | volumes: readers, built-ins, histograms, bricks |
 //! | [`model`] | `Settings`, the one value that is the whole look |
@@ -46,6 +47,7 @@ pub mod app;
 pub mod cli;
 pub mod data;
 pub mod export;
+mod fault;
 pub mod gpu;
 pub mod math;
 pub mod model;

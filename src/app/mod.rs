@@ -8,21 +8,24 @@ mod common;
 mod memory;
 mod panels;
 mod shell;
+mod start;
 mod text;
 mod transfer_editor;
 mod viewport;
 mod windows;
 mod worker;
 
-pub use self::shell::start::{Adjustment, AppError, Options, run, storage_folder, wgpu_setup};
+pub use self::start::error::AppError;
+pub use self::start::options::{Adjustment, Options};
+pub use self::start::run::{run, storage_folder, wgpu_setup};
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use eframe::egui;
 
 use self::common::{commands, light_keys, theme};
-use self::shell::{menu, opening, picture, status, status_file};
+use self::shell::{menu, picture, status, status_file};
 use self::windows::files;
 
 use self::common::commands::Command;
@@ -35,6 +38,7 @@ use self::shell::opening::PendingLook;
 use self::shell::picture::PictureInputs;
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
+use self::start::carried::Legacy;
 use self::transfer_editor::TransferEditor;
 use self::viewport::canvas::Canvas;
 use self::viewport::compare::Compare;
@@ -49,6 +53,7 @@ use self::windows::export::Export;
 use self::windows::files::Files;
 use self::windows::help::Help;
 use self::windows::light_slice::LightSlice;
+use self::windows::lost_again::LostAgain;
 use self::windows::palette::Palette;
 use self::windows::quit::Quit;
 use self::windows::raw_dialog::RawDialog;
@@ -56,6 +61,7 @@ use self::windows::recovery::Recovery;
 use self::windows::slices::Slices;
 use self::worker::loader::Loader;
 use self::worker::task::{self, Work};
+use crate::data::Dataset;
 use crate::gpu::{Context, GpuError, WindowPainter};
 use crate::model::Settings;
 
@@ -71,6 +77,17 @@ pub struct App {
     viewport: Viewport,
     /// Fills the window's background.
     window: WindowPainter,
+    /// The device that draws the window.
+    window_context: Context,
+    storage: Option<PathBuf>,
+    /// Where this window leaves what another needs to take its place.
+    legacy: Legacy,
+    /// A volume that an earlier window had open, until the user has said how to go on.
+    waiting: Option<Dataset>,
+    /// The device is gone, and nothing is drawn any more.
+    is_ending: bool,
+    /// The next window is to be drawn by the CPU.
+    wants_cpu: bool,
     canvas: Option<Canvas>,
     loader: Loader,
     memory: Memory,
@@ -85,6 +102,7 @@ pub struct App {
     session: Option<Session>,
     recovery: Recovery,
     quit: Quit,
+    lost_again: LostAgain,
     /// The session has not been laid over the first look yet.
     session_is_due: bool,
     adjust: Option<Adjustment>,
@@ -129,67 +147,6 @@ impl std::fmt::Debug for App {
 }
 
 impl App {
-    /// Starts in a window and begins to open the first volume.
-    ///
-    /// # Errors
-    /// When the window's device cannot be used.
-    pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
-        let no_wgpu = || GpuError::Refused(text::messages::NO_DEVICE.to_owned());
-        let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
-        // The window's own device draws the window alone: pictures are made beside it.
-        let window = WindowPainter::new(&paint.device, &paint.queue, paint.target_format)?;
-        let context = Context::new(&paint.adapter, paint.device, paint.queue)?.sibling()?;
-        theme::apply(&cc.egui_ctx);
-        let Options { source, load, session, adjust, storage } = options;
-        let source = source.or_else(|| opening::volume_of_session(session.as_deref()?));
-        let pipelines = storage.as_deref().map(Path::to_owned);
-        let memory = Memory::new(storage.as_deref(), &cc.egui_ctx);
-        let recovery = Recovery::of(memory.earlier(), &cc.egui_ctx);
-        let hints = Hints { on: memory.is_first() };
-        let mut app = Self {
-            settings: Settings::default(),
-            defaults: Settings::default(),
-            volume: None,
-            viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
-            canvas: None,
-            loader: Loader::new(context, load, pipelines.as_deref())?,
-            memory,
-            keeps_look: false,
-            pending: None,
-            balance: None,
-            keep_balanced: KeepBalanced::new(&Settings::default(), true),
-            export: Export::default(),
-            files: Files::default(),
-            session_is_due: session.is_some(),
-            session: session.map(Session::named),
-            recovery,
-            quit: Quit::default(),
-            adjust,
-            history: History::default(),
-            handles: LightHandles::default(),
-            cut_handles: CutHandles::default(),
-            compare: Compare::default(),
-            overlay: Overlay::default(),
-            probe: LightProbe::default(),
-            palette: Palette::default(),
-            light_slice: LightSlice::default(),
-            slices: Slices::default(),
-            raw_dialog: RawDialog::default(),
-            contact_sheet: ContactSheet::default(),
-            editor: TransferEditor::new(window.clone()),
-            window,
-            selected_light: 0,
-            side_open: true,
-            help: Help::default(),
-            hints,
-            messages: Messages::default(),
-            longest_ui_ms: 0.0,
-            status_file: StatusFile::from_environment(),
-        };
-        app.open_first(source.as_deref(), &cc.egui_ctx);
-        Ok(app)
-    }
-
     /// The look as it is now.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -324,19 +281,27 @@ impl App {
         let (canvas, result) = shown.inner;
         self.canvas = Some(canvas);
         if let Err(err) = result {
-            self.rendering_failed(&err);
+            self.rendering_failed(&err, ui.ctx());
         }
     }
 }
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.fail_on_purpose();
+        // Before anything is drawn, which would panic.
+        if self.is_ending || self.window_context.is_lost() {
+            return self.end_for_another(ctx);
+        }
         self.collect(ctx);
         // Also when nothing is drawn.
         self.keep_look();
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        if self.is_ending {
+            return;
+        }
         let ctx = ui.ctx().clone();
         let start = std::time::Instant::now();
         ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
@@ -387,6 +352,9 @@ impl eframe::App for App {
     fn on_exit(&mut self) {
         self.keep_look();
         self.export.abandon();
+        if self.is_ending {
+            self.leave();
+        }
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

@@ -18,6 +18,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::fault::{self, Fault};
 pub use error::CliError;
 use outputs::warn_line;
 use scene::LoadArgs;
@@ -35,6 +36,9 @@ struct Args {
     session: Option<PathBuf>,
     #[command(flatten)]
     load: LoadArgs,
+    /// A fault on purpose, to see what the program does then; may be repeated
+    #[arg(long, value_name = "FAULT", global = true, hide = true)]
+    fault: Vec<Fault>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -77,6 +81,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
             return code;
         }
     };
+    fault::choose(args.fault);
     let result = match args.command {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Turntable(args)) => turntable::run(&args),

@@ -7,8 +7,8 @@ use crate::sources::{Source, files};
 use crate::tokens::tokens;
 
 /// The modules, lowest first. Each may import those before it.
-const ORDER: [&str; 10] =
-    ["math", "data", "model", "plan", "export", "reference", "gpu", "app", "cli", "main"];
+const ORDER: [&str; 11] =
+    ["fault", "math", "data", "model", "plan", "export", "reference", "gpu", "app", "cli", "main"];
 
 /// Imports that the order allows and the design does not: the renderer owes the reference nothing,
 /// or comparing them would prove nothing.

@@ -79,6 +79,10 @@ impl Drop for ThisRun {
     fn drop(&mut self) {
         // Some systems do not remove what is open.
         self.lock = None;
+        // A run that panics is one that was cut off.
+        if std::thread::panicking() {
+            return;
+        }
         std::fs::remove_file(lock_of(&self.look)).ok();
     }
 }

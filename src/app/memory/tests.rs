@@ -101,6 +101,20 @@ fn looks_of_runs_that_were_cut_off_are_offered_until_the_user_knows() {
 }
 
 #[test]
+fn a_run_that_panics_is_one_that_was_cut_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_owned();
+    let window = std::panic::catch_unwind(move || {
+        let mut memory = remember(&path);
+        memory.keep(&look(2.0), "builtin:chair", 7);
+        panic!("as a window might");
+    });
+    assert!(window.is_err());
+    let memory = remember(folder.path());
+    assert!(memory.earlier()[0].crashed && gain_of(&memory.earlier()[0].look) == 2.0);
+}
+
+#[test]
 fn two_windows_take_nothing_from_each_other() {
     let folder = tempfile::tempdir().unwrap();
     let mut first = remember(folder.path());

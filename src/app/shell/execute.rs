@@ -146,6 +146,7 @@ impl App {
         match self.loader.take() {
             None => {}
             Some(Outcome::Opened(opened)) => self.take_in(*opened, ctx),
+            Some(Outcome::Shown { renderer, dataset }) => self.viewport.set_scene(*renderer, dataset),
             Some(Outcome::Cancelled) => {
                 self.pending = None;
                 self.messages.note(text::messages::OPENING_CANCELLED);
@@ -207,6 +208,9 @@ impl App {
             }
         }
         self.quit.ui(ctx, self.export.is_busy());
+        if let Some(answer) = self.lost_again.ui(ctx, self.viewport.context().is_software()) {
+            self.answer_loss(answer, ctx);
+        }
         if self.contact_sheet.is_due
             && let Some(subject) = self.subject()
             && let Err(err) = self.contact_sheet.start(subject, ctx)
@@ -353,20 +357,12 @@ impl App {
         }
     }
 
-    /// The renderer gave up on something. When the device is gone, the look is made safe.
-    pub(crate) fn rendering_failed(&mut self, err: &GpuError) {
-        if !self.viewport.is_lost() {
+    /// The renderer gave up on something. When the device is gone, another window takes the place of this one.
+    pub(crate) fn rendering_failed(&mut self, err: &GpuError, ctx: &egui::Context) {
+        if self.viewport.is_lost() {
+            self.end_for_another(ctx);
+        } else {
             self.messages.error(text::messages::NOT_RENDERED, err.to_string());
-            return;
         }
-        let rescue = match self.memory.last_words() {
-            Some(last_words) => {
-                last_words.write();
-                text::messages::RESCUED
-            }
-            None => text::messages::NOT_RESCUED,
-        };
-        let details = text::messages::lost_and_rescued(&err.to_string(), rescue);
-        self.messages.error(text::messages::DEVICE_LOST, details);
     }
 }

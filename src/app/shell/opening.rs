@@ -94,7 +94,7 @@ impl App {
         }
     }
 
-    fn start_loading(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> bool {
+    pub(crate) fn start_loading(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> bool {
         let started = self.loader.open(source, reading, ctx);
         if let Err(err) = &started {
             self.messages.error(text::opening::NOT_OPENED, err.clone());

@@ -5,6 +5,7 @@ pub(super) mod export;
 pub(super) mod files;
 pub(super) mod help;
 pub(super) mod light_slice;
+pub(super) mod lost_again;
 pub(super) mod palette;
 pub(super) mod quit;
 pub(super) mod raw_dialog;

@@ -28,6 +28,7 @@ pub(crate) enum Answer {
 }
 
 /// The window; there is none when nothing crashed.
+#[derive(Default)]
 pub(crate) struct Recovery {
     offers: Vec<Offer>,
 }

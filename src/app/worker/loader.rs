@@ -11,6 +11,7 @@ use super::task::Work;
 use crate::app::text;
 use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
 use crate::data::{self, Dataset};
+use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look, fitted};
 use crate::model::Settings;
 
@@ -49,6 +50,8 @@ pub(crate) enum Outcome {
     Cancelled,
     /// It is a file of bare voxels, and how these are stored is not known, or not right.
     NotDescribed { path: PathBuf, why: String, guess: RawGuess },
+    /// A volume that was open in an earlier window is on the device of this one.
+    Shown { renderer: Box<Renderer>, dataset: Dataset },
     /// With a message: what, and all that is known.
     Failed { short: String, details: String },
 }
@@ -56,6 +59,7 @@ pub(crate) enum Outcome {
 #[derive(Debug)]
 struct Running {
     source: String,
+    reading: Reading,
     control: Arc<LoadControl>,
     phase: Arc<AtomicU8>,
     work: Work<Outcome>,
@@ -66,6 +70,8 @@ struct Running {
 pub(crate) struct LoadProgress<'a> {
     /// What is being opened.
     pub source: &'a str,
+    /// How it is read.
+    pub reading: Reading,
     /// What is being done, in words.
     pub phase: &'static str,
     /// The share of the phase that is done, where it is known.
@@ -178,8 +184,30 @@ impl Loader {
             move || open(opening)
         };
         let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
-        self.running = Some(Running { source: source.to_owned(), control, phase, work });
+        self.running = Some(Running { source: source.to_owned(), reading, control, phase, work });
         Ok(())
+    }
+
+    /// Shows a volume that has been read already, on this device.
+    pub(crate) fn show(&mut self, dataset: Dataset, ctx: &egui::Context) -> Result<(), String> {
+        self.cancel();
+        let (context, shaders) = (self.context.clone(), self.shaders.clone());
+        let source = dataset.volume().name().to_owned();
+        let name = source.clone();
+        let task = move || match Renderer::with_shaders(&context, shaders) {
+            Ok(renderer) => Outcome::Shown { renderer: Box::new(renderer), dataset },
+            Err(err) => Outcome::Failed { short: text::opening::not_shown(&name), details: err.to_string() },
+        };
+        let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
+        // The last phases alone.
+        let (control, phase) = (Arc::new(LoadControl::new()), Arc::new(AtomicU8::new(3)));
+        self.running = Some(Running { source, reading: Reading::default(), control, phase, work });
+        Ok(())
+    }
+
+    /// How files are read.
+    pub(crate) fn options(&self) -> &LoadOptions {
+        &self.options
     }
 
     /// Stops opening; what is open stays.
@@ -207,6 +235,7 @@ impl Loader {
         let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
         Some(LoadProgress {
             source: &running.source,
+            reading: running.reading,
             phase: PHASES[phase],
             fraction: fraction.map(|fraction| fraction as f32),
         })
@@ -240,6 +269,7 @@ struct Opening {
 
 fn open(opening: Opening) -> Outcome {
     let Opening { source, reading, options, context, shaders, control, phase } = opening;
+    may_panic(Place::Loader);
     let volume = match data::open(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,

@@ -15,6 +15,7 @@ use super::difference::Difference;
 use super::mailbox::{Figures, Frame, Measurement, Shared};
 use super::quality::{Missing, QualityController, QualityLevel};
 use super::request::{FrameRequest, Scene};
+use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, RenderOptions, Stage, balance_quickly};
 use crate::model::Settings;
 use crate::plan::{FrameKeys, Request};
@@ -68,11 +69,16 @@ impl RenderWorker {
     /// Renders what is requested until the window closes.
     pub(super) fn work(&mut self) {
         while let Some((mut scene, purpose, frame_request)) = self.wait_for_work() {
+            may_panic(Place::Worker);
             let result = self.make(&mut scene, purpose, frame_request);
+            let lost = matches!(result, Err(GpuError::Lost(_)));
+            if result.is_err() && !lost {
+                scene.renderer.forget_everything();
+                self.last_full = None;
+            }
             self.scene = Some(scene);
             if let Err(err) = result {
                 self.agenda.give_up();
-                let lost = matches!(err, GpuError::Lost(_));
                 self.report(err);
                 if lost {
                     return;

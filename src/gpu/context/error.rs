@@ -40,6 +40,6 @@ pub enum GpuError {
     #[error("the graphics driver refused: {0}")]
     Refused(String),
     /// The device is gone: driver update, sleep, watchdog.
-    #[error("the graphics device was lost: {0}; reopening the file starts it again")]
+    #[error("the graphics device was lost ({0})")]
     Lost(String),
 }

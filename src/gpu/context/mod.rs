@@ -3,10 +3,14 @@
 pub(super) mod clock;
 pub(super) mod error;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use self::clock::Clock;
 use super::GpuError;
+use crate::fault::{self, Count, Fault};
 
 /// Said when there is no adapter.
 const ADAPTER_HELP: &str =
@@ -33,7 +37,19 @@ pub struct Context {
     pub unorm16: bool,
     /// The first complaint that nobody caught, kept until it is taken.
     complaint: Arc<Mutex<Option<GpuError>>>,
+    /// The device is gone.
+    lost: Arc<AtomicBool>,
 }
+
+/// How long the adapter may take for what was submitted. Parts of pictures are made to take a tenth of a second; the
+/// slowest driver on a busy machine has needed ten seconds.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+/// Textures and buffers that were asked for.
+pub(crate) static ALLOCATIONS: Count = Count::new();
+
+/// How often it is looked at whether a device that is waited for is still there.
+const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
 /// Features that we use where an adapter has them.
 const WANTED: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
@@ -131,15 +147,16 @@ impl Context {
             };
             keep(&for_errors, err);
         }));
-        let for_loss = Arc::clone(&complaint);
+        let lost = Arc::new(AtomicBool::new(false));
+        let (for_loss, flag) = (Arc::clone(&complaint), Arc::clone(&lost));
         device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                keep(&for_loss, GpuError::Lost(message));
-            }
+            flag.store(true, Ordering::Relaxed);
+            let why = if message.is_empty() { format!("{reason:?}") } else { message };
+            keep(&for_loss, GpuError::Lost(why));
         });
         let unorm16 = features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
         let (adapter, info) = (adapter.clone(), adapter.get_info());
-        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaint })
+        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaint, lost })
     }
 
     /// This device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
@@ -193,12 +210,52 @@ impl Context {
     /// Waits until everything submitted is done, and reports what went wrong since the last call.
     ///
     /// # Errors
-    /// What the device complained about.
+    /// What the device complained about; that it is lost, also where the adapter has given no answer for two minutes.
     pub fn wait(&self) -> Result<(), GpuError> {
-        self.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|err| GpuError::Refused(err.to_string()))?;
-        self.check()
+        let begin = Instant::now();
+        std::thread::sleep(fault::slowness());
+        loop {
+            match self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LOOK_AGAIN) }) {
+                Err(wgpu::PollError::Timeout) if self.lost.load(Ordering::Relaxed) => {}
+                Err(wgpu::PollError::Timeout) if begin.elapsed() > PATIENCE => {
+                    self.lost.store(true, Ordering::Relaxed);
+                    let why = format!("{} has not answered for {} s", self.info.name, PATIENCE.as_secs());
+                    return Err(GpuError::Lost(why));
+                }
+                Err(wgpu::PollError::Timeout) => continue,
+                Err(err) => return Err(GpuError::Refused(err.to_string())),
+                Ok(_) => {}
+            }
+            self.check()?;
+            return if self.lost.load(Ordering::Relaxed) { Err(self.gone()) } else { Ok(()) };
+        }
+    }
+
+    /// Lets the device tell what has happened, without waiting. wgpu panics where it finds a device gone.
+    fn poll(&self, how: wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
+        catch_unwind(AssertUnwindSafe(|| self.device.poll(how))).unwrap_or_else(|_| {
+            self.lost.store(true, Ordering::Relaxed);
+            Ok(wgpu::PollStatus::QueueEmpty)
+        })
+    }
+
+    /// Whether the device is gone, for good: after a driver's update, a sleep, a card that was taken out. To be asked
+    /// before anything is drawn with it, which might panic.
+    pub fn is_lost(&self) -> bool {
+        if !self.lost.load(Ordering::Relaxed) {
+            self.poll(wgpu::PollType::Poll).ok();
+        }
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Takes the device away.
+    pub(crate) fn lose(&self) {
+        self.device.destroy();
+    }
+
+    /// What to say of a device that is gone.
+    fn gone(&self) -> GpuError {
+        GpuError::Lost(self.info.name.clone())
     }
 
     /// Reports what went wrong since the last call.
@@ -235,6 +292,9 @@ impl Context {
         }
         let texels = u64::from(width) * u64::from(height) * u64::from(depth_or_array_layers);
         let bytes = texels * u64::from(descriptor.format.block_copy_size(None).unwrap_or(16));
+        if fault::is_due(&ALLOCATIONS, Fault::OutOfMemory) {
+            return Err(GpuError::OutOfMemory { what, mebibytes: bytes >> 20 });
+        }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let texture = self.device.create_texture(descriptor);
         match pollster::block_on(scope.pop()) {
@@ -250,12 +310,44 @@ impl Context {
         contents: &[T],
         usage: wgpu::BufferUsages,
     ) -> wgpu::Buffer {
-        use wgpu::util::DeviceExt as _;
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        let bytes: &[u8] = bytemuck::cast_slice(contents);
+        let aligned = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+        let buffer = self.empty_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
-            contents: bytemuck::cast_slice(contents),
-            usage,
-        })
+            size: aligned.max(wgpu::COPY_BUFFER_ALIGNMENT),
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        // Not mapped from the beginning: memory that was refused cannot be, and wgpu panics.
+        if bytes.len() as u64 == aligned {
+            self.queue.write_buffer(&buffer, 0, bytes);
+        } else {
+            let mut padded = bytes.to_vec();
+            padded.resize(aligned as usize, 0);
+            self.queue.write_buffer(&buffer, 0, &padded);
+        }
+        buffer
+    }
+
+    /// A buffer of anything. Where memory is out it can be used like any other, to no effect, and [`Self::check`]
+    /// tells.
+    pub(crate) fn empty_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
+        let is_refused = fault::is_due(&ALLOCATIONS, Fault::OutOfMemory);
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let buffer = self.device.create_buffer(descriptor);
+        if pollster::block_on(scope.pop()).is_some() || is_refused {
+            let what = descriptor.label.unwrap_or("a buffer").to_owned();
+            self.complain(GpuError::OutOfMemory { what, mebibytes: descriptor.size >> 20 });
+        }
+        if is_refused {
+            // As one that was refused: what uses it is refused, too.
+            buffer.destroy();
+        }
+        buffer
+    }
+
+    fn complain(&self, err: GpuError) {
+        self.complaint.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(err);
     }
 
     /// A sampler that filters linearly and clamps.

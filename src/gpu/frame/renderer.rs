@@ -113,6 +113,20 @@ impl Renderer {
         size: [u32; 2],
         options: &RenderOptions,
     ) -> Result<(), GpuError> {
+        let drawn = self.draw_all(dataset, settings, size, options);
+        if drawn.is_err() {
+            self.forget_everything();
+        }
+        drawn
+    }
+
+    fn draw_all(
+        &mut self,
+        dataset: &Dataset,
+        settings: &Settings,
+        size: [u32; 2],
+        options: &RenderOptions,
+    ) -> Result<(), GpuError> {
         let context = self.tools.context.clone();
         let volume = dataset.volume().content_id();
         let request = Request { volume, settings: settings.clone(), size, coarse: None };
@@ -128,6 +142,16 @@ impl Renderer {
             }
         }
         context.wait()
+    }
+
+    /// Forgets all that is on the GPU: after an error, some of it may not be what its key says. It is also the most
+    /// that can be given back.
+    pub fn forget_everything(&mut self) {
+        self.loaded = None;
+        self.tools.pool.clear();
+        self.targets.forget();
+        // What was recorded with it may still complain.
+        self.tools.context.wait().ok();
     }
 
     /// Forgets finished pictures, so that the next one is drawn anew whatever it shows: for measurements, and for

@@ -112,7 +112,7 @@ impl ResourcePool {
         let shelf = inner.shelves.entry((label, size, usage.bits())).or_default();
         if shelf.taken == shelf.buffers.len() {
             inner.made += 1;
-            shelf.buffers.push(context.device.create_buffer(&wgpu::BufferDescriptor {
+            shelf.buffers.push(context.empty_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size,
                 usage: usage | wgpu::BufferUsages::COPY_DST,

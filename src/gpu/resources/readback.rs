@@ -21,7 +21,7 @@ pub(crate) fn read_texture(context: &Context, texture: &wgpu::Texture) -> Result
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let mut bytes = Vec::with_capacity((row * size.height) as usize * size.depth_or_array_layers as usize);
     // A slice at a time: a volume may be larger than a buffer can be.
-    let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
+    let buffer = context.empty_buffer(&wgpu::BufferDescriptor {
         label: Some("Readback::buffer"),
         size: u64::from(padded) * u64::from(size.height),
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
@@ -65,7 +65,7 @@ pub(crate) fn read_texture(context: &Context, texture: &wgpu::Texture) -> Result
 
 /// The first word of a buffer.
 pub(crate) fn read_word(context: &Context, source: &wgpu::Buffer) -> Result<u32, GpuError> {
-    let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
+    let buffer = context.empty_buffer(&wgpu::BufferDescriptor {
         label: Some("Readback::word"),
         size: 4,
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,

@@ -37,7 +37,7 @@ impl Ring {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         })?;
-        let transmittance = context.device.create_buffer(&wgpu::BufferDescriptor {
+        let transmittance = context.empty_buffer(&wgpu::BufferDescriptor {
             label: Some("Ring::transmittance"),
             size: u64::from(width) * u64::from(height) * 4,
             usage: wgpu::BufferUsages::STORAGE,

@@ -335,7 +335,7 @@ pub(crate) fn sums(
             help: "the gathering engine makes the same picture without it",
         });
     }
-    Ok(context.device.create_buffer(&wgpu::BufferDescriptor {
+    Ok(context.empty_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,

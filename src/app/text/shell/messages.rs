@@ -28,10 +28,16 @@ pub(crate) const LIGHT_VOLUME_NOT_SHOWN: &str = "the light volume could not be s
 pub(crate) const LIGHT_VOLUME_NOT_EXPORTED: &str = "the light volume was not exported";
 
 pub(crate) const NOT_RENDERED: &str = "the picture could not be rendered";
-pub(crate) const DEVICE_LOST: &str = "the graphics device was lost; start again to go on";
-/// What became of the look when the device was lost.
-pub(crate) const RESCUED: &str = "the look is kept: File, Go on where you left off, after the next start";
-pub(crate) const NOT_RESCUED: &str = "save the settings before you start again";
+pub(crate) const DEVICE_LOST: &str = "the graphics device was lost";
+pub(crate) const DEVICE_IS_BACK: &str = "The graphics device was lost; everything is here again";
+/// The window that asks when that happens again and again.
+pub(crate) const LOST_AGAIN: &str = "The graphics device was lost again";
+pub(crate) const LOST_AGAIN_WHY: &str = "Twice within a minute. The look is kept; how shall it go on?";
+pub(crate) const TRY_AGAIN: &str = "Try again";
+pub(crate) const LOWER_QUALITY: &str = "Lower quality";
+pub(crate) const USE_CPU: &str = "Use the processor instead";
+/// Why the processor cannot draw instead.
+pub(crate) const NO_CPU_ADAPTER: &str = "no driver draws with the processor";
 /// Why the window cannot start.
 pub(crate) const NO_DEVICE: &str = "the window has no wgpu device";
 
@@ -53,9 +59,4 @@ pub(crate) fn view_kept(slot: u8) -> String {
 /// There is no view under a digit.
 pub(crate) fn no_view_kept(slot: u8) -> String {
     format!("No view is kept as {slot}: {} keeps one", store_view_keys(slot))
-}
-
-/// Why the device was lost, and what became of the settings.
-pub(crate) fn lost_and_rescued(why: &str, rescue: &str) -> String {
-    format!("{why}; {rescue}")
 }

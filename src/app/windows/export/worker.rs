@@ -8,6 +8,7 @@ use eframe::egui;
 
 use crate::data::Dataset;
 use crate::export::{Animation, AnimationFormat, AnimationSpec, ExportError, write_picture};
+use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, RenderOptions, Renderer};
 use crate::model::{ImageSpec, PictureRecord, Record, Settings, VolumeRecord};
 
@@ -94,6 +95,7 @@ pub(in crate::app) struct Worker {
 impl Worker {
     /// A renderer for a subject.
     pub(in crate::app) fn new(subject: &Subject) -> Result<Self, String> {
+        may_panic(Place::Export);
         let beside = subject.context.sibling().map_err(|err| err.to_string())?;
         let renderer = Renderer::new(&beside).map_err(|err| err.to_string())?;
         Ok(Self { renderer, adapter: beside.description() })

@@ -1,0 +1,148 @@
+//! How a window begins: with nothing, and with the volume and the look that it was started with.
+
+use std::path::PathBuf;
+
+use super::carried::Legacy;
+use super::error::AppError;
+use super::options::Options;
+use crate::app::common::theme;
+use crate::app::memory::Memory;
+use crate::app::shell::history::History;
+use crate::app::shell::keep_balanced::KeepBalanced;
+use crate::app::shell::messages::Messages;
+use crate::app::shell::opening;
+use crate::app::shell::session::Session;
+use crate::app::shell::status_file::StatusFile;
+use crate::app::transfer_editor::TransferEditor;
+use crate::app::viewport::Viewport;
+use crate::app::viewport::compare::Compare;
+use crate::app::viewport::cut_handles::CutHandles;
+use crate::app::viewport::hints::Hints;
+use crate::app::viewport::light_handles::LightHandles;
+use crate::app::viewport::light_probe::LightProbe;
+use crate::app::viewport::overlay::Overlay;
+use crate::app::windows::contact_sheet::ContactSheet;
+use crate::app::windows::export::Export;
+use crate::app::windows::files::Files;
+use crate::app::windows::help::Help;
+use crate::app::windows::light_slice::LightSlice;
+use crate::app::windows::lost_again::LostAgain;
+use crate::app::windows::palette::Palette;
+use crate::app::windows::quit::Quit;
+use crate::app::windows::raw_dialog::RawDialog;
+use crate::app::windows::recovery::Recovery;
+use crate::app::windows::slices::Slices;
+use crate::app::worker::loader::Loader;
+use crate::app::{App, text};
+use crate::data::load::LoadOptions;
+use crate::fault::{self, Count, Fault, Place, may_panic};
+use crate::gpu::{Context, GpuError, WindowPainter};
+use crate::model::Settings;
+
+/// Frames of all windows, for faults on purpose.
+static FRAMES: Count = Count::new();
+
+impl App {
+    /// Starts in a window and begins to open the first volume.
+    ///
+    /// # Errors
+    /// When the window's device cannot be used.
+    pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
+        Self::begin(cc, options, Legacy::default())
+    }
+
+    /// As [`Self::new`]; what another window needs to take this one's place goes to `legacy`.
+    pub(in crate::app) fn begin(
+        cc: &eframe::CreationContext<'_>,
+        options: Options,
+        legacy: Legacy,
+    ) -> Result<Self, AppError> {
+        let Options { source, load, session, adjust, storage } = options;
+        let source = source.or_else(|| opening::volume_of_session(session.as_deref()?));
+        let memory = Memory::new(storage.as_deref(), &cc.egui_ctx);
+        let mut app = Self::build(cc, load, storage, memory, legacy)?;
+        app.recovery = Recovery::of(app.memory.earlier(), &cc.egui_ctx);
+        app.hints = Hints { on: app.memory.is_first() };
+        app.session_is_due = session.is_some();
+        app.session = session.map(Session::named);
+        app.adjust = adjust;
+        app.open_first(source.as_deref(), &cc.egui_ctx);
+        Ok(app)
+    }
+
+    /// A window of nothing yet.
+    pub(in crate::app) fn build(
+        cc: &eframe::CreationContext<'_>,
+        load: LoadOptions,
+        storage: Option<PathBuf>,
+        memory: Memory,
+        legacy: Legacy,
+    ) -> Result<Self, AppError> {
+        let no_wgpu = || GpuError::Refused(text::messages::NO_DEVICE.to_owned());
+        let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
+        // The window's own device draws the window alone: pictures are made beside it.
+        let window = WindowPainter::new(&paint.device, &paint.queue, paint.target_format)?;
+        let window_context = Context::new(&paint.adapter, paint.device, paint.queue)?;
+        let context = window_context.sibling()?;
+        theme::apply(&cc.egui_ctx);
+        Ok(Self {
+            settings: Settings::default(),
+            defaults: Settings::default(),
+            volume: None,
+            viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
+            canvas: None,
+            loader: Loader::new(context, load, storage.as_deref())?,
+            memory,
+            keeps_look: false,
+            pending: None,
+            balance: None,
+            keep_balanced: KeepBalanced::new(&Settings::default(), true),
+            export: Export::default(),
+            files: Files::default(),
+            session_is_due: false,
+            session: None,
+            recovery: Recovery::default(),
+            quit: Quit::default(),
+            lost_again: LostAgain::default(),
+            adjust: None,
+            history: History::default(),
+            handles: LightHandles::default(),
+            cut_handles: CutHandles::default(),
+            compare: Compare::default(),
+            overlay: Overlay::default(),
+            probe: LightProbe::default(),
+            palette: Palette::default(),
+            light_slice: LightSlice::default(),
+            slices: Slices::default(),
+            raw_dialog: RawDialog::default(),
+            contact_sheet: ContactSheet::default(),
+            editor: TransferEditor::new(window.clone()),
+            window,
+            window_context,
+            storage,
+            legacy,
+            waiting: None,
+            is_ending: false,
+            wants_cpu: false,
+            selected_light: 0,
+            side_open: true,
+            help: Help::default(),
+            hints: Hints::default(),
+            messages: Messages::default(),
+            longest_ui_ms: 0.0,
+            status_file: StatusFile::from_environment(),
+        })
+    }
+
+    /// Does to the window what `--fault` asks for.
+    pub(in crate::app) fn fail_on_purpose(&self) {
+        may_panic(Place::Window);
+        let frame = FRAMES.next();
+        if fault::is_on(Fault::Lost(frame)) {
+            self.window_context.lose();
+        }
+        if fault::is_on(Fault::Lost(frame)) || fault::is_on(Fault::PicturesLost(frame)) {
+            self.viewport.context().lose();
+        }
+    }
+}

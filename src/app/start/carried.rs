@@ -1,0 +1,156 @@
+//! What goes from a window whose graphics device was lost into the one that takes its place.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui;
+
+use super::error::AppError;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::memory::Memory;
+use crate::app::shell::history::History;
+use crate::app::shell::opening::PendingLook;
+use crate::app::shell::session::Session;
+use crate::app::viewport::compare::Compare;
+use crate::app::windows::lost_again::Answer;
+use crate::app::worker::loader::Reading;
+use crate::app::{App, text};
+use crate::data::Dataset;
+use crate::data::load::LoadOptions;
+use crate::model::{Quality, Settings};
+
+/// The look with its history, the volume in host memory, and the file that is saved to: everything that is the user's.
+#[derive(Debug)]
+pub(in crate::app) struct Carried {
+    settings: Settings,
+    defaults: Settings,
+    history: History,
+    volume: Option<VolumeFacts>,
+    dataset: Option<Dataset>,
+    session: Option<Session>,
+    session_is_due: bool,
+    memory: Memory,
+    keeps_look: bool,
+    compare: Compare,
+    selected_light: usize,
+    /// What was being opened.
+    opening: Option<(String, Reading)>,
+    pending: Option<PendingLook>,
+    pub load: LoadOptions,
+    pub storage: Option<PathBuf>,
+    /// The user wants the adapter that is the CPU.
+    pub on_cpu: bool,
+}
+
+/// Where a window leaves it when it ends for another to take its place.
+pub(in crate::app) type Legacy = Arc<Mutex<Option<Carried>>>;
+
+impl App {
+    /// The device is gone: this window ends without drawing anything further, and another takes its place.
+    pub(in crate::app) fn end_for_another(&mut self, ctx: &egui::Context) {
+        if !self.is_ending {
+            log::warn!("{}", text::messages::DEVICE_LOST);
+            self.is_ending = true;
+            if let Some(words) = self.memory.last_words() {
+                words.write();
+            }
+        }
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        ctx.request_repaint();
+    }
+
+    /// Leaves behind what the next window needs.
+    pub(in crate::app) fn leave(&mut self) {
+        let opening = self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading));
+        let carried = Carried {
+            settings: std::mem::take(&mut self.settings),
+            defaults: std::mem::take(&mut self.defaults),
+            history: std::mem::take(&mut self.history),
+            volume: self.volume.take(),
+            dataset: self.viewport.dataset(),
+            session: self.session.take(),
+            session_is_due: self.session_is_due,
+            memory: std::mem::take(&mut self.memory),
+            keeps_look: self.keeps_look,
+            compare: self.compare.clone(),
+            selected_light: self.selected_light,
+            opening,
+            pending: self.pending.take(),
+            load: self.loader.options().clone(),
+            storage: self.storage.clone(),
+            on_cpu: self.wants_cpu,
+        };
+        *self.legacy.lock().unwrap_or_else(PoisonError::into_inner) = Some(carried);
+    }
+
+    /// A window that goes on where another had to end. After losses in short succession the user is asked first.
+    pub(in crate::app) fn go_on(
+        cc: &eframe::CreationContext<'_>,
+        carried: Carried,
+        legacy: Legacy,
+        asks: bool,
+    ) -> Result<Self, AppError> {
+        let Carried {
+            settings,
+            defaults,
+            history,
+            volume,
+            dataset,
+            session,
+            session_is_due,
+            memory,
+            keeps_look,
+            compare,
+            selected_light,
+            opening,
+            pending,
+            load,
+            storage,
+            on_cpu: _,
+        } = carried;
+        let mut app = Self::build(cc, load, storage, memory, legacy)?;
+        app.keep_balanced.accept(&settings);
+        (app.settings, app.defaults, app.history) = (settings, defaults, history);
+        (app.volume, app.session, app.session_is_due) = (volume, session, session_is_due);
+        (app.keeps_look, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
+        app.pending = pending;
+        app.waiting = dataset;
+        if asks {
+            app.lost_again.ask();
+        } else {
+            app.messages.note(text::messages::DEVICE_IS_BACK);
+            app.show_again(&cc.egui_ctx);
+        }
+        if let Some((source, reading)) = opening {
+            app.start_loading(&source, reading, &cc.egui_ctx);
+        } else if app.volume.is_none() {
+            app.open_first(None, &cc.egui_ctx);
+        }
+        Ok(app)
+    }
+
+    /// Shows the volume again that an earlier window had open.
+    pub(in crate::app) fn show_again(&mut self, ctx: &egui::Context) {
+        if let Some(dataset) = self.waiting.take()
+            && let Err(err) = self.loader.show(dataset, ctx)
+        {
+            self.messages.error(text::messages::NOT_RENDERED, err);
+        }
+    }
+
+    /// The device was lost again soon: does what the user has chosen then.
+    pub(in crate::app) fn answer_loss(&mut self, answer: Answer, ctx: &egui::Context) {
+        match answer {
+            Answer::TryAgain => self.show_again(ctx),
+            Answer::LowerQuality => {
+                Quality::Fast.apply(&mut self.settings);
+                self.show_again(ctx);
+            }
+            Answer::UseCpu => {
+                self.wants_cpu = true;
+                self.end_for_another(ctx);
+            }
+            Answer::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+    }
+}

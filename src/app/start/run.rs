@@ -1,0 +1,92 @@
+//! Opens windows, one after another where graphics devices are lost.
+
+use std::path::PathBuf;
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+
+use super::carried::Legacy;
+use super::error::AppError;
+use super::icon;
+use super::options::Options;
+use crate::app::memory::{check_window_state, write_last_words};
+use crate::app::{App, text};
+use crate::gpu::device_descriptor;
+
+/// Names our window to the desktop, and the folder in which we keep things.
+const APP_ID: &str = "chiaroscuro";
+
+/// The folder in which this user's system keeps what programs remember.
+pub fn storage_folder() -> Option<PathBuf> {
+    eframe::storage_dir(APP_ID)
+}
+
+/// How the window's device is opened: with the limits and features that the renderer can use.
+pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
+    let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = Arc::new(device_descriptor);
+    setup
+}
+
+/// Opens the window and returns when it is closed. When its graphics device is lost, another takes its place.
+///
+/// # Errors
+/// When there is no display or no usable graphics adapter.
+pub fn run(options: Options) -> Result<(), AppError> {
+    let damaged = options.storage.as_deref().and_then(check_window_state);
+    let default = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |what| {
+        write_last_words();
+        default(what);
+    }));
+    let legacy = Legacy::default();
+    let theirs = Legacy::clone(&legacy);
+    open_window(false, move |cc| {
+        let mut app = App::begin(cc, options, theirs)?;
+        app.remember_to_say(damaged);
+        Ok(app)
+    })?;
+    let mut losses: Vec<Instant> = Vec::new();
+    loop {
+        let Some(carried) = legacy.lock().unwrap_or_else(PoisonError::into_inner).take() else {
+            return Ok(());
+        };
+        losses.retain(|when| when.elapsed() < SUCCESSION);
+        losses.push(Instant::now());
+        // Whoever has chosen how to go on is not asked again.
+        let (asks, on_cpu) = (losses.len() > 1 && !carried.on_cpu, carried.on_cpu);
+        let theirs = Legacy::clone(&legacy);
+        open_window(on_cpu, move |cc| App::go_on(cc, carried, theirs, asks))?;
+    }
+}
+
+/// A device that is lost twice within this time will be lost again.
+const SUCCESSION: Duration = Duration::from_mins(1);
+
+/// Opens a window, perhaps on the adapter that is the CPU, and returns when it is closed.
+fn open_window(
+    on_cpu: bool,
+    begin: impl FnOnce(&eframe::CreationContext<'_>) -> Result<App, AppError>,
+) -> Result<(), AppError> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title(text::opening::PROGRAM)
+        .with_app_id(APP_ID)
+        .with_inner_size([1280.0, 800.0])
+        .with_min_inner_size([560.0, 420.0])
+        .with_icon(icon::icon());
+    let mut setup = wgpu_setup();
+    if on_cpu {
+        setup.native_adapter_selector = Some(Arc::new(|adapters, _surface| {
+            let is_cpu = |adapter: &&wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+            adapters.iter().find(is_cpu).cloned().ok_or_else(|| text::messages::NO_CPU_ADAPTER.to_owned())
+        }));
+    }
+    let wgpu_options =
+        eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() };
+    // Without dithering the picture reaches the screen byte for byte.
+    let native = eframe::NativeOptions { viewport, wgpu_options, dithering: false, ..Default::default() };
+    let start = |cc: &eframe::CreationContext<'_>| Ok(Box::new(begin(cc)?) as Box<dyn eframe::App>);
+    eframe::run_native(text::opening::PROGRAM, native, Box::new(start))?;
+    Ok(())
+}

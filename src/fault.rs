@@ -1,0 +1,166 @@
+//! Faults on purpose: what the hidden option `--fault` asks for, so that tests see what the ordinary program does when
+//! memory, disk, device or a thread fails it.
+//!
+//! Places that can fail ask here. Without the option, each asks one atomic number.
+
+use std::str::FromStr;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{PoisonError, RwLock};
+use std::time::Duration;
+
+/// What can be told to panic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// The thread that opens volumes.
+    Loader,
+    /// The thread that renders the window's pictures.
+    Worker,
+    /// The window's own thread.
+    Window,
+    /// The thread that exports.
+    Export,
+}
+
+/// A fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fault {
+    /// The window's device and that of its pictures are lost in its N-th frame.
+    Lost(u64),
+    /// The device of the pictures alone is lost then.
+    PicturesLost(u64),
+    /// The adapter refuses memory for the K-th texture or buffer.
+    OutOfMemory(u64),
+    /// A thread panics at its next work.
+    Panic(Place),
+    /// No shader can be translated.
+    Shader,
+    /// Every wait for the adapter takes so much longer.
+    Slow(Duration),
+    /// Nothing can be written.
+    FullDisk,
+    /// The N-th block that is read of a volume cannot be.
+    ReadError(u64),
+}
+
+impl FromStr for Fault {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let expected = "expected lost@N, pictures-lost@N, oom@K, panic:loader|worker|ui|export, shader, slow:MS, \
+                        full-disk or read-error@N";
+        let unknown = || format!("{expected}; found {text:?}");
+        let number = |digits: &str| digits.parse::<u64>().ok().ok_or_else(unknown);
+        if let Some((what, count)) = text.split_once('@') {
+            let count = number(count)?;
+            return match what {
+                "lost" => Ok(Self::Lost(count)),
+                "pictures-lost" => Ok(Self::PicturesLost(count)),
+                "oom" => Ok(Self::OutOfMemory(count)),
+                "read-error" => Ok(Self::ReadError(count)),
+                _ => Err(unknown()),
+            };
+        }
+        match text {
+            "shader" => Ok(Self::Shader),
+            "full-disk" => Ok(Self::FullDisk),
+            "panic:loader" => Ok(Self::Panic(Place::Loader)),
+            "panic:worker" => Ok(Self::Panic(Place::Worker)),
+            "panic:ui" => Ok(Self::Panic(Place::Window)),
+            "panic:export" => Ok(Self::Panic(Place::Export)),
+            _ => {
+                let millis = text.strip_prefix("slow:").ok_or_else(unknown)?;
+                Ok(Self::Slow(Duration::from_millis(number(millis)?)))
+            }
+        }
+    }
+}
+
+/// The faults of this process, and whether there are any.
+static FAULTS: RwLock<Vec<Fault>> = RwLock::new(Vec::new());
+static ANY: AtomicBool = AtomicBool::new(false);
+
+/// How often something has happened that a fault counts.
+#[derive(Debug, Default)]
+pub(crate) struct Count(AtomicU64);
+
+impl Count {
+    /// None yet.
+    pub(crate) const fn new() -> Self {
+        Self(AtomicU64::new(0))
+    }
+
+    /// One more, and how many that makes.
+    pub(crate) fn next(&self) -> u64 {
+        self.0.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    /// How many so far, since faults were chosen first.
+    #[cfg(test)]
+    pub(crate) fn so_far(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Chooses the faults of this process.
+pub(crate) fn choose(faults: Vec<Fault>) {
+    ANY.store(!faults.is_empty(), Ordering::Relaxed);
+    *FAULTS.write().unwrap_or_else(PoisonError::into_inner) = faults;
+}
+
+/// Whether one of the faults that were chosen is such a one.
+fn any(is_it: impl FnMut(&Fault) -> bool) -> bool {
+    ANY.load(Ordering::Relaxed) && FAULTS.read().unwrap_or_else(PoisonError::into_inner).iter().any(is_it)
+}
+
+/// Whether a fault was chosen.
+pub(crate) fn is_on(fault: Fault) -> bool {
+    any(|chosen| *chosen == fault)
+}
+
+/// Counts one, and says whether that is the one that a fault names. Nothing is counted unless faults were chosen.
+pub(crate) fn is_due(count: &Count, fault: impl Fn(u64) -> Fault) -> bool {
+    ANY.load(Ordering::Relaxed) && is_on(fault(count.next()))
+}
+
+/// Panics where that was chosen.
+pub(crate) fn may_panic(place: Place) {
+    assert!(!is_on(Fault::Panic(place)), "a fault was asked for: panic in {place:?}");
+}
+
+/// How much longer waits for the adapter take.
+pub(crate) fn slowness() -> Duration {
+    let mut by = Duration::ZERO;
+    any(|chosen| {
+        if let Fault::Slow(longer) = chosen {
+            by += *longer;
+        }
+        false
+    });
+    by
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_are_read_and_what_is_none_is_refused() {
+        let read = |text: &str| text.parse::<Fault>();
+        assert_eq!(read("lost@10"), Ok(Fault::Lost(10)));
+        assert_eq!(read("oom@3"), Ok(Fault::OutOfMemory(3)));
+        assert_eq!(read("panic:ui"), Ok(Fault::Panic(Place::Window)));
+        assert_eq!(read("slow:250"), Ok(Fault::Slow(Duration::from_millis(250))));
+        for wrong in ["", "lost", "lost@", "lost@x", "oom@-1", "panic:", "slow:", "slow:1.5", "fire@3"] {
+            assert!(read(wrong).unwrap_err().contains("oom@K"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn nothing_fails_unless_it_is_asked_for() {
+        let count = Count::new();
+        assert!(!is_due(&count, Fault::OutOfMemory) && !is_on(Fault::FullDisk));
+        assert_eq!(count.0.load(Ordering::Relaxed), 0, "nor is anything counted");
+        may_panic(Place::Loader);
+        assert_eq!(slowness(), Duration::ZERO);
+    }
+}

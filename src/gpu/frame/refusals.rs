@@ -1,0 +1,83 @@
+//! Tests of what the renderer does when memory is refused, for whichever texture or buffer.
+
+use crate::data::load::{LoadControl, LoadOptions};
+use crate::data::{Dataset, open};
+use crate::fault::{self, Fault};
+use crate::gpu::context::ALLOCATIONS;
+use crate::gpu::pipelines::shader::ShaderLibrary;
+use crate::gpu::{Context, GpuError, RenderOptions, Renderer};
+use crate::model::{Engine, LightStorage, Settings, auto};
+
+const SIZE: [u32; 2] = [24, 18];
+
+/// How far a picture without the texture of gradients may be from that with it, in steps of a byte: where kernels are
+/// stretched, its normals are interpolated, and here pixels are as large as voxels.
+const LEFT_OUT: u8 = 16;
+
+/// The picture of a renderer that has had it refused the `k`-th allocation from now on; and whether it came to that.
+fn with_refusal(
+    k: u64,
+    draw: impl FnOnce() -> Result<Vec<u8>, GpuError>,
+) -> (Result<Vec<u8>, GpuError>, bool) {
+    let before = ALLOCATIONS.so_far();
+    fault::choose(vec![Fault::OutOfMemory(before + k)]);
+    let result = draw();
+    let came = ALLOCATIONS.so_far() >= before + k;
+    fault::choose(Vec::new());
+    (result, came)
+}
+
+/// Every refusal is an error that says so, and neither a panic nor a picture that is not right; and the next picture
+/// of the same renderer is what it would have been.
+fn refused_anywhere(settings: &Settings, dataset: &Dataset) {
+    let context = Context::headless().expect("an adapter");
+    let shaders = ShaderLibrary::new(&context);
+    let new = || Renderer::with_shaders(&context, shaders.clone()).expect("a renderer");
+    let options = RenderOptions::default();
+    let expected = new().render_shown(dataset, settings, SIZE, &options).expect("a picture");
+    let mut refused = 0;
+    for k in 1.. {
+        let mut renderer = new();
+        let (result, came) = with_refusal(k, || renderer.render_shown(dataset, settings, SIZE, &options));
+        if !came {
+            assert!(result.expect("nothing was refused") == expected);
+            break;
+        }
+        let again = renderer.render_shown(dataset, settings, SIZE, &options).expect("memory is there again");
+        match result {
+            Err(GpuError::OutOfMemory { .. }) => {
+                refused += 1;
+                assert!(again == expected, "allocation {k}");
+            }
+            // It went without what was refused, and goes on so.
+            Ok(picture) => {
+                let most = picture.iter().zip(&expected).map(|(a, b)| a.abs_diff(*b)).max();
+                assert!(most <= Some(LEFT_OUT) && again == picture, "allocation {k}: {most:?}");
+            }
+            Err(other) => panic!("allocation {k}: {other}"),
+        }
+    }
+    assert!(refused > 10, "{refused} refusals were noticed");
+}
+
+fn scene() -> (Dataset, Settings) {
+    let volume = open("builtin:chair:16", &LoadOptions::default(), &LoadControl::new()).expect("a volume");
+    let dataset = Dataset::new(volume);
+    let settings = auto::first_settings(dataset.volume(), dataset.histogram());
+    (dataset, settings)
+}
+
+#[test]
+fn memory_can_be_refused_anywhere_in_a_gathered_picture() {
+    let (dataset, mut settings) = scene();
+    settings.shadows.storage = LightStorage::Combined;
+    settings.floor.on = true;
+    refused_anywhere(&settings, &dataset);
+}
+
+#[test]
+fn memory_can_be_refused_anywhere_in_a_scattered_picture() {
+    let (dataset, mut settings) = scene();
+    settings.sampling.engine = Engine::Scatter;
+    refused_anywhere(&settings, &dataset);
+}
