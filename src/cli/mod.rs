@@ -12,6 +12,7 @@ mod outputs;
 mod render;
 mod replay;
 mod scene;
+mod signals;
 mod turntable;
 
 use std::path::PathBuf;
@@ -82,6 +83,9 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         }
     };
     fault::choose(args.fault);
+    #[cfg(feature = "window")]
+    signals::before_the_end(crate::app::end_in_a_hurry);
+    signals::listen();
     let result = match args.command {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Turntable(args)) => turntable::run(&args),

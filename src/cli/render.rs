@@ -11,7 +11,7 @@ use super::outputs::{print_line, warn_line};
 use super::scene::SceneArgs;
 use crate::export::{check_picture, check_writable, write_atomically, write_picture};
 use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
-use crate::model::{PictureRecord, Record, VolumeRecord};
+use crate::model::{PictureRecord, Record, VolumeRecord, tells_maker};
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -99,7 +99,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     write_picture(&args.output, &shot, Some(&record), &mut rows)?;
     // A report without its picture would mislead.
     if let Some((path, report)) = args.report.as_ref().zip(report) {
-        write_atomically(path, format!("{report:#}\n").as_bytes())?;
+        write_atomically(path, format!("{:#}\n", tells_maker(report)).as_bytes())?;
     }
     print_line(&format!("{}", args.output.display()))?;
     Ok(())

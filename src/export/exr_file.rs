@@ -12,11 +12,11 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::Compression;
 
+use super::files::{open_regular, place, temporary_beside};
 use super::png_file::sizes_of_ours;
 use super::rows::RECORD;
-use super::whole_file::{open_regular, place, temporary_beside};
 use super::{ExportError, ReadPictureError, Rows};
-use crate::model::ImageSpec;
+use crate::model::{ImageSpec, made_by};
 
 /// Channels in the order of the file, which is that of their names, and where they are in a pixel.
 const CHANNELS: [(&str, usize); 4] = [("A", 3), ("B", 2), ("G", 1), ("R", 0)];
@@ -43,6 +43,7 @@ pub(super) fn write<E: From<ExportError>>(
     let channels = CHANNELS.map(|(name, _)| ChannelDescription::named(name, SampleType::F16));
     let mut header = Header::new(Text::from(RECORD), (width, height), channels.into_iter().collect())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing);
+    header.own_attributes.software_name = Some(Text::from(made_by().as_str()));
     let text = ascii(record.unwrap_or_default());
     let pieces = text.as_bytes().chunks(LONGEST).enumerate();
     header.own_attributes.other.extend(

@@ -6,16 +6,19 @@
 mod animation;
 mod error;
 mod exr_file;
+mod files;
 mod picture_file;
 mod png_file;
 mod rows;
-mod whole_file;
 
 pub use animation::{Animation, AnimationFormat, AnimationSpec};
 pub use error::{ExportError, ReadPictureError};
+pub use files::{
+    check_ending, check_writable, hold_lock, is_ours, keep_backup, make_folder, put_aside, remove,
+    remove_abandoned, remove_unfinished, rename, write_atomically,
+};
 pub use picture_file::{
     PictureFormat, check_picture, picture_size, read_picture, read_record, write_picture,
 };
 pub use png_file::{encode_png, export_png};
 pub use rows::Rows;
-pub use whole_file::{check_ending, check_writable, keep_backup, write_atomically};

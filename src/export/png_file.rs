@@ -3,10 +3,10 @@
 use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
+use super::files::{check_ending, open_regular, place, temporary_beside, write_atomically};
 use super::rows::{RECORD, word};
-use super::whole_file::{check_ending, open_regular, place, temporary_beside, write_atomically};
 use super::{ExportError, ReadPictureError, Rows};
-use crate::model::{Depth, ImageSpec, MAX_EDGE};
+use crate::model::{Depth, ImageSpec, MAX_EDGE, made_by};
 
 /// Most bytes that are read of a picture's texts: a thousand times a real record.
 const MOST_TEXT: usize = 16 << 20;
@@ -46,6 +46,7 @@ pub fn encode_png(
     let mut encoder = png::Encoder::new(&mut png, width, height);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_color(color);
+    mark(&mut encoder)?;
     if let Some(record) = record {
         encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned())?;
     }
@@ -53,6 +54,11 @@ pub fn encode_png(
     writer.write_image_data(bytes)?;
     writer.finish()?;
     Ok(png)
+}
+
+/// Says in a file who made it.
+pub(super) fn mark<W: std::io::Write>(encoder: &mut png::Encoder<'_, W>) -> Result<(), png::EncodingError> {
+    encoder.add_text_chunk("Software".to_owned(), made_by())
 }
 
 /// Writes a picture as its rows come.
@@ -68,6 +74,7 @@ pub(super) fn write<E: From<ExportError>>(
     let mut encoder = png::Encoder::new(&mut out, shot.size[0], shot.size[1]);
     encoder.set_depth(if shot.depth == Depth::Eight { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
     encoder.set_color(if shot.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    mark(&mut encoder).map_err(ExportError::Encode)?;
     if let Some(record) = record {
         encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned()).map_err(ExportError::Encode)?;
     }

@@ -28,6 +28,7 @@ pub use self::settings::shadows::{
 pub use self::settings::variant::Variant;
 pub use self::settings::view::StandardView;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
+pub use self::stored::made_by::{MADE_BY, made_by, tells_maker};
 pub use self::stored::preset::{PresetError, apply_json, apply_path, load_json, to_json};
 pub use self::stored::record::{PictureRecord, Record, VolumeRecord};
 pub use self::transfer::baked::BakedTransfer;

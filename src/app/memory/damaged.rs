@@ -2,19 +2,15 @@
 
 use std::collections::HashMap;
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::app::text;
 use crate::data::read_small;
+use crate::export;
 
 /// Gives a file another name, with the time, so that somebody can look at it. Says what was done.
 pub(super) fn put_aside(path: &Path) -> String {
-    let millis = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".damaged-{millis}"));
-    let aside = path.with_file_name(name);
-    match std::fs::rename(path, &aside) {
-        Ok(()) => text::memory::put_aside(path, &aside),
+    match export::put_aside(path) {
+        Ok(aside) => text::memory::put_aside(path, &aside),
         Err(err) => text::memory::not_put_aside(path, err),
     }
 }

@@ -9,6 +9,7 @@ use eframe::egui::ColorImage;
 
 use super::{damaged, thumbnail};
 use crate::data::read_small;
+use crate::export;
 use crate::model::Record;
 
 /// Looks of earlier runs that are kept.
@@ -38,9 +39,14 @@ impl EarlierRun {
 
     /// The user has been told that the run crashed.
     pub(super) fn settle(&mut self) {
-        std::fs::remove_file(lock_of(&self.look)).ok();
+        end(&self.look);
         self.crashed = false;
     }
+}
+
+/// The run of a look has ended as it should, or nobody needs to know otherwise.
+pub(super) fn end(look: &Path) {
+    export::remove(&lock_of(look));
 }
 
 fn lock_of(look: &Path) -> PathBuf {
@@ -62,15 +68,14 @@ pub(super) struct ThisRun {
 impl ThisRun {
     /// Begins a run in a folder.
     pub(super) fn begin(folder: &Path) -> std::io::Result<Self> {
-        std::fs::create_dir_all(folder)?;
+        export::make_folder(folder)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         // Names in the order of time, and of no other process.
         let number = RUNS.fetch_add(1, Ordering::Relaxed);
         let name = format!("{:013}-{}-{number}.json", now.as_millis(), std::process::id());
         let look = folder.join(name);
-        let lock = File::create_new(lock_of(&look))?;
         // On a file system without locks, a run that goes on looks as if it had crashed.
-        lock.try_lock().ok();
+        let lock = export::hold_lock(&lock_of(&look))?;
         Ok(Self { look, lock: Some(lock) })
     }
 }
@@ -83,7 +88,7 @@ impl Drop for ThisRun {
         if std::thread::panicking() {
             return;
         }
-        std::fs::remove_file(lock_of(&self.look)).ok();
+        end(&self.look);
     }
 }
 
@@ -110,8 +115,8 @@ pub(super) fn adopt(folder: &Path, runs: &Path) {
         let look = folder.join(name);
         let Ok(when) = std::fs::metadata(&look).and_then(|found| found.modified()) else { continue };
         let millis = when.duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
-        std::fs::create_dir_all(runs).ok();
-        std::fs::rename(&look, runs.join(format!("{millis:013}-0.json"))).ok();
+        export::make_folder(runs).ok();
+        export::rename(&look, &runs.join(format!("{millis:013}-0.json"))).ok();
     }
 }
 
@@ -125,7 +130,7 @@ pub(super) fn read(folder: &Path) -> (Vec<EarlierRun>, Vec<String>) {
     for lock in files.iter().filter(|file| file.extension().is_some_and(|ending| ending == "lock")) {
         let look = lock.with_extension("json");
         if !look.exists() && matches!(how_ended(&look), Ended::Crashed) {
-            std::fs::remove_file(lock).ok();
+            export::remove(lock);
         }
     }
     let (mut runs, mut notices) = (Vec::new(), Vec::new());
@@ -161,6 +166,6 @@ fn describe(look: &Path, crashed: bool) -> Option<EarlierRun> {
 /// Removes a look, and what belongs to it.
 fn remove(look: &Path) {
     for file in [look.to_owned(), look.with_extension("png"), lock_of(look)] {
-        std::fs::remove_file(file).ok();
+        export::remove(&file);
     }
 }

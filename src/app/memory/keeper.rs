@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
+#[cfg(feature = "cli")]
+use super::earlier;
 use super::{recent, thumbnail};
 use crate::export::write_atomically;
 use crate::model::{Record, Settings, VolumeRecord};
@@ -154,6 +156,18 @@ static LAST_WORDS: Mutex<Vec<LastWords>> = Mutex::new(Vec::new());
 pub(crate) fn write_last_words() {
     let all = locked_soon(&LAST_WORDS).map(|all| all.clone());
     all.into_iter().flatten().for_each(|words| words.write());
+}
+
+/// Writes what no window of this process has written yet, because the process has been told to end: what it leaves was
+/// not cut off.
+#[cfg(feature = "cli")]
+pub(crate) fn end_in_a_hurry() {
+    write_last_words();
+    for words in locked_soon(&LAST_WORDS).iter().flat_map(|all| all.iter()) {
+        if let Some(shared) = words.0.upgrade() {
+            earlier::end(&shared.look);
+        }
+    }
 }
 
 impl LastWords {

@@ -17,8 +17,11 @@ pub(crate) use self::damaged::check_window_state;
 pub(crate) use self::earlier::EarlierRun;
 use self::earlier::ThisRun;
 use self::keeper::Keeper;
+#[cfg(feature = "cli")]
+pub(crate) use self::keeper::end_in_a_hurry;
 pub(crate) use self::keeper::{LastWords, write_last_words};
 use crate::app::text;
+use crate::export;
 use crate::model::Settings;
 
 /// The look that was handed over last, and what it is of.
@@ -50,6 +53,9 @@ impl Memory {
         let Some(folder) = folder else { return memory };
         let runs = folder.join("runs");
         earlier::adopt(folder, &runs);
+        for folder in [folder, &runs] {
+            export::remove_abandoned(folder);
+        }
         memory.is_first = !runs.exists();
         let (recent, notice) = recent::read(folder);
         (memory.recent, memory.notices) = (recent, notice.into_iter().collect());

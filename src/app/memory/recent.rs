@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::damaged;
 use crate::data::read_small;
-use crate::export::write_atomically;
+use crate::export::{hold_lock, write_atomically};
 
 /// Files that the menu offers.
 pub(super) const MOST: usize = 12;
@@ -36,8 +36,7 @@ pub(super) fn put_first(list: &mut Vec<String>, source: &str) {
 /// Adds files to the list of a folder, the latest last. What another window has added stays.
 pub(super) fn add(folder: &Path, opened: &[String]) -> Result<(), String> {
     // Between reading and writing nobody else writes. Without locks, two windows must be quick to lose an entry.
-    let lock = std::fs::File::create(folder.join("recent.lock")).map_err(|err| err.to_string())?;
-    lock.lock().ok();
+    let _lock = hold_lock(&folder.join("recent.lock")).map_err(|err| err.to_string())?;
     let (mut list, _) = read(folder);
     for source in opened {
         put_first(&mut list, source);

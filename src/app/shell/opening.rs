@@ -14,7 +14,7 @@ use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
 use crate::app::{App, text};
 use crate::data::ValueRange;
-use crate::model::{Length, Record, Settings};
+use crate::model::{Length, Record, Settings, made_by};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -65,7 +65,9 @@ impl App {
         let Described { path, layout, header, is_gzip } = described;
         if let Some(header) = header {
             let data_file = path.file_name().unwrap_or_default().to_string_lossy();
+            // Comments of a header follow its first line.
             let content = layout.header(&data_file, *is_gzip);
+            let content = content.replacen('\n', &format!("\n# {}\n", made_by()), 1);
             match crate::export::write_atomically(header, content.as_bytes()) {
                 Ok(()) => {
                     self.start_loading(&header.display().to_string(), Reading::default(), ctx);

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
-use crate::export::png_file::rgb;
-use crate::export::whole_file::{place, temporary_beside};
+use crate::export::files::{Unfinished, place, temporary_beside};
+use crate::export::png_file::{mark, rgb};
 
 /// An APNG file.
 pub(super) struct Apng {
     writer: png::Writer<BufWriter<File>>,
-    file: tempfile::NamedTempFile,
+    file: Unfinished,
     path: PathBuf,
     transparent: bool,
 }
@@ -26,6 +26,7 @@ impl Apng {
         let mut encoder = png::Encoder::new(out, width, height);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_color(if transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+        mark(&mut encoder)?;
         encoder.set_animated(frames, 0)?;
         encoder.set_frame_delay(1, rate)?;
         encoder.validate_sequence(true);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{AnimationEncoder, AnimationSpec};
-use crate::export::{ExportError, export_png};
+use crate::export::{ExportError, export_png, make_folder};
 
 /// The name of a picture.
 fn name(at: u32) -> String {
@@ -23,7 +23,7 @@ impl Folder {
             let what = "the folder holds the pictures of a longer turn; another folder keeps them apart";
             return Err(ExportError::Unfit { what, path: path.to_owned() });
         }
-        std::fs::create_dir_all(path).map_err(ExportError::writing(path))?;
+        make_folder(path).map_err(ExportError::writing(path))?;
         Ok(Self { path: path.to_owned(), reel: *reel, written: 0 })
     }
 }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
-use crate::export::whole_file::{place, temporary_beside};
+use crate::export::files::{Unfinished, place, temporary_beside};
+use crate::model::made_by;
 
 /// How many pixels the search for colours looks at: every third, which nobody can tell from all of them.
 const SPEED: i32 = 3;
@@ -17,7 +18,7 @@ const SHORTEST: u64 = 2;
 /// A GIF file.
 pub(super) struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
-    file: tempfile::NamedTempFile,
+    file: Unfinished,
     path: PathBuf,
     reel: AnimationSpec,
     size: [u16; 2],
@@ -35,6 +36,7 @@ impl Gif {
         let out = BufWriter::new(file.reopen().map_err(ExportError::writing(path))?);
         let mut encoder = gif::Encoder::new(out, width, height, &[])?;
         encoder.set_repeat(gif::Repeat::Infinite)?;
+        encoder.write_raw_extension(gif::Extension::Comment.into(), &[made_by().as_bytes()])?;
         Ok(Self { encoder, file, path: path.to_owned(), reel: *reel, size: [width, height], written: 0 })
     }
 

@@ -8,8 +8,9 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
+use crate::export::files::{Unfinished, place, temporary_beside};
 use crate::export::png_file::rgb;
-use crate::export::whole_file::{place, temporary_beside};
+use crate::model::made_by;
 
 /// With x264: little is lost, which smooth shading needs.
 const BEST: [&str; 4] = ["-c:v", "libx264", "-crf", "16"];
@@ -60,7 +61,7 @@ impl Ffmpeg {
 /// A video that ffmpeg is making.
 pub(super) struct Mp4 {
     ffmpeg: Ffmpeg,
-    file: tempfile::NamedTempFile,
+    file: Unfinished,
     path: PathBuf,
     missing: u32,
 }
@@ -85,7 +86,15 @@ impl Mp4 {
             .args(["-vf", FILTER, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"])
             .args(if has_x264 { &BEST[..] } else { &NEXT_BEST[..] })
             // The head comes first, so that players begin before they have it all.
-            .args(["-movflags", "+faststart", "-f", "mp4", "-y"])
+            .args([
+                "-movflags",
+                "+faststart",
+                "-metadata",
+                &format!("comment={}", made_by()),
+                "-f",
+                "mp4",
+                "-y",
+            ])
             .arg(file.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::null())

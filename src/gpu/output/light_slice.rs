@@ -6,6 +6,7 @@ use crate::data::Volume;
 use crate::export::{ExportError, check_ending, encode_png, write_atomically};
 use crate::gpu::resources::readback::Attenuation;
 use crate::math::false_color;
+use crate::model::made_by;
 
 /// Values in a plane of a light volume.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,9 +61,10 @@ pub fn light_volume_nrrd(volume: &Volume, attenuation: &Attenuation) -> Vec<u8> 
     let origin = world.transform_point3(glam::DVec3::splat(step / 2.0 - 0.5));
     let [nx, ny, nz] = attenuation.dims;
     let header = format!(
-        "NRRD0005\ncontent: light attenuation\ntype: float\ndimension: 3\nspace: right-anterior-superior\n\
+        "NRRD0005\n# {}\ncontent: light attenuation\ntype: float\ndimension: 3\nspace: right-anterior-superior\n\
          sizes: {nx} {ny} {nz}\nspace directions: {} {} {}\nspace origin: {}\n\
          endian: little\nencoding: raw\n\n",
+        made_by(),
         vector(world.matrix3.x_axis * step),
         vector(world.matrix3.y_axis * step),
         vector(world.matrix3.z_axis * step),

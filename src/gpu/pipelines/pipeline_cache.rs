@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::export::{ExportError, write_atomically};
+use crate::export::{ExportError, make_folder, write_atomically};
 use crate::gpu::Context;
 
 /// Most bytes that are read: what drivers keep for our three dozen shaders is far less.
@@ -46,8 +46,7 @@ impl PipelineCache {
     pub(crate) fn save(&self) -> Result<(), ExportError> {
         let Some(data) = self.cache.get_data() else { return Ok(()) };
         let folder = self.path.parent().unwrap_or(Path::new("."));
-        std::fs::create_dir_all(folder)
-            .map_err(|source| ExportError::Write { path: folder.to_owned(), source })?;
+        make_folder(folder).map_err(|source| ExportError::Write { path: folder.to_owned(), source })?;
         write_atomically(&self.path, &[&sum(&data).to_le_bytes(), &data[..]].concat())
     }
 }

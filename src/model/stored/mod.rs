@@ -1,6 +1,7 @@
 //! Looks as text: presets, sessions, the library, and what a picture says of how it was made.
 
 pub(super) mod library;
+pub(super) mod made_by;
 pub(super) mod preset;
 pub(super) mod record;
 mod renames;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::made_by::tells_maker;
 use super::renames::rename;
 use super::unknown;
 use crate::data::ValueRange;
@@ -111,6 +112,7 @@ impl Record {
             }
         }
         unknown::add(&mut tree, unknown);
+        let tree = tells_maker(tree);
         serde_json::to_string_pretty(&tree).unwrap_or_default()
     }
 

@@ -3,7 +3,9 @@
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::{ExportError, ReadPictureError};
+use super::unfinished::{self, Unfinished};
+use crate::export::{ExportError, ReadPictureError};
+use crate::fault::{self, Fault};
 
 /// Writes a file whole or not at all: to a temporary file beside it, which then takes its name.
 ///
@@ -34,15 +36,8 @@ pub fn keep_backup(path: &Path) -> Result<(), ExportError> {
     name.push(".bak");
     let backup = path.with_file_name(name);
     place_of(&backup)?;
-    let kept = named_temporary().make_in(folder_of(&backup), second).map_err(&failed)?;
+    let kept = unfinished::named().make_in(folder_of(&backup), second).map_err(&failed)?;
     kept.into_temp_path().persist(&backup).map_err(|err| failed(err.error))
-}
-
-/// How temporary files are called.
-fn named_temporary() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".chiaroscuro-").suffix(".part");
-    builder
 }
 
 /// Whether a name says that a file is of one of some kinds, by its ending; what is written under another would be taken
@@ -109,25 +104,19 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// A file for what will take a name when it is complete.
-pub(super) fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, ExportError> {
+pub(in crate::export) fn temporary_beside(path: &Path) -> Result<Unfinished, ExportError> {
     // Known before anything has been made, and not when it is to take its name.
     let place = place_of(path)?;
-    #[cfg_attr(not(unix), expect(unused_mut, reason = "modes are there on Unix alone"))]
-    let mut builder = named_temporary();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As files are made that are no temporary ones: the user's mask takes away what it takes away.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    let failed = |kind: ErrorKind| ExportError::Write { path: path.to_owned(), source: kind.into() };
+    if fault::is_on(Fault::FullDisk) {
+        return Err(failed(ErrorKind::StorageFull));
     }
     // The temporary file's own name means nothing to the user: keep the kind of error alone.
-    builder
-        .tempfile_in(folder_of(&place))
-        .map_err(|err| ExportError::Write { path: path.to_owned(), source: err.kind().into() })
+    Unfinished::begin(folder_of(&place)).map_err(|err| failed(err.kind()))
 }
 
 /// Opens a file that is one: reading from a pipe or a device might never end.
-pub(super) fn open_regular(path: &Path) -> Result<std::fs::File, ReadPictureError> {
+pub(in crate::export) fn open_regular(path: &Path) -> Result<std::fs::File, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     if !std::fs::metadata(path).map_err(|err| failed(&err))?.is_file() {
         return Err(failed(&"it is not a regular file"));
@@ -136,7 +125,7 @@ pub(super) fn open_regular(path: &Path) -> Result<std::fs::File, ReadPictureErro
 }
 
 /// Gives a complete file its name.
-pub(super) fn place(file: tempfile::NamedTempFile, path: &Path) -> Result<(), ExportError> {
+pub(in crate::export) fn place(file: Unfinished, path: &Path) -> Result<(), ExportError> {
     let failed = ExportError::writing(path);
     let place = place_of(path)?;
     // Otherwise a crash just after the rename could leave an empty file under the old name.
@@ -148,7 +137,7 @@ pub(super) fn place(file: tempfile::NamedTempFile, path: &Path) -> Result<(), Ex
             .inspect_err(|err| log::warn!("{}: who may read it could not be kept: {err}", place.display()))
             .ok();
     }
-    file.persist(&place).map_err(|err| failed(err.error))?;
+    file.persist(&place).map_err(&failed)?;
     // The new name is on the disk when the folder is. Some systems cannot say so, and it is there all the same.
     std::fs::File::open(folder_of(&place)).and_then(|folder| folder.sync_all()).ok();
     Ok(())

@@ -1,0 +1,15 @@
+//! The one gate to the disk: nothing else in the program opens files for writing, renames or removes them.
+//!
+//! Files are written whole or not at all, never in place of what is no file, and say who made them.
+
+mod guarded;
+mod made_by;
+mod unfinished;
+mod whole;
+
+pub use guarded::{hold_lock, make_folder, put_aside, remove, rename};
+pub use made_by::is_ours;
+pub(super) use unfinished::Unfinished;
+pub use unfinished::{remove_abandoned, remove_unfinished};
+pub use whole::{check_ending, check_writable, keep_backup, write_atomically};
+pub(super) use whole::{open_regular, place, temporary_beside};
