@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use serde_json::Value;
 
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
@@ -11,9 +10,7 @@ use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance_quickly, fitted};
-use crate::model::{
-    Engine, MAX_EDGE, Preset, Quality, Settings, ShadowAlgorithm, apply_path, apply_relative, auto,
-};
+use crate::model::{Engine, MAX_EDGE, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto};
 
 /// How a volume is read.
 #[derive(Debug, Clone, Args)]
@@ -250,10 +247,10 @@ impl LookArgs {
             [("preset", self.preset.as_deref().map(PathBuf::from)), ("session", self.session.clone())];
         for (what, path) in overlays {
             let Some(path) = path else { continue };
-            let (overlay, name) = read_overlay(what, &path)?;
-            balanced |= overlay.pointer("/shadows/balance").is_some();
-            let range = loaded.volume().value_range();
-            let (next, warnings) = apply_relative(&settings, &overlay, range)
+            let (record, name) = read_look(what, &path)?;
+            balanced |= record.names_balance();
+            let (next, warnings) = record
+                .apply(&settings, loaded.volume().value_range())
                 .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
             for warning in warnings {
                 warn_line(&format!("warning: {what}: {warning} ({name})"));
@@ -301,8 +298,12 @@ impl LookArgs {
                     "--set: expected PATH=VALUE, found {assignment:?} (command line, --set)"
                 ))
             })?;
-            settings = apply_path(&settings, path.trim(), value.trim())
+            let (next, warning) = assign(&settings, path.trim(), value.trim())
                 .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
+            if let Some(warning) = warning {
+                warn_line(&format!("warning: --set: {warning}"));
+            }
+            settings = next;
         }
         match self.shadows {
             Some(ShadowArg::Off) => settings.shadows.algorithm = ShadowAlgorithm::Off,
@@ -320,8 +321,8 @@ impl LookArgs {
     }
 }
 
-/// Reads a preset or session: a built-in's name, a file, or the record of an exported picture.
-fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliError> {
+/// Reads a preset or session, and what it is called: a built-in's name, a file, or the record of an exported picture.
+fn read_look(what: &'static str, path: &Path) -> Result<(Record, String), CliError> {
     let name = path.display().to_string();
     let builtin = Preset::find(&name).filter(|_| what == "preset");
     let text = match builtin {
@@ -333,12 +334,9 @@ fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliE
         }
         None => read_small(path).map_err(|source| CliError::Read { what, path: name.clone(), source })?,
     };
-    let value = serde_json::from_slice(&text).map_err(|err| CliError::Preset {
-        what,
-        path: name.clone(),
-        source: crate::model::PresetError::Syntax(err),
-    })?;
-    Ok((value, name))
+    let record =
+        Record::from_bytes(&text).map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
+    Ok((record, name))
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ pub mod synthetic;
 mod value_range;
 mod volume;
 
-pub use attempt::without_controls;
+pub use attempt::{plain, single_line, without_controls};
 pub use bricks::Bricks;
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;

@@ -192,21 +192,15 @@ pub(crate) fn save_settings(
     crate::export::write_atomically(path, text.as_bytes()).map_err(|err| err.to_string())
 }
 
-/// A small file as text.
-fn read_text(path: &Path) -> Result<String, String> {
-    let bytes = read_small(path).map_err(|err| err.to_string())?;
-    String::from_utf8(bytes).map_err(text::files::no_text)
-}
-
 /// Reads what a session, a preset or an exported picture says.
 pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
     let record = if PictureFormat::with_record(path).is_some() {
         let found = crate::export::read_record(path).map_err(|err| err.to_string())?;
-        found.ok_or_else(|| text::files::no_settings(path))?
+        found.ok_or_else(|| text::files::no_settings(path))?.into_bytes()
     } else {
-        read_text(path).map_err(|err| text::files::settings_not_read(path, err))?
+        read_small(path).map_err(|err| text::files::settings_not_read(path, err))?
     };
-    Record::read(&record).map_err(|err| text::files::settings_not_used(path, err))
+    Record::from_bytes(&record).map_err(|err| text::files::settings_not_used(path, err))
 }
 
 /// Reads a transfer function of another program.

@@ -6,7 +6,7 @@ mod error;
 mod limits;
 
 pub use control::LoadControl;
-pub(super) use error::{Attempt, plain, quoted};
-pub use error::{Explanation, LoadError, LoadErrorKind, without_controls};
+pub(super) use error::{Attempt, quoted};
+pub use error::{Explanation, LoadError, LoadErrorKind, plain, single_line, without_controls};
 pub(crate) use limits::default_budget_bytes as memory_budget_bytes;
 pub(super) use limits::{Extent, human_bytes, is_usable_affine, is_usable_spacing};

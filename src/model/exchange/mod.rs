@@ -18,16 +18,13 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::data::ValueRange;
-use crate::model::{ControlPoint, Easing, Interpolation, Mixing, STEPS, TransferFunction};
+use crate::model::{ControlPoint, Easing, Interpolation, MAX_POINTS, Mixing, STEPS, TransferFunction};
 
 /// Endings of the files that [`import`] reads.
 pub const IMPORTED: [&str; 6] = ["json", "vp", "itf", "tfi", "clut", "lut"];
 
 /// Endings of the files that [`export`] writes.
 pub const EXPORTED: [&str; 5] = ["json", "vp", "itf", "clut", "lut"];
-
-/// Most points of a function that is used: those of the largest tables are 4096.
-const MOST_POINTS: usize = 4096;
 
 /// Largest value: that of data in 32-bit floats.
 const MOST_VALUE: f64 = f32::MAX as f64;
@@ -75,7 +72,7 @@ pub fn import(path: &Path, bytes: &[u8], range: ValueRange) -> Result<TransferFu
         "lut" => tables::from_rows(text, range)?,
         _ => from_json(text, range)?,
     };
-    if function.points.len() > MOST_POINTS {
+    if function.points.len() > MAX_POINTS {
         return Err(form(&format!("{} points are more than anybody has set", function.points.len())));
     }
     if function.points.iter().any(|point| point.value.abs() > MOST_VALUE) {

@@ -1,5 +1,6 @@
 //! Looks as text: presets, sessions, the library, and what a picture says of how it was made.
 
+pub(super) mod bounds;
 pub(super) mod library;
 pub(super) mod preset;
 pub(super) mod record;

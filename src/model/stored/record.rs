@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::bounds::{self, Bounded, MAX_LOOK_BYTES};
 use crate::data::ValueRange;
 use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, apply_relative};
 
@@ -36,6 +37,8 @@ pub struct PictureRecord {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
     overlay: Value,
+    /// What was cut when it was read.
+    cuts: Vec<String>,
     /// What it is of.
     pub volume: Option<VolumeRecord>,
     /// How the picture that carries it was made.
@@ -97,19 +100,41 @@ impl Record {
                 fields.extend(value.map(|value| (name.to_owned(), value)));
             }
         }
-        serde_json::to_string_pretty(&tree).unwrap_or_default()
+        let pretty = serde_json::to_string_pretty(&tree).unwrap_or_default();
+        // The longest transfer functions are within what is read only without spaces.
+        if pretty.len() > MAX_LOOK_BYTES { tree.to_string() } else { pretty }
     }
 
     /// Reads a record. Any preset is one, of no volume.
     ///
     /// # Errors
-    /// When the text is not a JSON object, or its remarks have the wrong form.
+    /// When the text is not a JSON object, its remarks have the wrong form, or it has more than any look.
     pub fn read(text: &str) -> Result<Self, PresetError> {
-        let overlay: Value = serde_json::from_str(text).map_err(PresetError::Syntax)?;
+        let Bounded { tree: overlay, cuts } = bounds::read(text)?;
         if !overlay.is_object() {
             return Err(PresetError::NotAnObject);
         }
-        Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
+        Ok(Self {
+            volume: remark(&overlay, "_volume")?,
+            picture: remark(&overlay, "_picture")?,
+            overlay,
+            cuts,
+        })
+    }
+
+    /// Reads a record from the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and when the bytes are no text.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PresetError> {
+        Self::read(std::str::from_utf8(bytes).map_err(PresetError::NoText)?)
+    }
+
+    /// Whether all settings of the record are understood: nothing was cut, none is unknown or of a wrong form, and it
+    /// is not of a newer version. What is not understood is lost where the record is written again.
+    pub fn is_understood(&self) -> bool {
+        let applied = self.apply(&Settings::default(), ValueRange::UNIT);
+        applied.is_ok_and(|(_, warnings)| warnings.is_empty())
     }
 
     /// Whether the record is of an earlier schema, whose pictures this version may make a little differently.
@@ -128,7 +153,8 @@ impl Record {
     /// # Errors
     /// As [`apply_relative`].
     pub fn apply(&self, over: &Settings, range: ValueRange) -> Result<(Settings, Vec<String>), PresetError> {
-        apply_relative(over, &self.overlay, range)
+        let (settings, warnings) = apply_relative(over, &self.overlay, range)?;
+        Ok((settings, [self.cuts.clone(), warnings].concat()))
     }
 }
 
@@ -140,7 +166,7 @@ fn remark<T: serde::de::DeserializeOwned>(overlay: &Value, name: &str) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Depth;
+    use crate::model::{ControlPoint, Depth};
 
     #[test]
     fn records_are_read_as_they_were_written() {
@@ -181,6 +207,29 @@ mod tests {
         assert_eq!(record.apply(&Settings::default(), ValueRange::UNIT).unwrap().0.shadows.gain, 2.0);
         assert!(Record::read("[1]").is_err() && Record::read("{").is_err());
         assert!(Record::read(r#"{"_volume": {"source": 3}}"#).is_err());
+    }
+
+    #[test]
+    fn whether_a_record_is_understood_is_known() {
+        let is_understood = |text: &str| Record::read(text).unwrap().is_understood();
+        let whole = Record::text(&Settings::default(), None, None);
+        assert!(is_understood(&whole) && is_understood(r#"{"_note": 1, "shadows": {"gain": 2.0}}"#));
+        let nine = format!(r#"{{"lights": [{}{{}}]}}"#, "{},".repeat(8));
+        for text in [r#"{"schema": 999}"#, r#"{"later": 1}"#, r#"{"shadows": {"gain": "much"}}"#, &nine] {
+            assert!(!is_understood(text), "{text}");
+        }
+        let told = Record::read(&nine).unwrap().apply(&Settings::default(), ValueRange::UNIT).unwrap().1;
+        assert_eq!(told, ["9 entries of `lights` were cut to 8"]);
+    }
+
+    #[test]
+    fn the_longest_transfer_function_is_read_again() {
+        let mut settings = Settings::default();
+        let point = |at| ControlPoint::new(f64::from(at) / 7.0 - 1e3, [1.0 / 3.0; 3], f64::from(at) / 4321.0);
+        settings.transfer.points = (0..4096).map(point).collect();
+        settings.lighting.curve.points = settings.transfer.points[..2048].to_vec();
+        let read = Record::read(&Record::text(&settings, None, None)).unwrap();
+        assert_eq!(read.apply(&Settings::default(), ValueRange::UNIT).unwrap(), (settings, vec![]));
     }
 
     #[test]

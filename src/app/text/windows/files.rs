@@ -63,11 +63,6 @@ pub(crate) const SLICE: &str = "Slice";
 /// The window for typing a path.
 pub(crate) const PATH: &str = "Path";
 
-/// Bytes that are no UTF-8.
-pub(crate) fn no_text(err: impl Display) -> String {
-    format!("it is no text: {err}")
-}
-
 /// A picture that this program did not export.
 pub(crate) fn no_settings(picture: &Path) -> String {
     format!("the picture carries no settings ({}); export it from this program", picture.display())
