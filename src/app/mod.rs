@@ -21,7 +21,7 @@ use std::time::Duration;
 use eframe::egui;
 
 use self::common::{commands, light_keys, theme};
-use self::shell::{menu, opening, picture, status, status_file};
+use self::shell::{menu, picture, status, status_file};
 use self::windows::files;
 
 use self::common::commands::Command;
@@ -45,6 +45,7 @@ use self::viewport::{Facts, Viewport, paint_callback};
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
 use self::windows::files::Files;
+use self::windows::foreign_path::ForeignPath;
 use self::windows::help::Help;
 use self::windows::light_slice::LightSlice;
 use self::windows::palette::Palette;
@@ -92,6 +93,9 @@ pub struct App {
     light_slice: LightSlice,
     slices: Slices,
     raw_dialog: RawDialog,
+    foreign_path: ForeignPath,
+    /// Whether what looks from outside say of their volumes is opened without a question.
+    trusts_paths: bool,
     contact_sheet: ContactSheet,
     editor: TransferEditor,
     selected_light: usize,
@@ -134,8 +138,7 @@ impl App {
         let window = WindowPainter::new(&paint.device, &paint.queue, paint.target_format)?;
         let context = Context::new(&paint.adapter, paint.device, paint.queue)?.sibling()?;
         theme::apply(&cc.egui_ctx);
-        let Options { source, load, session, adjust, storage } = options;
-        let source = source.or_else(|| opening::volume_of_session(session.as_deref()?));
+        let Options { source, load, session, volume, trust_paths, adjust, storage } = options;
         let pipelines = storage.as_deref().map(Path::to_owned);
         let memory = Memory::new(storage);
         let hints = Hints { on: memory.is_first() };
@@ -166,6 +169,8 @@ impl App {
             light_slice: LightSlice::default(),
             slices: Slices::default(),
             raw_dialog: RawDialog::default(),
+            foreign_path: ForeignPath::default(),
+            trusts_paths: trust_paths,
             contact_sheet: ContactSheet::default(),
             editor: TransferEditor::new(window.clone()),
             window,
@@ -177,7 +182,7 @@ impl App {
             longest_ui_ms: 0.0,
             status_file: StatusFile::from_environment(),
         };
-        app.open_first(source.as_deref(), &cc.egui_ctx);
+        app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
         Ok(app)
     }
 
@@ -331,7 +336,7 @@ impl eframe::App for App {
         ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
         let mut commands = Vec::new();
         if let Some(path) = files::dropped(&ctx) {
-            commands.push(Command::Open(path.display().to_string()));
+            commands.push(Command::Open(path));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
         self.palette.ui(&ctx, &mut commands);
@@ -340,6 +345,7 @@ impl eframe::App for App {
         commands::from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
+        self.ask_for_volume(frame, &ctx);
         self.history.observe(&ctx, &self.settings);
         if self.memory.is_due() {
             self.keep_look();

@@ -29,6 +29,7 @@ pub use self::settings::variant::Variant;
 pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
+pub use self::stored::place::VolumePlace;
 pub use self::stored::preset::{PresetError, apply_json, apply_path, assign, load_json, to_json};
 pub use self::stored::record::{PictureRecord, Record, VolumeRecord};
 pub use self::transfer::baked::BakedTransfer;

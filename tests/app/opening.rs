@@ -139,7 +139,7 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     let folder = tempfile::tempdir().unwrap();
     let start = |source: Option<&str>| {
         let options = Options {
-            source: source.map(str::to_owned),
+            source: source.map(Into::into),
             storage: Some(folder.path().to_owned()),
             ..Options::default()
         };

@@ -5,8 +5,11 @@ use eframe::egui::{self, Button, ThemePreference};
 use crate::app::common::commands::{Command, VIEW_SLOTS};
 use crate::app::common::theme;
 use crate::app::text;
-use crate::data::synthetic;
-use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
+use crate::data::{plain, synthetic};
+use crate::model::{MAX_LIGHTS, MAX_NAME, Projection, Rig, Settings, StandardView};
+
+/// Characters of a path under the pointer: the longest that there are.
+const LONGEST_PATH: usize = 4096;
 
 /// What the menu shows as chosen.
 pub(crate) struct Menu<'a> {
@@ -86,8 +89,9 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         ui.menu_button(text::menu::OPEN_RECENT, |ui| {
             for path in menu.recent {
                 let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy());
-                if ui.button(name.as_deref().unwrap_or(path)).on_hover_text(path).clicked() {
-                    menu.commands.push(Command::Open(path.clone()));
+                let name = plain(name.as_deref().unwrap_or(path), MAX_NAME);
+                if ui.button(name).on_hover_text(plain(path, LONGEST_PATH)).clicked() {
+                    menu.commands.push(Command::Open(path.into()));
                 }
             }
         });
@@ -96,7 +100,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.menu_button(text::commands::OPEN_BUILT_IN, |ui| {
         for name in synthetic::NAMES {
             if ui.button(name).clicked() {
-                menu.commands.push(Command::Open(format!("builtin:{name}")));
+                menu.commands.push(Command::Open(format!("builtin:{name}").into()));
             }
         }
     });

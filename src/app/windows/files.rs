@@ -17,6 +17,8 @@ use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, Volum
 pub(crate) enum Purpose {
     /// A volume to open.
     OpenVolume,
+    /// The volume of a look that is kept until it is chosen.
+    VolumeOfLook,
     /// Settings to apply.
     LoadSettings,
     /// A transfer function of another program.
@@ -38,6 +40,7 @@ impl Purpose {
     fn question(self) -> Question {
         match self {
             Self::OpenVolume => text::files::OPEN_VOLUME,
+            Self::VolumeOfLook => text::files::VOLUME_OF_LOOK,
             Self::LoadSettings => text::files::LOAD_SETTINGS,
             Self::ImportTransfer => text::files::IMPORT_TRANSFER,
             Self::ExportTransfer => text::files::EXPORT_TRANSFER,
@@ -83,7 +86,7 @@ impl Files {
         let dialog = rfd::AsyncFileDialog::new().set_title(purpose.question().title).set_parent(frame);
         type Pending = std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
         let pending: Pending = match purpose {
-            Purpose::OpenVolume => {
+            Purpose::OpenVolume | Purpose::VolumeOfLook => {
                 let filters = ["nrrd", "nhdr", "raw", "gz"];
                 let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
                 Box::pin(dialog.add_filter(text::files::ALL_FILES, &["*"]).pick_file())
@@ -185,7 +188,7 @@ pub(crate) fn dropped(ctx: &egui::Context) -> Option<PathBuf> {
 pub(crate) fn save_settings(
     path: &Path,
     settings: &Settings,
-    volume: Option<(&str, u64)>,
+    volume: Option<(&Path, u64)>,
 ) -> Result<(), String> {
     let volume = volume.map(|(source, content_id)| VolumeRecord::new(source, content_id, path.parent()));
     let text = Record::text(settings, volume.as_ref(), None);

@@ -128,6 +128,11 @@ impl Attempt<'_> {
         LoadError::Io { explanation: Box::new(self.explain("", why, help.to_owned())), source: Some(source) }
     }
 
+    /// Says for the log what was taken for granted.
+    pub(in crate::data) fn warn(&self, what: impl fmt::Display) {
+        log::warn!("{}: {what}", plain(&self.path.to_string_lossy(), 4096));
+    }
+
     fn explain(&self, field: &str, why: String, help: String) -> Explanation {
         let file = plain(&self.path.to_string_lossy(), 4096);
         let place = if field.is_empty() { file } else { format!("{file}, {field}") };
@@ -163,7 +168,7 @@ pub fn without_controls(text: &str) -> String {
 /// Whether a character could disturb a terminal or turn the direction of a line.
 fn is_odd(c: char) -> bool {
     c.is_control()
-        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(c, '\u{61c}' | '\u{fffd}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 #[cfg(test)]

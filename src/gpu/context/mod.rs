@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use self::clock::Clock;
 use super::GpuError;
+use crate::data::plain;
 
 /// Said when there is no adapter.
 const ADAPTER_HELP: &str =
@@ -156,7 +157,9 @@ impl Context {
     /// The adapter and its driver, in words.
     pub fn description(&self) -> String {
         let info = &self.info;
-        format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info).trim().to_owned()
+        let words = format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info);
+        // A driver may call itself whatever it likes.
+        plain(words.trim(), 400)
     }
 
     /// Another device on the same adapter, for work beside a window: long work on the window's own

@@ -2,6 +2,7 @@
 
 pub(super) mod bounds;
 pub(super) mod library;
+pub(super) mod place;
 pub(super) mod preset;
 pub(super) mod record;
 mod renames;

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::bounds::{self, Bounded, MAX_LOOK_BYTES};
 use crate::data::ValueRange;
-use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, apply_relative};
+use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_relative};
 
 /// The volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,19 +47,16 @@ pub struct Record {
 
 impl VolumeRecord {
     /// A volume that was opened from `source`, for a record that is written to `folder`.
-    pub fn new(source: &str, content_id: u64, folder: Option<&Path>) -> Self {
-        let source =
-            if source.starts_with("builtin:") { source.to_owned() } else { relative(source, folder) };
+    pub fn new(source: impl AsRef<Path>, content_id: u64, folder: Option<&Path>) -> Self {
+        let source = source.as_ref();
+        let builtin = source.to_str().filter(|name| name.starts_with("builtin:"));
+        let source = builtin.map_or_else(|| relative(source, folder), str::to_owned);
         Self { source, content_id: format!("{content_id:016x}") }
     }
 
-    /// Where to open it, for a record that was read from `folder`.
-    pub fn source_from(&self, folder: Option<&Path>) -> String {
-        if self.source.starts_with("builtin:") {
-            return self.source.clone();
-        }
-        let beside = folder.map(|folder| folder.join(&self.source)).filter(|path| path.exists());
-        beside.map_or_else(|| self.source.clone(), |path| path.display().to_string())
+    /// Where it is, for a record that was read from `folder`; without one, as for a record that is in no folder.
+    pub fn place(&self, folder: Option<&Path>) -> VolumePlace {
+        VolumePlace::of(&self.source, folder)
     }
 
     /// Whether a volume has the values and the geometry that this one had.
@@ -76,9 +73,12 @@ impl PictureRecord {
 }
 
 /// A path as seen from a folder, if it lies below it; else the whole of it.
-fn relative(source: &str, folder: Option<&Path>) -> String {
-    let whole = std::path::absolute(source).unwrap_or_else(|_| PathBuf::from(source));
-    let folder = folder.and_then(|folder| std::path::absolute(folder).ok());
+fn relative(source: &Path, folder: Option<&Path>) -> String {
+    let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
+    // The folder of a bare name is the current one.
+    let here =
+        |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
+    let folder = folder.and_then(|folder| std::path::absolute(here(folder)).ok());
     let below = folder.and_then(|folder| whole.strip_prefix(folder).ok().map(Path::to_owned));
     below.unwrap_or(whole).display().to_string()
 }
@@ -238,11 +238,8 @@ mod tests {
         let file = folder.path().join("data/a.nrrd");
         let volume = VolumeRecord::new(&file.display().to_string(), 7, Some(folder.path()));
         assert_eq!(Path::new(&volume.source), Path::new("data/a.nrrd"));
-        // Not there: the path as it was written.
-        assert_eq!(volume.source_from(Some(folder.path())), volume.source);
-        std::fs::create_dir(folder.path().join("data")).unwrap();
-        std::fs::write(&file, "x").unwrap();
-        assert_eq!(Path::new(&volume.source_from(Some(folder.path()))), file);
+        assert_eq!(volume.place(Some(folder.path())), VolumePlace::Beside(file.clone()));
+        assert_eq!(VolumeRecord::new("data/a.nrrd", 7, Some(Path::new(""))).source, volume.source);
         let elsewhere = VolumeRecord::new(&file.display().to_string(), 7, Some(Path::new("/no/such/folder")));
         assert_eq!(Path::new(&elsewhere.source), file);
     }

@@ -19,6 +19,7 @@ pub(crate) const OPEN_VOLUME: Question = Question {
     hint: "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
     verb: "Open",
 };
+pub(crate) const VOLUME_OF_LOOK: Question = Question { title: "Open the volume of the look", ..OPEN_VOLUME };
 pub(crate) const LOAD_SETTINGS: Question = Question {
     title: "Load settings",
     hint: "a .json file, or a .png or .exr picture that was exported",

@@ -136,7 +136,7 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
     // Axes with different known units are not a case that occurs: the first known one counts.
     let axis_unit_mm = mm_per_unit(header, "units").unwrap_or(space_unit_mm);
     if directions.is_none() && spacings.is_none() {
-        log::warn!("{}: no spacings: the voxels are taken as 1 mm cubes", attempt.path.display());
+        attempt.warn("no spacings: the voxels are taken as 1 mm cubes");
     }
     Ok((0..dimension)
         .map(|i| {
@@ -145,7 +145,7 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
             let spatial = kind_is_spatial && (directions.is_none() || direction_mm.is_some());
             let spacing_mm = spacings.as_ref().map_or(1.0, |all| all[i] * axis_unit_mm);
             if spatial && direction_mm.is_none() && spacing_mm.is_nan() {
-                log::warn!("{}: the spacing of axis {i} is unknown: 1 mm is used", attempt.path.display());
+                attempt.warn(format_args!("the spacing of axis {i} is unknown: 1 mm is used"));
             }
             Axis { size: sizes[i], spatial, direction_mm, spacing_mm }
         })
