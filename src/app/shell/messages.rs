@@ -50,16 +50,13 @@ impl Messages {
         self.show(Message { short: short.into(), details: String::new(), is_error: false });
     }
 
-    fn show(&mut self, message: Message) {
+    fn show(&mut self, Message { short, details, is_error }: Message) {
         // Names and errors come from files, and a label of any length takes as long to lay out.
-        let message = Message {
-            short: plain(&message.short, LONGEST_SHORT),
-            details: without_controls(&message.details).chars().take(LONGEST_DETAILS).collect(),
-            ..message
-        };
+        let short = plain(&short, LONGEST_SHORT);
+        let details = without_controls(&details).chars().take(LONGEST_DETAILS).collect();
         self.expanded = false;
         self.until_s = None;
-        self.current = Some(message);
+        self.current = Some(Message { short, details, is_error });
     }
 
     /// A new volume is there: what was said before is over.

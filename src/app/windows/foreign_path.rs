@@ -57,7 +57,7 @@ impl ForeignPath {
     }
 
     /// Shows the window, if it is open. Gives what the user answered.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Answer> {
+    pub(crate) fn ui(&self, ctx: &egui::Context) -> Option<Answer> {
         let asked = self.asked.as_ref()?;
         let (mut open, mut answer) = (true, None);
         let window = egui::Window::new(text::foreign_path::TITLE).open(&mut open);

@@ -9,7 +9,7 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
-use super::preset::PresetError;
+use super::preset_error::PresetError;
 use crate::data::plain;
 use crate::model::{MAX_LIGHTS, MAX_NAME, MAX_POINTS};
 
@@ -103,11 +103,11 @@ struct Place<'a> {
     log: &'a Log,
 }
 
-impl<'a> Place<'a> {
-    fn below(&self, key: &str) -> Place<'a> {
+impl Place<'_> {
+    fn below(&self, key: &str) -> Self {
         let path = if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) };
         let text = if key.starts_with('_') { MAX_REMARK } else { self.text };
-        Place { path, depth: self.depth + 1, text, log: self.log }
+        Self { path, depth: self.depth + 1, text, log: self.log }
     }
 
     /// How many items a list or an object may have here.

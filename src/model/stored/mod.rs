@@ -4,6 +4,7 @@ pub(super) mod bounds;
 pub(super) mod library;
 pub(super) mod place;
 pub(super) mod preset;
+pub(super) mod preset_error;
 pub(super) mod record;
 mod renames;
 mod schemas;

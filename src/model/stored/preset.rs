@@ -4,44 +4,12 @@
 
 use serde_json::Value;
 
-use super::bounds::{self, Bounded, MAX_LOOK_BYTES};
+use super::bounds::{self, Bounded};
+use super::preset_error::PresetError;
 use super::renames::{current_path, rename};
 use super::schemas::{complete, keep_named_balance};
 use crate::data::plain;
 use crate::model::{MAX_NAME, SCHEMA, Settings};
-
-/// Why JSON does not become settings.
-#[derive(Debug, thiserror::Error)]
-pub enum PresetError {
-    /// Not JSON at all.
-    #[error("not valid JSON: {0}")]
-    Syntax(#[source] serde_json::Error),
-    /// Bytes of something else.
-    #[error("it is no text: {0}")]
-    NoText(#[source] std::str::Utf8Error),
-    /// JSON, but a field has the wrong form.
-    #[error("a setting has the wrong form: {0}")]
-    Form(#[source] serde_json::Error),
-    /// Not an object.
-    #[error("a preset must be a JSON object, for instance {{\"shadows\": {{\"strength\": 0.8}}}}")]
-    NotAnObject,
-    /// Longer than any look.
-    #[error("it has {bytes} bytes, and a look has at most {} (1 MiB)", MAX_LOOK_BYTES)]
-    TooLong {
-        /// How many there are.
-        bytes: usize,
-    },
-    /// `--set` names something that does not exist.
-    #[error("there is no setting `{path}`; at `{at}` there are: {known}")]
-    UnknownPath {
-        /// The whole path.
-        path: String,
-        /// The part that exists.
-        at: String,
-        /// What exists there.
-        known: String,
-    },
-}
 
 /// Unknown settings that are told one by one.
 const MAX_TOLD: usize = 8;
@@ -52,6 +20,7 @@ pub fn to_json(settings: &Settings) -> String {
 }
 
 /// Lays a JSON object over settings: objects are merged field by field, everything else replaces.
+///
 /// Returns the result, in range, and warnings of what was not understood: what is more than a look may have and was
 /// cut, fields that are not known, and a newer version.
 ///

@@ -236,11 +236,11 @@ mod tests {
     fn files_below_a_record_move_with_it() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("data/a.nrrd");
-        let volume = VolumeRecord::new(&file.display().to_string(), 7, Some(folder.path()));
+        let volume = VolumeRecord::new(&file, 7, Some(folder.path()));
         assert_eq!(Path::new(&volume.source), Path::new("data/a.nrrd"));
         assert_eq!(volume.place(Some(folder.path())), VolumePlace::Beside(file.clone()));
         assert_eq!(VolumeRecord::new("data/a.nrrd", 7, Some(Path::new(""))).source, volume.source);
-        let elsewhere = VolumeRecord::new(&file.display().to_string(), 7, Some(Path::new("/no/such/folder")));
+        let elsewhere = VolumeRecord::new(&file, 7, Some(Path::new("/no/such/folder")));
         assert_eq!(Path::new(&elsewhere.source), file);
     }
 }
