@@ -167,8 +167,10 @@ pub fn without_controls(text: &str) -> String {
 
 /// Whether a character could disturb a terminal or turn the direction of a line.
 fn is_odd(c: char) -> bool {
+    // Also what stands for bytes that were no text, which few fonts have.
     c.is_control()
-        || matches!(c, '\u{61c}' | '\u{fffd}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || c == char::REPLACEMENT_CHARACTER
 }
 
 #[cfg(test)]

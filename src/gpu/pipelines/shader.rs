@@ -13,7 +13,8 @@ use crate::data::address_bytes_left;
 use crate::export::ExportError;
 use crate::gpu::{Context, GpuError};
 
-/// Addresses that must be left for the compiler of a software adapter (Mesa 22.3 crashed with 128 MiB under `ulimit -v`).
+/// Addresses that must be left for the compiler of a software adapter: with 128 MiB under `ulimit -v`, that of Mesa
+/// 22.3.6 still crashed.
 const COMPILER_ROOM: u64 = 256 << 20;
 
 /// Joins sources and makes pipelines, each once.

@@ -13,7 +13,8 @@ use super::preset_error::PresetError;
 use crate::data::plain;
 use crate::model::{MAX_LIGHTS, MAX_NAME, MAX_POINTS};
 
-/// Bytes of the longest look: two transfer functions of [`MAX_POINTS`] points have them.
+/// Bytes of the longest look: a transfer function of [`MAX_POINTS`] points has nearly as many, written with an item a
+/// line.
 pub const MAX_LOOK_BYTES: usize = 1 << 20;
 
 /// Lists and objects in one another: settings have 6 levels.
