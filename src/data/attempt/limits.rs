@@ -12,8 +12,8 @@ const FALLBACK_BUDGET_BYTES: u64 = 4 << 30;
 /// Distances between voxels outside this range are mistakes, and would upset every computation.
 const SPACING_RANGE_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
-/// How much longer one distance between voxels may be than another: scans have 100 at most, and steps through the volume
-/// are as short as the shortest.
+/// How much longer one distance between voxels may be than another: that of slices a millimetre apart to pixels of 0.1 µm.
+/// Steps through the volume are as short as the shortest, so that their number grows with this.
 const MAX_SPACING_RATIO: f64 = 1e4;
 
 /// The size of a grid that fits into the memory budget.
