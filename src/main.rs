@@ -1,12 +1,20 @@
 //! The program: the command line, and the window when no command is given.
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use chiaroscuro::cli::{self, CliError, ViewerRequest};
+use chiaroscuro::data::without_controls;
 
 fn main() -> ExitCode {
     let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error");
-    env_logger::Builder::from_env(quiet).init();
+    // Drivers and files have their words in it.
+    env_logger::Builder::from_env(quiet)
+        .format(|out, record| {
+            let text = without_controls(&record.args().to_string());
+            writeln!(out, "{}: {text} ({})", record.level().as_str().to_lowercase(), record.target())
+        })
+        .init();
     ExitCode::from(cli::main(open_window))
 }
 
@@ -19,6 +27,8 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
         source: request.source,
         load: request.load,
         session: request.session,
+        volume: request.volume,
+        trust_paths: request.trust_paths,
         adjust: None,
         storage: app::storage_folder(),
     };

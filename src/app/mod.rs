@@ -53,6 +53,7 @@ use self::viewport::{Facts, Viewport, paint_callback};
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
 use self::windows::files::Files;
+use self::windows::foreign_path::ForeignPath;
 use self::windows::help::Help;
 use self::windows::light_slice::LightSlice;
 use self::windows::lost_again::LostAgain;
@@ -118,6 +119,9 @@ pub struct App {
     light_slice: LightSlice,
     slices: Slices,
     raw_dialog: RawDialog,
+    foreign_path: ForeignPath,
+    /// Whether what looks from outside say of their volumes is opened without a question.
+    trusts_paths: bool,
     contact_sheet: ContactSheet,
     editor: TransferEditor,
     selected_light: usize,
@@ -309,7 +313,7 @@ impl eframe::App for App {
         ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
         let mut commands = Vec::new();
         if let Some(path) = files::dropped(&ctx) {
-            commands.push(Command::Open(path.display().to_string()));
+            commands.push(Command::Open(path));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
         self.palette.ui(&ctx, &mut commands);
@@ -318,6 +322,7 @@ impl eframe::App for App {
         commands::from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
+        self.ask_for_volume(frame, &ctx);
         self.history.observe(&ctx, &self.settings);
         for command in commands {
             self.execute(command, frame, &ctx);

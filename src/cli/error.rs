@@ -1,5 +1,7 @@
 //! Errors of the command line and their exit codes.
 
+use std::path::PathBuf;
+
 use crate::data::load::{LoadError, LoadErrorKind};
 use crate::export::{ExportError, ReadPictureError};
 use crate::gpu::GpuError;
@@ -50,6 +52,18 @@ pub enum CliError {
         /// What is missing.
         why: String,
     },
+    /// A picture names a volume that is not opened without a word of the user.
+    #[error("{}: its volume {volume} is not opened: {why}; {help}", picture.display())]
+    VolumeElsewhere {
+        /// The picture.
+        picture: PathBuf,
+        /// What it names.
+        volume: String,
+        /// Why that is not opened.
+        why: &'static str,
+        /// What helps.
+        help: &'static str,
+    },
     /// A picture that was made again is not as it was.
     #[error("{0}")]
     Differs(String),
@@ -70,7 +84,7 @@ impl CliError {
         match self {
             Self::Differs(_) => 1,
             Self::Usage(_) => 2,
-            Self::Preset { .. } | Self::Replay { .. } => 3,
+            Self::Preset { .. } | Self::Replay { .. } | Self::VolumeElsewhere { .. } => 3,
             Self::Load(err) => match err.kind() {
                 LoadErrorKind::BadInput => 3,
                 LoadErrorKind::Limit => 5,

@@ -1,5 +1,7 @@
 //! `chiaroscuro info`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use serde_json::json;
 
@@ -16,7 +18,7 @@ const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
 #[derive(Debug, Args)]
 pub(super) struct InfoArgs {
     #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
-    file: String,
+    file: PathBuf,
     /// As JSON
     #[arg(long)]
     json: bool,

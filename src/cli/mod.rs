@@ -15,7 +15,7 @@ mod scene;
 mod signals;
 mod turntable;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
@@ -24,6 +24,8 @@ pub use error::CliError;
 use outputs::warn_line;
 use scene::LoadArgs;
 
+use crate::export::PictureFormat;
+
 /// See the shape of volume data, with true volumetric shadows.
 #[derive(Debug, Parser)]
 #[command(name = "chiaroscuro", version, args_conflicts_with_subcommands = true)]
@@ -31,15 +33,44 @@ struct Args {
     #[command(subcommand)]
     command: Option<Command>,
     #[arg(help = "Volume to view: a file, or builtin:NAME[:N]")]
-    file: Option<String>,
+    file: Option<PathBuf>,
     /// Session to continue; Ctrl+S saves to it
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
+    /// Volume of the look that FILE or --session is, if it is not where the look says
+    #[arg(long, value_name = "FILE")]
+    volume: Option<PathBuf>,
+    /// Open volumes wherever sessions and pictures say that they are, without asking
+    #[arg(long)]
+    trust_paths: bool,
     #[command(flatten)]
     load: LoadArgs,
     /// A fault on purpose, to see what the program does then; may be repeated
     #[arg(long, value_name = "FAULT", global = true, hide = true)]
     fault: Vec<Fault>,
+}
+
+impl Args {
+    /// What the window is to be opened with.
+    fn request(self) -> Result<ViewerRequest, CliError> {
+        let Self { command: _, file, session, volume, trust_paths, load, fault: _ } = self;
+        if let (Some(file), Some(volume)) = (&file, &volume)
+            && !is_look(file)
+        {
+            return Err(CliError::Usage(format!(
+                "--volume: {} is a volume itself, so {} cannot be shown; a session or a picture goes with --volume",
+                file.display(),
+                volume.display()
+            )));
+        }
+        Ok(ViewerRequest { source: file, load: load.load_options()?, session, volume, trust_paths })
+    }
+}
+
+/// Whether a file holds a look and not a volume, by its name.
+fn is_look(path: &Path) -> bool {
+    PictureFormat::with_record(path).is_some()
+        || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
 
 #[derive(Debug, Subcommand)]
@@ -64,11 +95,15 @@ enum Command {
 #[derive(Debug, Clone)]
 pub struct ViewerRequest {
     /// File or built-in.
-    pub source: Option<String>,
+    pub source: Option<PathBuf>,
     /// How to read it.
     pub load: crate::data::load::LoadOptions,
     /// See `--session`.
     pub session: Option<PathBuf>,
+    /// See `--volume`.
+    pub volume: Option<PathBuf>,
+    /// See `--trust-paths`.
+    pub trust_paths: bool,
 }
 
 /// Runs the command line; `open_window` runs the viewer. Returns the exit code.
@@ -82,7 +117,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
             return code;
         }
     };
-    fault::choose(args.fault);
+    fault::choose(args.fault.clone());
     #[cfg(feature = "window")]
     signals::before_the_end(crate::app::end_in_a_hurry);
     signals::listen();
@@ -94,10 +129,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         Some(Command::LightVolume(args)) => light_volume::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
-        None => args
-            .load
-            .load_options()
-            .and_then(|load| open_window(ViewerRequest { source: args.file, load, session: args.session })),
+        None => args.request().and_then(open_window),
     };
     match result {
         Ok(()) => 0,

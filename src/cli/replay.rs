@@ -1,16 +1,19 @@
 //! `chiaroscuro replay`: makes a picture again from what it carries, and compares.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::CliError;
 use super::outputs::{keep_apart, print_line, warn_line};
 use super::scene::LoadArgs;
-use crate::data::Dataset;
+use crate::data::{Dataset, plain};
 use crate::export::{Rows, check_picture, picture_size, read_picture, read_record, write_picture};
 use crate::gpu::{Distance, Renderer};
-use crate::model::{PresetError, Record, Settings};
+use crate::model::{PresetError, Record, Settings, VolumePlace, VolumeRecord};
+
+/// Characters of a path in a message.
+const LONGEST_PATH: usize = 4096;
 
 /// Arguments of `replay`.
 #[derive(Debug, Args)]
@@ -19,7 +22,10 @@ pub(super) struct ReplayArgs {
     picture: PathBuf,
     /// The volume, if it is not where it was
     #[arg(long, value_name = "FILE")]
-    volume: Option<String>,
+    volume: Option<PathBuf>,
+    /// Open the volume wherever the picture says that it is
+    #[arg(long)]
+    trust_paths: bool,
     /// Write the new picture
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
@@ -28,6 +34,23 @@ pub(super) struct ReplayArgs {
     check: bool,
     #[command(flatten)]
     load: LoadArgs,
+}
+
+/// The volume of a picture, if it may be opened: a picture comes from anywhere, and could name any file.
+fn source_of(args: &ReplayArgs, stated: &VolumeRecord) -> Result<PathBuf, CliError> {
+    let refused = |why: &'static str, help: &'static str| {
+        let volume = plain(&stated.source, LONGEST_PATH);
+        Err(CliError::VolumeElsewhere { picture: args.picture.clone(), volume, why, help })
+    };
+    match stated.place(args.picture.parent()) {
+        VolumePlace::Builtin(name) => Ok(name.into()),
+        VolumePlace::Beside(path) => Ok(path),
+        VolumePlace::Elsewhere(path) if args.trust_paths => Ok(path),
+        VolumePlace::Elsewhere(_) => {
+            refused("it is not in the picture's folder", "--trust-paths opens it, --volume FILE another")
+        }
+        VolumePlace::Never(why) => refused(why, "--volume FILE names one"),
+    }
 }
 
 /// Renders the picture again and says how far the two are apart.
@@ -40,14 +63,17 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let how =
         record.picture.clone().ok_or_else(|| unusable("it does not say how large it was".to_owned()))?;
     let stated = record.volume.as_ref();
-    let source = args.volume.clone().or_else(|| stated.map(|of| of.source_from(args.picture.parent())));
-    let source = source.ok_or_else(|| unusable("it does not say of which volume".to_owned()))?;
+    let source = match (&args.volume, stated) {
+        (Some(volume), _) => volume.clone(),
+        (None, Some(stated)) => source_of(args, stated)?,
+        (None, None) => return Err(unusable("it does not say of which volume".to_owned())),
+    };
     if let Some(output) = &args.output {
-        keep_apart(&[&args.picture, Path::new(&source)], &[output])?;
+        keep_apart(&[&args.picture, &source], &[output])?;
     }
     let (volume, context) = args.load.open(&source)?;
     if stated.is_some_and(|of| !of.is_of(volume.content_id())) {
-        return Err(unusable(format!("{source} is another volume than the one that it shows")));
+        return Err(unusable(format!("{} is another volume than the one that it shows", source.display())));
     }
     let (settings, warnings) = record.apply(&Settings::default(), volume.value_range()).map_err(preset)?;
     for warning in warnings {

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use serde_json::Value;
 
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
@@ -11,9 +10,7 @@ use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance_quickly, fitted};
-use crate::model::{
-    Engine, MAX_EDGE, Preset, Quality, Settings, ShadowAlgorithm, apply_path, apply_relative, auto,
-};
+use crate::model::{Engine, MAX_EDGE, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto};
 
 /// How a volume is read.
 #[derive(Debug, Clone, Args)]
@@ -80,7 +77,7 @@ impl LoadArgs {
     }
 
     /// Loads a volume, and opens the adapter.
-    pub(super) fn open(&self, source: &str) -> Result<(Volume, Context), CliError> {
+    pub(super) fn open(&self, source: &Path) -> Result<(Volume, Context), CliError> {
         // What is wrong with a file is said first.
         let whole = open(source, &self.load_options()?, &LoadControl::new())?;
         let context = Context::headless()?;
@@ -89,15 +86,16 @@ impl LoadArgs {
 }
 
 /// The volume as the adapter can hold it.
-fn downsampled_to_fit(source: &str, whole: Volume, context: &Context) -> Result<Volume, CliError> {
+fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result<Volume, CliError> {
     let before = whole.dims();
     let volume = fitted(context, whole)?;
     if volume.dims() != before {
         let ([x, y, z], [a, b, c]) = (before, volume.dims());
         warn_line(&format!(
-            "warning: {x} × {y} × {z} voxels were averaged to {a} × {b} × {c}: {} cannot hold more ({source}); a \
+            "warning: {x} × {y} × {z} voxels were averaged to {a} × {b} × {c}: {} cannot hold more ({}); a \
              crop of it can be shown with all of its voxels",
-            context.info.name
+            context.info.name,
+            source.display()
         ));
     }
     Ok(volume)
@@ -169,7 +167,7 @@ impl From<QualityArg> for Quality {
 pub(super) struct LookArgs {
     /// Preset to lay over the automatic look: a name or a JSON file
     #[arg(long, value_name = "NAME|FILE")]
-    preset: Option<String>,
+    preset: Option<PathBuf>,
     /// Session to restore: a JSON file, or a picture that was exported
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
@@ -193,7 +191,7 @@ pub(super) struct LookArgs {
 #[derive(Debug, Clone, Args)]
 pub(super) struct SceneArgs {
     #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
-    file: String,
+    file: PathBuf,
     #[command(flatten)]
     look: LookArgs,
 }
@@ -217,14 +215,14 @@ impl SceneArgs {
     }
 
     /// What is to be loaded.
-    pub(super) fn source(&self) -> &str {
+    pub(super) fn source(&self) -> &Path {
         &self.file
     }
 
     /// Refuses to write over what is read, or twice over one file.
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
         let LookArgs { preset, session, .. } = &self.look;
-        let inputs = [Some(Path::new(&self.file)), preset.as_deref().map(Path::new), session.as_deref()];
+        let inputs = [Some(self.file.as_path()), preset.as_deref(), session.as_deref()];
         keep_apart(&inputs.into_iter().flatten().collect::<Vec<_>>(), outputs)
     }
 
@@ -236,7 +234,7 @@ impl SceneArgs {
 
 impl LookArgs {
     /// Loads a volume for an adapter that is open.
-    pub(super) fn load(&self, source: &str, context: &Context) -> Result<Dataset, CliError> {
+    pub(super) fn load(&self, source: &Path, context: &Context) -> Result<Dataset, CliError> {
         let whole = open(source, &self.load.load_options()?, &LoadControl::new())?;
         Ok(checked(downsampled_to_fit(source, whole, context)?))
     }
@@ -246,14 +244,13 @@ impl LookArgs {
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
         let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
         let mut balanced = false;
-        let overlays =
-            [("preset", self.preset.as_deref().map(PathBuf::from)), ("session", self.session.clone())];
+        let overlays = [("preset", &self.preset), ("session", &self.session)];
         for (what, path) in overlays {
             let Some(path) = path else { continue };
-            let (overlay, name) = read_overlay(what, &path)?;
-            balanced |= overlay.pointer("/shadows/balance").is_some();
-            let range = loaded.volume().value_range();
-            let (next, warnings) = apply_relative(&settings, &overlay, range)
+            let (record, name) = read_look(what, path)?;
+            balanced |= record.names_balance();
+            let (next, warnings) = record
+                .apply(&settings, loaded.volume().value_range())
                 .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
             for warning in warnings {
                 warn_line(&format!("warning: {what}: {warning} ({name})"));
@@ -301,8 +298,12 @@ impl LookArgs {
                     "--set: expected PATH=VALUE, found {assignment:?} (command line, --set)"
                 ))
             })?;
-            settings = apply_path(&settings, path.trim(), value.trim())
+            let (next, warning) = assign(&settings, path.trim(), value.trim())
                 .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
+            if let Some(warning) = warning {
+                warn_line(&format!("warning: --set: {warning}"));
+            }
+            settings = next;
         }
         match self.shadows {
             Some(ShadowArg::Off) => settings.shadows.algorithm = ShadowAlgorithm::Off,
@@ -320,8 +321,8 @@ impl LookArgs {
     }
 }
 
-/// Reads a preset or session: a built-in's name, a file, or the record of an exported picture.
-fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliError> {
+/// Reads a preset or session, and what it is called: a built-in's name, a file, or the record of an exported picture.
+fn read_look(what: &'static str, path: &Path) -> Result<(Record, String), CliError> {
     let name = path.display().to_string();
     let builtin = Preset::find(&name).filter(|_| what == "preset");
     let text = match builtin {
@@ -333,12 +334,9 @@ fn read_overlay(what: &'static str, path: &Path) -> Result<(Value, String), CliE
         }
         None => read_small(path).map_err(|source| CliError::Read { what, path: name.clone(), source })?,
     };
-    let value = serde_json::from_slice(&text).map_err(|err| CliError::Preset {
-        what,
-        path: name.clone(),
-        source: crate::model::PresetError::Syntax(err),
-    })?;
-    Ok((value, name))
+    let record =
+        Record::from_bytes(&text).map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
+    Ok((record, name))
 }
 
 #[cfg(test)]

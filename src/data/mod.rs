@@ -14,8 +14,10 @@ mod small_file;
 pub mod synthetic;
 mod value_range;
 mod volume;
+mod volume_error;
 
-pub use attempt::without_controls;
+pub(crate) use attempt::address_bytes_left;
+pub use attempt::{plain, single_line, without_controls};
 pub use bricks::Bricks;
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;
@@ -24,4 +26,5 @@ pub use open::open;
 pub use reduce::reduced_dims;
 pub use small_file::read_small;
 pub use value_range::ValueRange;
-pub use volume::{Samples, Volume, VolumeError, VoxelType};
+pub use volume::{Samples, Volume, VoxelType};
+pub use volume_error::VolumeError;

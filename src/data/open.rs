@@ -14,25 +14,31 @@ const BUILTIN: &str = "builtin:";
 ///
 /// # Errors
 /// As [`load`] and [`builtin`](super::synthetic::builtin).
-pub fn open(source: &str, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+pub fn open(
+    source: impl AsRef<Path>,
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Result<Volume, LoadError> {
+    let source = source.as_ref();
     let volume = open_whole(source, options, control)?;
-    let attempt = Attempt { what: "average the voxels", path: Path::new(source) };
+    let attempt = Attempt { what: "average the voxels", path: source };
     // What was a volume stays one: nothing else can go wrong.
     volume
         .reduced([options.reduce; 3])
         .map_err(|err| attempt.bad_input("voxels", err.to_string(), "load them all"))
 }
 
-fn open_whole(source: &str, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let Some(builtin) = source.strip_prefix(BUILTIN) else {
-        return load(Path::new(source), options, control);
+fn open_whole(source: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    // A name that is no text is a file's.
+    let Some(builtin) = source.to_str().and_then(|name| name.strip_prefix(BUILTIN)) else {
+        return load(source, options, control);
     };
     let (name, n) = match builtin.split_once(':') {
         None => (builtin, None),
         Some((name, digits)) => match digits.parse() {
             Ok(n) => (name, Some(n)),
             Err(_) => {
-                return Err(Attempt { what: "make the built-in volume", path: Path::new(source) }.bad_input(
+                return Err(Attempt { what: "make the built-in volume", path: source }.bad_input(
                     "N",
                     format!("a number of voxels was expected after {name}:, {} was found", quoted(digits)),
                     "write it like builtin:chair:128",

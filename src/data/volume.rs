@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::ValueRange;
+use super::{ValueRange, VolumeError};
 use crate::math::SceneSpace;
 
 /// The number types that a voxel can have.
@@ -146,20 +146,6 @@ impl Samples {
     }
 }
 
-/// Why a grid and its values do not make a volume.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say it")]
-pub enum VolumeError {
-    #[error("the volume is empty ({dims:?} voxels): every dimension must be at least 1")]
-    Empty { dims: [usize; 3] },
-    #[error("{dims:?} voxels were announced, {found} are there")]
-    WrongCount { dims: [usize; 3], found: usize },
-    #[error("the spacing or orientation is unusable ({what}): it must be finite and not flat")]
-    BadGeometry { what: String },
-    #[error("no voxel has a finite value")]
-    NothingFinite,
-}
-
 /// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range.
 #[derive(Debug, Clone)]
 pub struct Volume {
@@ -180,7 +166,7 @@ impl Volume {
     ///
     /// # Errors
     /// When the count does not fit `dims`, a dimension is zero, the affine is not finite and
-    /// invertible, or no value is finite.
+    /// invertible, no value is finite, or the values span more than a number can say.
     pub fn new(
         name: impl Into<String>,
         dims: [usize; 3],
@@ -202,6 +188,10 @@ impl Volume {
             return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
         }
         let (value_range, non_finite_voxels) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+        if !value_range.span().is_finite() {
+            let range = format!("from {:e} to {:e}", value_range.low, value_range.high);
+            return Err(VolumeError::TooWide { range });
+        }
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
@@ -387,6 +377,9 @@ mod tests {
         ));
         let nan = Volume::with_spacing("t", [1, 1, 1], DVec3::ONE, Samples::F64(vec![f64::NAN]));
         assert!(matches!(nan, Err(VolumeError::NothingFinite)));
+        let far = Volume::with_spacing("t", [2, 1, 1], DVec3::ONE, Samples::F64(vec![-1.5e308, 1.5e308]));
+        let said = far.map(|_| ()).unwrap_err().to_string();
+        assert!(said.contains("from -1.5e308 to 1.5e308"), "{said}");
     }
 
     #[test]

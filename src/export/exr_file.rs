@@ -16,7 +16,7 @@ use super::files::{open_regular, place, temporary_beside};
 use super::png_file::sizes_of_ours;
 use super::rows::RECORD;
 use super::{ExportError, ReadPictureError, Rows};
-use crate::model::{ImageSpec, made_by};
+use crate::model::{ImageSpec, MAX_LOOK_BYTES, made_by};
 
 /// Channels in the order of the file, which is that of their names, and where they are in a pixel.
 const CHANNELS: [(&str, usize); 4] = [("A", 3), ("B", 2), ("G", 1), ("R", 0)];
@@ -29,6 +29,10 @@ const BEFORE_ATTRIBUTES: u64 = 8;
 
 /// Most times that the format's compressions make a file smaller: deflate by 1032, and what they do before it by two.
 const MOST_COMPRESSED: u64 = 2064;
+
+/// Most bytes that are read of what stands before the pixels: a look in pieces, of which each has a name and lengths, and
+/// as much again of other programs.
+const MOST_BEFORE: u64 = 4 * MAX_LOOK_BYTES as u64;
 
 /// Writes a picture in blocks of sixteen rows, as the format's lossless compression has them.
 pub(super) fn write<E: From<ExportError>>(
@@ -138,13 +142,27 @@ fn ascii(json: &str) -> String {
     })
 }
 
+/// What an EXR file says before its pixels, as far as [`MOST_BEFORE`].
+fn meta_data(path: &Path, file: File) -> Result<MetaData, ReadPictureError> {
+    MetaData::read_from_buffered(BufReader::new(file.take(MOST_BEFORE)), false)
+        .map_err(|err| ReadPictureError::new(path, &err))
+}
+
 /// The record in an EXR file, if there is one.
 pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
-    let meta = MetaData::read_from_buffered(BufReader::new(open_regular(path)?), false)
-        .map_err(|err| ReadPictureError::new(path, &err))?;
+    let meta = meta_data(path, open_regular(path)?)?;
     let Some(header) = meta.headers.first() else { return Ok(None) };
     let piece = |at| header.own_attributes.other.get(&piece_name(at))?.to_text().ok();
-    let text: String = (0..).map_while(piece).map(ToString::to_string).collect();
+    let mut text = String::new();
+    for piece in (0..).map_while(piece) {
+        text.extend(piece.chars());
+        if text.len() > MAX_LOOK_BYTES {
+            return Err(ReadPictureError::new(
+                path,
+                &"what it says of how it was made is longer than any look",
+            ));
+        }
+    }
     Ok(Some(text).filter(|text| !text.is_empty()))
 }
 
@@ -159,7 +177,7 @@ pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let file = open_regular(path)?;
     let bytes = file.metadata().map_err(|err| failed(&err))?.len();
-    let meta = MetaData::read_from_buffered(BufReader::new(file), false).map_err(|err| failed(&err))?;
+    let meta = meta_data(path, file)?;
     let size = meta.headers.first().map(|header| header.layer_size).ok_or_else(|| failed(&"it is empty"))?;
     let edge = |edge: usize| u32::try_from(edge).unwrap_or(u32::MAX);
     let size = sizes_of_ours(path, [edge(size.width()), edge(size.height())])?;
@@ -247,6 +265,14 @@ mod tests {
         std::fs::write(&path, claiming(&before, [16_384, 16_384])).unwrap();
         let refused = read(&path).unwrap_err().to_string();
         assert!(refused.contains("bytes are less than"), "{refused}");
+        // Nor is a look as long as somebody likes.
+        let mut rows = Some(Rows::Floats(vec![0.0; 4]));
+        let mut next = || Ok::<_, ExportError>(rows.take());
+        let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new([1, 1]) };
+        let long = "x".repeat(MAX_LOOK_BYTES + 1);
+        super::super::write_picture(&path, &shot, Some(&long), &mut next).unwrap();
+        let refused = read_record(&path).unwrap_err().to_string();
+        assert!(refused.contains("longer than any look") && size(&path).is_ok(), "{refused}");
         std::fs::write(&path, b"no picture").unwrap();
         assert!(read_record(&path).is_err() && read(&path).is_err());
     }

@@ -6,10 +6,11 @@ use std::path::Path;
 use super::files::{check_ending, open_regular, place, temporary_beside, write_atomically};
 use super::rows::{RECORD, word};
 use super::{ExportError, ReadPictureError, Rows};
-use crate::model::{Depth, ImageSpec, MAX_EDGE, made_by};
+use crate::model::{Depth, ImageSpec, MAX_EDGE, MAX_LOOK_BYTES, made_by};
 
-/// Most bytes that are read of a picture's texts: a thousand times a real record.
-const MOST_TEXT: usize = 16 << 20;
+/// Most bytes that are read of all that stands before a picture's pixels, other programs' texts and colour profiles
+/// among it, as they are stored: ten times what cameras write.
+const MOST_BEFORE: usize = 16 << 20;
 
 /// Writes a picture of sRGB bytes, RGBA row by row, as PNG: RGB, or RGBA with straight alpha when
 /// it is transparent. It carries a record ([`crate::model::Record`]) as text.
@@ -152,12 +153,14 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
 pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let file = open_regular(path)?;
-    let limits = png::Limits { bytes: MOST_TEXT };
+    let limits = png::Limits { bytes: MOST_BEFORE };
     let decoder = png::Decoder::new_with_limits(BufReader::new(file), limits);
     let reader = decoder.read_info().map_err(|err| failed(&err))?;
     let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD);
     let Some(mut text) = found.cloned() else { return Ok(None) };
-    text.decompress_text_with_limit(MOST_TEXT).map_err(|err| failed(&err))?;
+    // Inflating stops there, whatever it would come to.
+    text.decompress_text_with_limit(MAX_LOOK_BYTES)
+        .map_err(|err| failed(&format!("what it says of how it was made cannot be read: {err}")))?;
     text.get_text().map(Some).map_err(|err| failed(&err))
 }
 
@@ -187,7 +190,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let mut info = png::Info::with_size(1, 1);
-        let mut text = png::text_metadata::ITXtChunk::new(RECORD, "x".repeat(MOST_TEXT + 1));
+        let mut text = png::text_metadata::ITXtChunk::new(RECORD, "x".repeat(MAX_LOOK_BYTES + 1));
         text.compressed = true;
         text.compress_text().unwrap();
         info.utf8_text.push(text);
@@ -196,7 +199,8 @@ mod tests {
         writer.write_image_data(&[0]).unwrap();
         writer.finish().unwrap();
         assert!(std::fs::metadata(&path).unwrap().len() < 1 << 20, "a small file");
-        assert!(read_record(&path).is_err());
+        let refused = read_record(&path).unwrap_err().to_string();
+        assert!(refused.contains("decompression space"), "{refused}");
         assert!(read_record(folder.path()).is_err(), "a folder");
     }
 

@@ -16,7 +16,7 @@ pub use self::settings::camera::{Camera, FRAME_ASPECT, Fit, Projection};
 pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
 pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::length::Length;
-pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, SceneLight};
+pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, SceneLight};
 pub use self::settings::quality::Quality;
 pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
@@ -27,9 +27,12 @@ pub use self::settings::shadows::{
 };
 pub use self::settings::variant::Variant;
 pub use self::settings::view::StandardView;
+pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
 pub use self::stored::made_by::{MADE_BY, made_by, tells_maker};
-pub use self::stored::preset::{PresetError, apply_json, apply_path, load_json, to_json};
+pub use self::stored::place::VolumePlace;
+pub use self::stored::preset::{apply_json, apply_path, assign, load_json, to_json};
+pub use self::stored::preset_error::PresetError;
 pub use self::stored::record::{PictureRecord, Record, VolumeRecord};
 pub use self::transfer::baked::BakedTransfer;
 pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
@@ -39,6 +42,6 @@ pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
 pub use rig::Rig;
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, Sides, ToneMap};
 pub use transfer::{
-    ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, Mixing, STEPS, TransferFunction,
+    ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, MAX_POINTS, Mixing, STEPS, TransferFunction,
     linear_from_srgb, srgb_from_linear,
 };

@@ -20,7 +20,7 @@ pub(crate) const SCENE: &str = "builtin:chair:32";
 
 /// The window of the tests. It is taller than wide panels need, so that nothing is scrolled away.
 pub(crate) fn window() -> Harness<'static, App> {
-    let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
+    let options = Options { source: Some(SCENE.into()), ..Options::default() };
     window_with(options, Vec2::new(760.0, 1100.0))
 }
 

@@ -16,7 +16,7 @@ fn undo(harness: &mut Harness<'_, App>, modifiers: Modifiers) {
 #[test]
 fn a_balance_that_is_kept_follows_changes() {
     let options = Options {
-        source: Some(SCENE.to_owned()),
+        source: Some(SCENE.into()),
         adjust: Some(Box::new(|settings| settings)),
         ..Options::default()
     };

@@ -3,6 +3,7 @@
 mod cuts;
 mod editor;
 mod export;
+mod foreign_paths;
 mod gestures;
 mod harness;
 mod keep_balanced;

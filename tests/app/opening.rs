@@ -44,7 +44,7 @@ fn a_dropped_picture_brings_its_look_back() {
     assert_ne!(harness.state().settings(), &before);
 
     // What is opened last counts: no look is laid over another volume.
-    harness.state_mut().open(&first.display().to_string(), &ctx);
+    harness.state_mut().open(&first, &ctx);
     harness.state_mut().open("builtin:box:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box"));
     assert_ne!(harness.state().settings().lights, before.lights);
@@ -112,7 +112,7 @@ fn the_next_file_can_have_the_look_of_this_one() {
     let lights = harness.state().settings().lights.clone();
     let open_sphere = |harness: &mut Harness<'_, App>, n: usize| {
         let ctx = harness.ctx.clone();
-        harness.state_mut().open(&format!("builtin:sphere:{n}"), &ctx);
+        harness.state_mut().open(format!("builtin:sphere:{n}"), &ctx);
         let other = move |app: &App| app.volume_name() == Some("sphere") && app.is_idle();
         wait_until(harness, "never opened", other);
     };
@@ -140,7 +140,7 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     let folder = tempfile::tempdir().unwrap();
     let start = |source: Option<&str>| {
         let options = Options {
-            source: source.map(str::to_owned),
+            source: source.map(Into::into),
             storage: Some(folder.path().to_owned()),
             ..Options::default()
         };

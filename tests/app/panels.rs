@@ -57,7 +57,7 @@ fn a_floor_takes_shadows() {
 #[test]
 fn voxels_are_averaged_and_the_look_stays() {
     // So tall that the whole section can be seen.
-    let options = Options { source: Some(SCENE.to_owned()), ..Options::default() };
+    let options = Options { source: Some(SCENE.into()), ..Options::default() };
     let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
     harness.key_press(egui::Key::CloseBracket);
     click(&mut harness, "Data");

@@ -13,7 +13,7 @@ use crate::harness::{SCENE, click, kept_look, wait_until, window, window_with};
 /// A window with a session file, whose look has been changed, and Ctrl+S pressed.
 fn changed_and_saved(session: &Path) -> Harness<'static, App> {
     let options =
-        Options { source: Some(SCENE.to_owned()), session: Some(session.to_owned()), ..Options::default() };
+        Options { source: Some(SCENE.into()), session: Some(session.to_owned()), ..Options::default() };
     let mut harness = window_with(options, Vec2::new(760.0, 900.0));
     harness.key_press(egui::Key::CloseBracket);
     harness.run_steps(2);
@@ -81,7 +81,7 @@ fn a_run_that_was_cut_off_is_offered() {
     let folder = tempfile::tempdir().unwrap();
     let start = || {
         let options = Options {
-            source: Some("builtin:sphere:16".to_owned()),
+            source: Some("builtin:sphere:16".into()),
             storage: Some(folder.path().to_owned()),
             ..Options::default()
         };
@@ -90,7 +90,7 @@ fn a_run_that_was_cut_off_is_offered() {
     // As a process leaves it that is killed.
     let mut look = window().state().settings().clone();
     look.shadows.gain = 1.75;
-    let volume = VolumeRecord::new(SCENE, 0, None);
+    let volume = VolumeRecord::new(Path::new(SCENE), 0, None);
     std::fs::create_dir(folder.path().join("runs")).unwrap();
     let file = folder.path().join("runs/0000000000001-1-0.json");
     std::fs::write(&file, Record::text(&look, Some(&volume), None)).unwrap();

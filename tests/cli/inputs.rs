@@ -169,3 +169,22 @@ fn headers_cannot_name_files_outside_their_folder() {
     folder.write("good.nhdr", header("sizes: 8 8 8\ndata file: ./outside.raw"));
     folder.succeed("info good.nhdr");
 }
+
+#[cfg(unix)]
+#[test]
+fn names_that_are_no_text_are_opened() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = Folder::new();
+    let name = std::ffi::OsStr::from_bytes(b"a\xff_8x8x8_uint8.raw");
+    fs::write(folder.path("x").with_file_name(name), small_ball()).expect("the folder can be written to");
+    for args in [&["info"][..], &["render", "-o", "out.png", "--size", "16x16"]] {
+        let status = Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
+            .args(args)
+            .arg(name)
+            .current_dir(folder.path(""))
+            .output()
+            .expect("the program can be started");
+        assert!(status.status.success(), "{args:?}: {status:?}");
+    }
+    assert!(folder.names().contains(&"out.png".to_owned()));
+}

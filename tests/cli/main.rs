@@ -9,6 +9,7 @@ mod checks;
 mod info;
 mod inputs;
 mod light_volume;
+mod limits;
 mod program;
 mod render;
 mod replay;

@@ -136,3 +136,37 @@ fn pictures_may_be_larger_than_textures() {
     assert_eq!((wide.width(), wide.height()), (20000, 3));
     assert!(folder.succeed("replay wide.png --check").contains("identical"));
 }
+
+#[test]
+fn volumes_outside_the_pictures_folder_are_opened_only_when_the_user_says_so() {
+    let folder = Folder::new();
+    folder.write("x_8x8x8_uint8.raw", small_ball());
+    std::fs::create_dir(folder.path("pictures")).expect("the folder can be written to");
+    folder.succeed("render x_8x8x8_uint8.raw -o pictures/shot.png --size 16x16");
+    let said = folder.fail("replay pictures/shot.png", 3);
+    assert!(said.contains("--volume FILE") && said.contains("--trust-paths"), "what helps: {said}");
+    assert!(said.contains("x_8x8x8_uint8.raw") && said.contains("shot.png"), "which files: {said}");
+    for trust in ["--trust-paths", "--volume x_8x8x8_uint8.raw"] {
+        let said = folder.succeed(&format!("replay pictures/shot.png --check {trust}"));
+        assert!(said.contains("identical"), "{trust}: {said}");
+    }
+    // Nothing makes it look for what is no file at all.
+    let text = read_record(&folder.path("pictures/shot.png")).expect("a picture").expect("a record");
+    let record: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    for source in ["\\\\host\\share\\x.nrrd", "//host/share/x.nrrd", "/dev/zero", "nul.raw", "http://host/x"]
+    {
+        let mut record = record.clone();
+        record["_volume"]["source"] = source.into();
+        let text = record.to_string();
+        export_png([16, 16], &[0; 1024], false, Some(&text), &folder.path("bad.png")).expect("written");
+        for trust in ["", "--trust-paths"] {
+            let said = folder.fail(&format!("replay bad.png {trust}"), 3);
+            assert!(
+                said.contains("is not opened: it") && !said.contains("--trust-paths"),
+                "{source}: {said}"
+            );
+        }
+    }
+    let said = folder.fail("x_8x8x8_uint8.raw --volume x_8x8x8_uint8.raw", 2);
+    assert!(said.contains("is a volume itself"), "{said}");
+}

@@ -80,3 +80,20 @@ fn presets_and_sessions_that_cannot_be_used_are_refused() {
         refused("binary.json", 3);
     }
 }
+
+#[test]
+fn settings_out_of_range_are_told_and_the_schema_is_not_set() {
+    let folder = Folder::new();
+    let render = "render builtin:sphere:16 -o out.png --size 16x16 --report r.json";
+    let outcome = folder.run(&format!("{render} --set shadows.strength=-1e308"));
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(
+        outcome.stderr.contains("`shadows.strength`") && outcome.stderr.contains("0.0 is used"),
+        "{outcome:?}"
+    );
+    assert_eq!(folder.json("r.json")["settings"]["shadows"]["strength"], 0.0);
+    let outcome = folder.run(&format!("{render} --set shadows.strength=0.5"));
+    assert!(outcome.code == Some(0) && !outcome.stderr.contains("out of its range"), "{outcome:?}");
+    let said = folder.fail(&format!("{render} --set schema=99999"), 2);
+    assert!(said.contains("no setting `schema`"), "{said}");
+}

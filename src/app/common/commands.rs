@@ -1,6 +1,7 @@
 //! What menus, keys and buttons ask for. Collected during a frame, carried out at its end.
 
 use std::borrow::Cow;
+use std::path::PathBuf;
 
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
@@ -15,7 +16,7 @@ pub(crate) enum Command {
     /// Show the window for typing a path.
     OpenPath,
     /// Open a file or a built-in volume.
-    Open(String),
+    Open(PathBuf),
     /// Read the open volume again, so many voxels along each axis averaged into one.
     Average(usize),
     /// Stop opening.

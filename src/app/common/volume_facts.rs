@@ -1,5 +1,6 @@
 //! What the panels and the transfer function editor know of the open volume.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::worker::loader::Reading;
@@ -12,7 +13,7 @@ pub(crate) struct VolumeFacts {
     /// What the user calls it.
     pub name: String,
     /// What was opened: a path or the name of a built-in volume.
-    pub source: String,
+    pub source: PathBuf,
     /// How the volume was read.
     pub reading: Reading,
     /// Voxels along x, y, z.
@@ -41,7 +42,7 @@ pub(crate) struct VolumeFacts {
 
 impl VolumeFacts {
     /// Collects the facts.
-    pub(crate) fn of(source: String, reading: Reading, dataset: &Dataset) -> Self {
+    pub(crate) fn of(source: PathBuf, reading: Reading, dataset: &Dataset) -> Self {
         let volume = dataset.volume();
         let voxel_type = volume.samples().voxel_type();
         let range = volume.value_range();

@@ -24,7 +24,7 @@ const LAST_WAIT: Duration = Duration::from_millis(1500);
 #[derive(Debug, Clone)]
 struct Look {
     settings: Settings,
-    source: String,
+    source: PathBuf,
     content_id: u64,
 }
 
@@ -210,7 +210,7 @@ impl Keeper {
     }
 
     /// The look as it is from now on.
-    pub(super) fn keep(&self, settings: &Settings, source: &str, content_id: u64) {
+    pub(super) fn keep(&self, settings: &Settings, source: &Path, content_id: u64) {
         let look = Look { settings: settings.clone(), source: source.to_owned(), content_id };
         self.change(|due| due.look = Some(look));
     }

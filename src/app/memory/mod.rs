@@ -101,6 +101,11 @@ impl Memory {
         &self.earlier
     }
 
+    /// Whether a record is the look of an earlier run: it may open what the user had open then.
+    pub(crate) fn is_own(&self, record: &Path) -> bool {
+        self.earlier.iter().any(|run| run.look == record)
+    }
+
     /// The look of the run before, if there is one.
     pub(crate) fn before(&self) -> Option<PathBuf> {
         self.earlier.first().map(|run| run.look.clone())
@@ -112,7 +117,7 @@ impl Memory {
     }
 
     /// Keeps a look of a volume, unless it is as it was.
-    pub(crate) fn keep(&mut self, settings: &Settings, source: &str, content_id: u64) {
+    pub(crate) fn keep(&mut self, settings: &Settings, source: &Path, content_id: u64) {
         let is_known = self.kept.as_ref().is_some_and(|(kept, of)| *of == content_id && kept == settings);
         if let Some(keeper) = self.keeper.as_ref().filter(|_| !is_known) {
             keeper.keep(settings, source, content_id);

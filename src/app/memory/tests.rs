@@ -71,10 +71,10 @@ fn the_last_change_is_kept_within_two_seconds() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
     let file = memory.run.as_ref().unwrap().look.clone();
-    memory.keep(&look(1.5), "builtin:chair", 7);
+    memory.keep(&look(1.5), Path::new("builtin:chair"), 7);
     wait_until("the first look is kept", || file.exists());
     for gain in [2.0, 2.5, 3.0] {
-        memory.keep(&look(gain), "builtin:chair", 7);
+        memory.keep(&look(gain), Path::new("builtin:chair"), 7);
     }
     let took = wait_until("the last look is kept", || gain_of(&file) == 3.0);
     assert!(took < Duration::from_secs(2), "{took:?}");
@@ -84,7 +84,7 @@ fn the_last_change_is_kept_within_two_seconds() {
 fn looks_of_runs_that_were_cut_off_are_offered_until_the_user_knows() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
-    memory.keep(&look(2.0), "/data/tooth.nrrd", 7);
+    memory.keep(&look(2.0), Path::new("/data/tooth.nrrd"), 7);
     memory.show(Arc::new(ColorImage::filled([40, 20], egui::Color32::RED)));
     kill(memory);
     // Starts and ends do not take it away.
@@ -106,7 +106,7 @@ fn a_run_that_panics_is_one_that_was_cut_off() {
     let path = folder.path().to_owned();
     let window = std::panic::catch_unwind(move || {
         let mut memory = remember(&path);
-        memory.keep(&look(2.0), "builtin:chair", 7);
+        memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
         panic!("as a window might");
     });
     assert!(window.is_err());
@@ -118,10 +118,10 @@ fn a_run_that_panics_is_one_that_was_cut_off() {
 fn two_windows_take_nothing_from_each_other() {
     let folder = tempfile::tempdir().unwrap();
     let mut first = remember(folder.path());
-    first.keep(&look(2.0), "builtin:chair", 7);
+    first.keep(&look(2.0), Path::new("builtin:chair"), 7);
     let mut second = remember(folder.path());
     assert!(second.earlier().is_empty(), "the first one goes on");
-    second.keep(&look(3.0), "builtin:fuel", 8);
+    second.keep(&look(3.0), Path::new("builtin:fuel"), 8);
     kill(first);
     drop(second);
     let third = remember(folder.path());
@@ -135,7 +135,7 @@ fn ten_runs_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     for at in 0..13 {
         let mut memory = remember(folder.path());
-        memory.keep(&look(f64::from(at)), "builtin:chair", 7);
+        memory.keep(&look(f64::from(at)), Path::new("builtin:chair"), 7);
         drop(memory);
         // Names are in milliseconds.
         std::thread::sleep(Duration::from_millis(3));
@@ -176,7 +176,7 @@ fn what_cannot_be_kept_is_said() {
     let mut memory = remember(folder.path());
     // Nothing can be written where there is no folder.
     fs::remove_dir_all(folder.path().join("runs")).unwrap();
-    memory.keep(&look(2.0), "builtin:chair", 7);
+    memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
     wait_until("the failure is known", || memory.keeper.as_ref().unwrap().failure().is_some());
     assert_eq!(memory.take_notices().len(), 1);
     assert!(memory.take_notices().is_empty(), "once");
@@ -189,7 +189,7 @@ fn what_cannot_be_kept_is_said() {
     fs::write(folder.path().join("file"), "").unwrap();
     let mut nowhere = remember(&folder.path().join("file"));
     assert_eq!(nowhere.take_notices().len(), 1);
-    nowhere.keep(&look(2.0), "builtin:chair", 7);
+    nowhere.keep(&look(2.0), Path::new("builtin:chair"), 7);
     assert!(Memory::new(None, &egui::Context::default()).last_words().is_none());
 }
 
@@ -197,7 +197,7 @@ fn what_cannot_be_kept_is_said() {
 fn last_words_are_written_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
-    memory.keep(&look(2.0), "builtin:chair", 7);
+    memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
     let begin = Instant::now();
     memory.last_words().unwrap().write();
     assert!(begin.elapsed() < Duration::from_millis(900), "before changes have been collected");
@@ -208,7 +208,7 @@ fn last_words_are_written_at_once() {
 fn the_look_of_an_earlier_version_is_taken_over() {
     let folder = tempfile::tempdir().unwrap();
     let text = |gain| {
-        let volume = crate::model::VolumeRecord::new("builtin:chair", 7, None);
+        let volume = crate::model::VolumeRecord::new(Path::new("builtin:chair"), 7, None);
         Record::text(&look(gain), Some(&volume), None)
     };
     fs::write(folder.path().join("before.json"), text(2.0)).unwrap();

@@ -7,8 +7,11 @@ use super::Panels;
 use super::controls::{choice, row};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::data::ValueRange;
+use crate::data::{ValueRange, plain};
 use crate::model::{Length, Settings};
+
+/// Characters of a path that are laid out, which is then cut to the width that there is.
+const LONGEST_PATH: usize = 4096;
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -25,7 +28,7 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     let ValueRange { low, high } = volume.range;
     let mut rows = vec![
         (text::data::NAME, volume.name.clone()),
-        (text::data::SOURCE, volume.source.clone()),
+        (text::data::SOURCE, plain(&volume.source.to_string_lossy(), LONGEST_PATH)),
         (text::data::DIMENSIONS, text::data::dimensions(volume.dims)),
         (text::data::VOXEL_TYPE, volume.voxel_type.to_owned()),
         (text::data::SPACING, text::data::spacing(&volume.spacing_mm.map(short))),

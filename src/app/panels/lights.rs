@@ -9,7 +9,7 @@ use super::Panels;
 use super::controls::{Number, choice, color, row, switch, unlabelled};
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
-use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, Settings};
+use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, Settings};
 
 const KINDS: [(LightKind, Named); 2] =
     [(LightKind::Parallel, text::lights::PARALLEL), (LightKind::Perspective, text::lights::PERSPECTIVE)];
@@ -61,7 +61,9 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
 fn body(ui: &mut Ui, light: &mut Light, camera: &Camera) -> bool {
     let fresh = Light::default();
     row(ui, text::lights::NAME, |ui| {
-        let field = egui::TextEdit::singleline(&mut light.name).hint_text(text::lights::NAME_HINT);
+        let field = egui::TextEdit::singleline(&mut light.name)
+            .char_limit(MAX_NAME)
+            .hint_text(text::lights::NAME_HINT);
         ui.add(field.desired_width(ui.available_width() - theme::RESET_WIDTH));
     });
     choice(ui, text::lights::KIND, &mut light.kind, &KINDS);

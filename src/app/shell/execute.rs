@@ -1,6 +1,6 @@
 //! Carries out commands and takes in what threads have finished.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -253,7 +253,8 @@ impl App {
     /// A file was chosen or typed.
     fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
         match purpose {
-            Purpose::OpenVolume => self.open(&path.display().to_string(), ctx),
+            Purpose::OpenVolume => self.open(path, ctx),
+            Purpose::VolumeOfLook => self.open_for_look(path, ctx),
             Purpose::ExportPicture => self.export.set_path(path),
             Purpose::SaveSettings => self.save_settings(path),
             Purpose::ExportLight => {
@@ -334,7 +335,7 @@ impl App {
             context: self.viewport.context().clone(),
             dataset,
             settings: self.settings.clone(),
-            source: self.volume.as_ref().map_or_else(String::new, |volume| volume.source.clone()),
+            source: self.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
             selected_light: self.selected_light,
         })
     }

@@ -7,8 +7,11 @@ use crate::app::common::theme;
 use crate::app::memory::EarlierRun;
 use crate::app::text;
 use crate::app::windows::recovery;
-use crate::data::synthetic;
-use crate::model::{MAX_LIGHTS, Projection, Rig, Settings, StandardView};
+use crate::data::{plain, synthetic};
+use crate::model::{MAX_LIGHTS, MAX_NAME, Projection, Rig, Settings, StandardView};
+
+/// Characters of a path under the pointer: the longest that there are.
+const LONGEST_PATH: usize = 4096;
 
 /// What the menu shows as chosen.
 pub(crate) struct Menu<'a> {
@@ -88,8 +91,9 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         ui.menu_button(text::menu::OPEN_RECENT, |ui| {
             for path in menu.recent {
                 let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy());
-                if ui.button(name.as_deref().unwrap_or(path)).on_hover_text(path).clicked() {
-                    menu.commands.push(Command::Open(path.clone()));
+                let name = plain(name.as_deref().unwrap_or(path), MAX_NAME);
+                if ui.button(name).on_hover_text(plain(path, LONGEST_PATH)).clicked() {
+                    menu.commands.push(Command::Open(path.into()));
                 }
             }
         });
@@ -99,7 +103,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         ui.menu_button(text::menu::EARLIER_LOOKS, |ui| {
             for run in menu.earlier {
                 if ui.button(recovery::name(run)).on_hover_text(&run.source).clicked() {
-                    menu.commands.push(Command::Open(run.look.display().to_string()));
+                    menu.commands.push(Command::Open(run.look.clone()));
                 }
             }
         });
@@ -107,7 +111,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.menu_button(text::commands::OPEN_BUILT_IN, |ui| {
         for name in synthetic::NAMES {
             if ui.button(name).clicked() {
-                menu.commands.push(Command::Open(format!("builtin:{name}")));
+                menu.commands.push(Command::Open(format!("builtin:{name}").into()));
             }
         }
     });

@@ -6,9 +6,16 @@ use eframe::egui::{self, RichText};
 
 use crate::app::common::theme;
 use crate::app::text;
+use crate::data::{plain, without_controls};
 
 /// How long a note stays; errors stay until they are dismissed.
 const NOTE_S: f64 = 5.0;
+
+/// Characters of a message in the bar: more than the widest screen shows.
+const LONGEST_SHORT: usize = 500;
+
+/// Characters of the details: two long paths, and what is said of them.
+const LONGEST_DETAILS: usize = 10_000;
 
 /// A message to the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,7 +41,7 @@ impl Messages {
     pub(crate) fn error(&mut self, short: impl Into<String>, details: impl Into<String>) {
         let (short, details) = (short.into(), details.into());
         log::error!("{short}: {details}");
-        self.errors.push(short.clone());
+        self.errors.push(plain(&short, LONGEST_SHORT));
         self.show(Message { short, details, is_error: true });
     }
 
@@ -43,10 +50,13 @@ impl Messages {
         self.show(Message { short: short.into(), details: String::new(), is_error: false });
     }
 
-    fn show(&mut self, message: Message) {
+    fn show(&mut self, Message { short, details, is_error }: Message) {
+        // Names and errors come from files, and a label of any length takes as long to lay out.
+        let short = plain(&short, LONGEST_SHORT);
+        let details = without_controls(&details).chars().take(LONGEST_DETAILS).collect();
         self.expanded = false;
         self.until_s = None;
-        self.current = Some(message);
+        self.current = Some(Message { short, details, is_error });
     }
 
     /// A new volume is there: what was said before is over.
@@ -87,5 +97,22 @@ impl Messages {
         if over {
             self.current = None;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn foreign_words_are_harmless_and_short() {
+        let mut messages = Messages::default();
+        messages.error("a\u{1b}[2J\nb".to_owned() + &"x".repeat(1 << 20), "c\u{202e}\n".repeat(1 << 20));
+        let Message { short, details, .. } = messages.current.clone().unwrap();
+        assert!(short.starts_with("a·[2J·bxx") && details.starts_with("c·\nc·\n"), "{short} {details}");
+        let length = |text: &str| text.chars().count();
+        // One more says that it was cut.
+        assert_eq!((length(&short), length(&details)), (LONGEST_SHORT + 1, LONGEST_DETAILS));
+        assert_eq!(messages.errors(), [short]);
     }
 }

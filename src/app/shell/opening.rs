@@ -9,12 +9,13 @@ use super::history::History;
 use super::keep_balanced::KeepBalanced;
 use super::session::Session;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::windows::files;
+use crate::app::windows::files::{self, Purpose};
+use crate::app::windows::foreign_path::Answer;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
 use crate::app::{App, text};
 use crate::data::ValueRange;
-use crate::model::{Length, Record, Settings, made_by};
+use crate::model::{Length, Record, Settings, VolumePlace, VolumeRecord, made_by};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -28,34 +29,45 @@ pub(in crate::app) enum PendingLook {
     Settings(Box<Settings>),
 }
 
-/// The volume that a session is of, where it says so.
-pub(crate) fn volume_of_session(session: &Path) -> Option<String> {
-    if !session.exists() {
-        return None;
-    }
-    // That the session cannot be read is said when it is due.
-    let volume = files::load_record(session).ok()?.volume?;
-    Some(volume.source_from(session.parent()))
-}
-
 impl App {
     /// Opens a file or a built-in volume, or the volume of a session or of an exported picture with the look
     /// that is kept there. What is open stays until it is there.
-    pub fn open(&mut self, source: &str, ctx: &egui::Context) {
-        if files::is_record(Path::new(source)) {
-            self.open_record(Path::new(source), ctx);
+    pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
+        let source = source.as_ref();
+        if files::is_record(source) {
+            self.open_record(source, ctx);
         } else if self.start_loading(source, Reading::default(), ctx) {
             self.pending = None;
         }
     }
 
     /// Opens what was named at the start. A look that cannot be used leaves the default volume.
-    pub(crate) fn open_first(&mut self, source: Option<&str>, ctx: &egui::Context) {
-        if let Some(source) = source {
-            self.open(source, ctx);
+    pub(crate) fn open_first(&mut self, source: Option<&Path>, volume: Option<&Path>, ctx: &egui::Context) {
+        match (source, volume) {
+            (Some(look), Some(volume)) => match files::load_record(look) {
+                Ok(record) => self.open_with(volume, record, ctx),
+                Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+            },
+            (Some(source), None) | (None, Some(source)) => self.open(source, ctx),
+            (None, None) => self.open_volume_of_session(ctx),
         }
         if self.loader.progress().is_none() {
-            self.start_loading(DEFAULT_SOURCE, Reading::default(), ctx);
+            self.start_loading(Path::new(DEFAULT_SOURCE), Reading::default(), ctx);
+        }
+    }
+
+    /// Opens the volume that the session is of, where it says so. Its look is laid over whatever volume is the first.
+    fn open_volume_of_session(&mut self, ctx: &egui::Context) {
+        let session = self.session.as_ref().map(|session| session.path().to_owned());
+        let Some(session) = session.filter(|path| path.exists()) else { return };
+        // That the session cannot be read is said when it is due.
+        let Ok(record) = files::load_record(&session) else { return };
+        let Some(volume) = record.volume.clone() else { return };
+        match self.place_of(&volume, &session) {
+            VolumePlace::Builtin(name) => self.open(name, ctx),
+            VolumePlace::Beside(path) => self.open(path, ctx),
+            VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
+            VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
         }
     }
 
@@ -70,7 +82,7 @@ impl App {
             let content = content.replacen('\n', &format!("\n# {}\n", made_by()), 1);
             match crate::export::write_atomically(header, content.as_bytes()) {
                 Ok(()) => {
-                    self.start_loading(&header.display().to_string(), Reading::default(), ctx);
+                    self.start_loading(header, Reading::default(), ctx);
                     return;
                 }
                 // It is shown all the same.
@@ -78,7 +90,7 @@ impl App {
             }
         }
         let reading = Reading { raw: Some(layout.format()), ..Reading::default() };
-        self.start_loading(&path.display().to_string(), reading, ctx);
+        self.start_loading(path, reading, ctx);
     }
 
     /// Reads the open volume again with other blocks of voxels averaged; the look stays.
@@ -96,7 +108,7 @@ impl App {
         }
     }
 
-    pub(crate) fn start_loading(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> bool {
+    pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
         let started = self.loader.open(source, reading, ctx);
         if let Err(err) = &started {
             self.messages.error(text::opening::NOT_OPENED, err.clone());
@@ -112,20 +124,72 @@ impl App {
             Err(err) => return self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         };
         let open = self.volume_record().map(|(_, content_id)| content_id);
-        let source = match &record.volume {
-            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => volume.source_from(path.parent()),
+        match record.volume.clone() {
+            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => match self.place_of(&volume, path)
+            {
+                VolumePlace::Builtin(name) => self.open_with(Path::new(&name), record, ctx),
+                VolumePlace::Beside(path) => self.open_with(&path, record, ctx),
+                VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
+                VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
+            },
+            Some(_) => drop(self.apply_record(&record, self.value_range())),
+            None => self.use_look(record, ctx),
+        }
+    }
+
+    /// Where the volume of a record is; beside it is also what may be opened without a question.
+    fn place_of(&self, volume: &VolumeRecord, record: &Path) -> VolumePlace {
+        match volume.place(record.parent()) {
+            VolumePlace::Elsewhere(path) if self.is_trusted(record, &path) => VolumePlace::Beside(path),
+            place => place,
+        }
+    }
+
+    /// Whether a record may open a file that is not beside it: the program's own may, and others what the user has
+    /// opened before.
+    fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
+        let is_known = || self.memory.recent().iter().any(|known| Path::new(known) == volume);
+        self.trusts_paths || self.memory.is_own(record) || is_known()
+    }
+
+    /// Takes over a look for whichever volume is open, or is being opened.
+    fn use_look(&mut self, record: Record, ctx: &egui::Context) {
+        if self.loader.progress().is_some() {
             // What is being opened is what the user will see it on.
-            None if self.loader.progress().is_some() => {
-                return self.pending = Some(PendingLook::Record(record));
-            }
-            None if open.is_none() => DEFAULT_SOURCE.to_owned(),
-            _ => {
-                self.apply_record(&record, self.value_range());
-                return;
-            }
-        };
-        if self.start_loading(&source, Reading::default(), ctx) {
             self.pending = Some(PendingLook::Record(record));
+        } else if self.volume_record().is_none() {
+            self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
+        } else {
+            self.apply_record(&record, self.value_range());
+        }
+    }
+
+    /// Opens a volume with a look.
+    fn open_with(&mut self, source: &Path, record: Record, ctx: &egui::Context) {
+        if self.start_loading(source, Reading::default(), ctx) {
+            self.pending = Some(PendingLook::Record(record));
+        }
+    }
+
+    /// Shows the question whether a look may open its volume, and does what the user says.
+    pub(crate) fn ask_for_volume(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
+        let Some(answer) = self.foreign_path.ui(ctx) else { return };
+        if answer == Answer::Choose {
+            // It stays open: choosing may be cancelled.
+            return self.files.ask(Purpose::VolumeOfLook, frame, ctx);
+        }
+        match self.foreign_path.take() {
+            Some((record, Some(path))) if answer == Answer::Open => self.open_with(&path, record, ctx),
+            Some((record, _)) => self.use_look(record, ctx),
+            None => {}
+        }
+    }
+
+    /// Opens what the user has chosen for the look that was asked about.
+    pub(crate) fn open_for_look(&mut self, path: &Path, ctx: &egui::Context) {
+        match self.foreign_path.take() {
+            Some((record, _)) => self.open_with(path, record, ctx),
+            None => self.open(path, ctx),
         }
     }
 
@@ -175,7 +239,7 @@ impl App {
     }
 
     /// The open volume, for records.
-    pub(crate) fn volume_record(&self) -> Option<(&str, u64)> {
+    pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
         let dataset = self.viewport.dataset()?;
         Some((&self.volume.as_ref()?.source, dataset.volume().content_id()))
     }
@@ -190,7 +254,7 @@ impl App {
 
     pub(crate) fn save_settings(&mut self, path: &Path) {
         let volume = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
-        let volume = self.volume.as_ref().map(|volume| volume.source.as_str()).zip(volume);
+        let volume = self.volume.as_ref().map(|volume| volume.source.as_path()).zip(volume);
         match Session::save(&mut self.session, path, &self.settings, volume) {
             Ok(()) => self.messages.note(text::opening::saved(path)),
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
@@ -253,7 +317,10 @@ impl App {
             }
             self.session = Some(session);
         }
-        self.memory.opened(&source);
+        // The list is of texts.
+        if let Some(source) = source.to_str() {
+            self.memory.opened(source);
+        }
         match self.pending.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {

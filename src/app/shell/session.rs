@@ -65,7 +65,7 @@ impl Session {
         session: &mut Option<Self>,
         path: &Path,
         settings: &Settings,
-        volume: Option<(&str, u64)>,
+        volume: Option<(&Path, u64)>,
     ) -> Result<(), String> {
         let unknown = session.as_ref().filter(|session| session.path == path).map(|session| &session.unknown);
         let volume = volume.map(|(source, content_id)| VolumeRecord::new(source, content_id, path.parent()));

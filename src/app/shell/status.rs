@@ -8,6 +8,10 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::app::viewport::{Doing, Facts};
 use crate::app::worker::loader::LoadProgress;
+use crate::data::plain;
+
+/// Characters of a path in the bar: more than the widest screen shows.
+const LONGEST_PATH: usize = 500;
 
 /// Shows the bar.
 pub(crate) fn show(
@@ -22,7 +26,7 @@ pub(crate) fn show(
             if let Some(LoadProgress { source, reading: _, phase, fraction }) = opening {
                 let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);
                 ui.add(bar.animate(fraction.is_none()));
-                ui.label(text::status::opening(phase, source));
+                ui.label(text::status::opening(phase, &plain(&source.to_string_lossy(), LONGEST_PATH)));
                 if ui.small_button(&*Command::CancelOpening.label()).clicked() {
                     commands.push(Command::CancelOpening);
                 }

@@ -10,7 +10,6 @@ use crate::app::memory::Memory;
 use crate::app::shell::history::History;
 use crate::app::shell::keep_balanced::KeepBalanced;
 use crate::app::shell::messages::Messages;
-use crate::app::shell::opening;
 use crate::app::shell::session::Session;
 use crate::app::shell::status_file::StatusFile;
 use crate::app::transfer_editor::TransferEditor;
@@ -24,6 +23,7 @@ use crate::app::viewport::overlay::Overlay;
 use crate::app::windows::contact_sheet::ContactSheet;
 use crate::app::windows::export::Export;
 use crate::app::windows::files::Files;
+use crate::app::windows::foreign_path::ForeignPath;
 use crate::app::windows::help::Help;
 use crate::app::windows::light_slice::LightSlice;
 use crate::app::windows::lost_again::LostAgain;
@@ -57,8 +57,7 @@ impl App {
         options: Options,
         legacy: Legacy,
     ) -> Result<Self, AppError> {
-        let Options { source, load, session, adjust, storage } = options;
-        let source = source.or_else(|| opening::volume_of_session(session.as_deref()?));
+        let Options { source, load, session, volume, trust_paths, adjust, storage } = options;
         let memory = Memory::new(storage.as_deref(), &cc.egui_ctx);
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
         app.recovery = Recovery::of(app.memory.earlier(), &cc.egui_ctx);
@@ -66,7 +65,8 @@ impl App {
         app.session_is_due = session.is_some();
         app.session = session.map(Session::named);
         app.adjust = adjust;
-        app.open_first(source.as_deref(), &cc.egui_ctx);
+        app.trusts_paths = trust_paths;
+        app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
         Ok(app)
     }
 
@@ -115,6 +115,8 @@ impl App {
             light_slice: LightSlice::default(),
             slices: Slices::default(),
             raw_dialog: RawDialog::default(),
+            foreign_path: ForeignPath::default(),
+            trusts_paths: false,
             contact_sheet: ContactSheet::default(),
             editor: TransferEditor::new(window.clone()),
             window,

@@ -29,12 +29,13 @@ pub(in crate::app) struct Carried {
     dataset: Option<Dataset>,
     session: Option<Session>,
     session_is_due: bool,
+    trusts_paths: bool,
     memory: Memory,
     keeps_look: bool,
     compare: Compare,
     selected_light: usize,
     /// What was being opened.
-    opening: Option<(String, Reading)>,
+    opening: Option<(PathBuf, Reading)>,
     pending: Option<PendingLook>,
     pub load: LoadOptions,
     pub storage: Option<PathBuf>,
@@ -70,6 +71,7 @@ impl App {
             dataset: self.viewport.dataset(),
             session: self.session.take(),
             session_is_due: self.session_is_due,
+            trusts_paths: self.trusts_paths,
             memory: std::mem::take(&mut self.memory),
             keeps_look: self.keeps_look,
             compare: self.compare.clone(),
@@ -98,6 +100,7 @@ impl App {
             dataset,
             session,
             session_is_due,
+            trusts_paths,
             memory,
             keeps_look,
             compare,
@@ -113,7 +116,7 @@ impl App {
         (app.settings, app.defaults, app.history) = (settings, defaults, history);
         (app.volume, app.session, app.session_is_due) = (volume, session, session_is_due);
         (app.keeps_look, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
-        app.pending = pending;
+        (app.pending, app.trusts_paths) = (pending, trusts_paths);
         app.waiting = dataset;
         if asks {
             app.lost_again.ask();
@@ -124,7 +127,7 @@ impl App {
         if let Some((source, reading)) = opening {
             app.start_loading(&source, reading, &cc.egui_ctx);
         } else if app.volume.is_none() {
-            app.open_first(None, &cc.egui_ctx);
+            app.open_first(None, None, &cc.egui_ctx);
         }
         Ok(app)
     }

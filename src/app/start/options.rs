@@ -11,12 +11,16 @@ pub type Adjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
 /// What the command line says about the window.
 #[derive(Default)]
 pub struct Options {
-    /// A file or `builtin:NAME[:N]`; the built-in scene when not given.
-    pub source: Option<String>,
+    /// A volume: a file or `builtin:NAME[:N]`; or a session or an exported picture. The built-in scene when not given.
+    pub source: Option<PathBuf>,
     /// How files are read.
     pub load: LoadOptions,
     /// Where settings are saved; laid over the first look if the file exists.
     pub session: Option<PathBuf>,
+    /// The volume of the look that `source` or `session` is, instead of the one that it names.
+    pub volume: Option<PathBuf>,
+    /// Whether the volumes of looks are opened wherever they are, without a question.
+    pub trust_paths: bool,
     /// Applied to the first volume's settings, after the session.
     pub adjust: Option<Adjustment>,
     /// Where things are kept from one run to the next; see [`storage_folder`].

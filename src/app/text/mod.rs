@@ -15,7 +15,7 @@ pub(super) mod work;
 pub(super) use self::panels::{camera, cuts, data, floor, lights, sampling, sections, shading, shadows};
 pub(super) use self::shell::{commands, memory, menu, messages, opening, status};
 pub(super) use self::viewport::{compared, cut_handles, overlay, picture, probe};
-pub(super) use self::windows::{contact_sheet, export, files, help, light_volume, raw, slices};
+pub(super) use self::windows::{contact_sheet, export, files, foreign_path, help, light_volume, raw, slices};
 
 /// A control's name, and its tip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,9 @@
 
 use crate::app::viewport::Viewport;
 use crate::app::worker::request::Looks;
+use crate::data::plain;
 use crate::gpu::{LightFigures, Stage};
+use crate::model::MAX_NAME;
 
 /// What is going on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,8 +60,11 @@ impl Viewport {
         let info = &self.context.info;
         let figures = self.thread.figures();
         Facts {
-            adapter: info.name.clone(),
-            driver: format!("{:?} · {} {}", info.backend, info.driver, info.driver_info).trim().to_owned(),
+            adapter: plain(&info.name, MAX_NAME),
+            driver: plain(
+                format!("{:?} · {} {}", info.backend, info.driver, info.driver_info).trim(),
+                MAX_NAME,
+            ),
             software: self.context.is_software(),
             full_ms: figures.full_ms,
             preview_ms: figures.preview_ms,

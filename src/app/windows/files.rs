@@ -17,6 +17,8 @@ use crate::model::{EXPORTED, IMPORTED, Record, TransferFunction, export, import}
 pub(crate) enum Purpose {
     /// A volume to open.
     OpenVolume,
+    /// The volume of a look that is kept until it is chosen.
+    VolumeOfLook,
     /// Settings to apply.
     LoadSettings,
     /// A transfer function of another program.
@@ -38,6 +40,7 @@ impl Purpose {
     fn question(self) -> Question {
         match self {
             Self::OpenVolume => text::files::OPEN_VOLUME,
+            Self::VolumeOfLook => text::files::VOLUME_OF_LOOK,
             Self::LoadSettings => text::files::LOAD_SETTINGS,
             Self::ImportTransfer => text::files::IMPORT_TRANSFER,
             Self::ExportTransfer => text::files::EXPORT_TRANSFER,
@@ -83,7 +86,7 @@ impl Files {
         let dialog = rfd::AsyncFileDialog::new().set_title(purpose.question().title).set_parent(frame);
         type Pending = std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
         let pending: Pending = match purpose {
-            Purpose::OpenVolume => {
+            Purpose::OpenVolume | Purpose::VolumeOfLook => {
                 let filters = ["nrrd", "nhdr", "raw", "gz"];
                 let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
                 Box::pin(dialog.add_filter(text::files::ALL_FILES, &["*"]).pick_file())
@@ -187,21 +190,15 @@ pub(crate) fn write_with_backup(path: &Path, contents: &[u8]) -> Result<(), Stri
     crate::export::write_atomically(path, contents).map_err(|err| err.to_string())
 }
 
-/// A small file as text.
-fn read_text(path: &Path) -> Result<String, String> {
-    let bytes = read_small(path).map_err(|err| err.to_string())?;
-    String::from_utf8(bytes).map_err(text::files::no_text)
-}
-
 /// Reads what a session, a preset or an exported picture says.
 pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
     let record = if PictureFormat::with_record(path).is_some() {
         let found = crate::export::read_record(path).map_err(|err| err.to_string())?;
-        found.ok_or_else(|| text::files::no_settings(path))?
+        found.ok_or_else(|| text::files::no_settings(path))?.into_bytes()
     } else {
-        read_text(path).map_err(|err| text::files::settings_not_read(path, err))?
+        read_small(path).map_err(|err| text::files::settings_not_read(path, err))?
     };
-    Record::read(&record).map_err(|err| text::files::settings_not_used(path, err))
+    Record::from_bytes(&record).map_err(|err| text::files::settings_not_used(path, err))
 }
 
 /// Reads a transfer function of another program.

@@ -3,6 +3,7 @@
 pub(super) mod contact_sheet;
 pub(super) mod export;
 pub(super) mod files;
+pub(super) mod foreign_path;
 pub(super) mod help;
 pub(super) mod light_slice;
 pub(super) mod lost_again;

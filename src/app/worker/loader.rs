@@ -28,7 +28,7 @@ pub(crate) struct Reading {
 #[derive(Debug)]
 pub(crate) struct Opened {
     /// What was asked for: a path or the name of a built-in volume.
-    pub source: String,
+    pub source: PathBuf,
     /// How it was read.
     pub reading: Reading,
     /// The voxels: with as few averaged as the adapter needs.
@@ -58,7 +58,7 @@ pub(crate) enum Outcome {
 
 #[derive(Debug)]
 struct Running {
-    source: String,
+    source: PathBuf,
     reading: Reading,
     control: Arc<LoadControl>,
     phase: Arc<AtomicU8>,
@@ -69,7 +69,7 @@ struct Running {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoadProgress<'a> {
     /// What is being opened.
-    pub source: &'a str,
+    pub source: &'a Path,
     /// How it is read.
     pub reading: Reading,
     /// What is being done, in words.
@@ -162,7 +162,12 @@ impl Loader {
     }
 
     /// Starts to open a file or a built-in volume.
-    pub(crate) fn open(&mut self, source: &str, reading: Reading, ctx: &egui::Context) -> Result<(), String> {
+    pub(crate) fn open(
+        &mut self,
+        source: &Path,
+        reading: Reading,
+        ctx: &egui::Context,
+    ) -> Result<(), String> {
         self.cancel();
         let control = Arc::new(LoadControl::new());
         let phase = Arc::new(AtomicU8::new(0));
@@ -192,7 +197,7 @@ impl Loader {
     pub(crate) fn show(&mut self, dataset: Dataset, ctx: &egui::Context) -> Result<(), String> {
         self.cancel();
         let (context, shaders) = (self.context.clone(), self.shaders.clone());
-        let source = dataset.volume().name().to_owned();
+        let source = PathBuf::from(dataset.volume().name());
         let name = source.clone();
         let task = move || match Renderer::with_shaders(&context, shaders) {
             Ok(renderer) => Outcome::Shown { renderer: Box::new(renderer), dataset },
@@ -246,18 +251,18 @@ impl Loader {
 const BARE: [&str; 8] = [".raw", ".raw.gz", ".bin", ".dat", ".vol", ".img", ".bytes", ".u8"];
 
 /// Whether a file could be opened if it were said how it is stored.
-fn not_described(source: &str, err: &LoadError) -> Option<Outcome> {
+fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
     let LoadError::BadInput(explanation) = err else { return None };
-    let name = source.to_lowercase();
-    let path = PathBuf::from(source);
-    let guess = RawLayout::guess(&path).ok()??;
+    let name = source.to_string_lossy().to_lowercase();
+    let path = source.to_owned();
+    let guess = RawLayout::guess(source).ok()??;
     let is_bare = BARE.iter().any(|ending| name.ends_with(ending));
     is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
 }
 
 /// A volume to be opened, and what that takes.
 struct Opening {
-    source: String,
+    source: PathBuf,
     reading: Reading,
     options: LoadOptions,
     context: Context,

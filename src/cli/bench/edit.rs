@@ -1,5 +1,7 @@
 //! What an edit of a transfer function takes, another background, and loading a volume.
 
+use std::path::Path;
+
 use serde_json::{Value, json};
 
 use super::report::{Samples, round};
@@ -47,7 +49,7 @@ impl Bench<'_> {
     pub(super) fn load(
         &self,
         context: &Context,
-        name: &str,
+        source: &Path,
         wants: impl Fn(&str) -> bool,
         cases: &mut Vec<Value>,
     ) -> Result<(), CliError> {
@@ -58,7 +60,7 @@ impl Bench<'_> {
         for frame in 0..=usize::from(self.args.frames).min(3) {
             let settings = &self.settings;
             let load = || {
-                let loaded: Dataset = self.args.look.load(name, context)?;
+                let loaded: Dataset = self.args.look.load(source, context)?;
                 let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
                 renderer.draw(&loaded, settings, self.args.size, &options)?;
                 let report = renderer.report().clone();

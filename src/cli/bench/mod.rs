@@ -7,6 +7,8 @@
 //! and by rays, with everything that saves work and without);
 //! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms).
 
+use std::path::PathBuf;
+
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -47,7 +49,7 @@ pub(super) struct BenchArgs {
         default_value = "builtin:chair:128",
         help = "Volume: a file, or builtin:NAME[:N]; can be given several times"
     )]
-    volumes: Vec<String>,
+    volumes: Vec<PathBuf>,
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
     size: [u32; 2],

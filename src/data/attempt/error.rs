@@ -128,6 +128,11 @@ impl Attempt<'_> {
         LoadError::Io { explanation: Box::new(self.explain("", why, help.to_owned())), source: Some(source) }
     }
 
+    /// Says for the log what was taken for granted.
+    pub(in crate::data) fn warn(&self, what: impl fmt::Display) {
+        log::warn!("{}: {what}", plain(&self.path.to_string_lossy(), 4096));
+    }
+
     fn explain(&self, field: &str, why: String, help: String) -> Explanation {
         let file = plain(&self.path.to_string_lossy(), 4096);
         let place = if field.is_empty() { file } else { format!("{file}, {field}") };
@@ -140,14 +145,19 @@ pub(in crate::data) fn quoted(text: &str) -> String {
     format!("\"{}\"", plain(text, 60))
 }
 
-/// Text from outside as one line of at most `longest` characters: control characters become `·`.
-pub(in crate::data) fn plain(text: &str, longest: usize) -> String {
+/// Text from outside as one line of at most `longest` characters, for messages: control characters become `·`.
+pub fn plain(text: &str, longest: usize) -> String {
     let mut characters = text.chars().map(|c| if is_odd(c) { '·' } else { c });
     let mut short: String = characters.by_ref().take(longest).collect();
     if characters.next().is_some() {
         short.push('…');
     }
     short
+}
+
+/// Text from outside as one line of at most `longest` characters, to be kept: without control characters.
+pub fn single_line(text: &str, longest: usize) -> String {
+    text.chars().filter(|&c| !is_odd(c)).take(longest).collect()
 }
 
 /// Text that may hold words from outside, for a terminal: control characters other than the ends of lines become `·`.
@@ -157,7 +167,10 @@ pub fn without_controls(text: &str) -> String {
 
 /// Whether a character could disturb a terminal or turn the direction of a line.
 fn is_odd(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    // Also what stands for bytes that were no text, which few fonts have.
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || c == char::REPLACEMENT_CHARACTER
 }
 
 #[cfg(test)]
@@ -181,5 +194,6 @@ mod tests {
         assert_eq!(plain("abcdef", 3), "abc…");
         assert_eq!(plain("abc", 3), "abc");
         assert_eq!(plain("a\u{202e}b", 9), "a·b");
+        assert_eq!(single_line("a\u{202e}\u{1b}[2J\nb\u{2069}cd", 6), "a[2Jbc");
     }
 }

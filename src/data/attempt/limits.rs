@@ -1,10 +1,9 @@
 //! Sizes checked before anything is allocated.
 
-use std::fs;
-
 use glam::DAffine3;
 
 use super::error::{Attempt, LoadError};
+use super::free_memory::free_bytes;
 use crate::data::VoxelType;
 
 /// The budget where the system does not say how much memory it has.
@@ -12,6 +11,10 @@ const FALLBACK_BUDGET_BYTES: u64 = 4 << 30;
 
 /// Distances between voxels outside this range are mistakes, and would upset every computation.
 const SPACING_RANGE_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
+/// How much longer one distance between voxels may be than another: that of slices a millimetre apart to pixels of 0.1 µm.
+/// Steps through the volume are as short as the shortest, so that their number grows with this.
+const MAX_SPACING_RATIO: f64 = 1e4;
 
 /// The size of a grid that fits into the memory budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,6 +78,15 @@ pub(in crate::data) fn is_usable_spacing(spacing_mm: f64) -> bool {
     SPACING_RANGE_MM.contains(&spacing_mm)
 }
 
+/// Why the distances between voxels along three axes cannot be used together.
+pub(in crate::data) fn unlike_spacings(spacings_mm: [f64; 3]) -> Option<String> {
+    let shortest = spacings_mm.into_iter().fold(f64::INFINITY, f64::min);
+    let longest = spacings_mm.into_iter().fold(0.0, f64::max);
+    (longest > MAX_SPACING_RATIO * shortest).then(|| {
+        format!("{longest} mm is more than {MAX_SPACING_RATIO} times {shortest} mm between voxels along another axis")
+    })
+}
+
 /// Whether an affine has usable, independent axes and a finite origin.
 pub(in crate::data) fn is_usable_affine(world_from_index: &DAffine3) -> bool {
     let axes = world_from_index.matrix3;
@@ -83,19 +95,9 @@ pub(in crate::data) fn is_usable_affine(world_from_index: &DAffine3) -> bool {
     world_from_index.is_finite() && lengths.into_iter().all(is_usable_spacing) && flatness > 1e-6
 }
 
-/// Three quarters of the memory that is free now, or 4 GiB where that is not known.
+/// Three quarters of the memory that may still be taken, or 4 GiB where that is not known.
 pub(crate) fn default_budget_bytes() -> u64 {
-    fs::read_to_string("/proc/meminfo")
-        .ok()
-        .and_then(|text| available_bytes(&text))
-        .map_or(FALLBACK_BUDGET_BYTES, |available| available / 4 * 3)
-}
-
-/// `MemAvailable` of `/proc/meminfo`.
-fn available_bytes(meminfo: &str) -> Option<u64> {
-    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    kibibytes.checked_mul(1024)
+    free_bytes().map_or(FALLBACK_BUDGET_BYTES, |free| free / 4 * 3)
 }
 
 /// A number of bytes for a message: exact when small, else in the largest unit that fits.
@@ -142,9 +144,13 @@ mod tests {
 
     #[test]
     fn the_budget_follows_the_free_memory() {
-        assert_eq!(available_bytes("MemTotal: 9 kB\nMemAvailable:    2048 kB\n"), Some(2 << 20));
-        assert_eq!(available_bytes("MemTotal: 9 kB\n"), None);
         assert!(default_budget_bytes() > 0);
+    }
+
+    #[test]
+    fn distances_between_voxels_are_alike() {
+        assert_eq!(unlike_spacings([1e-3, 10.0, 1.0]), None);
+        assert!(unlike_spacings([1e-9, 1e9, 1.0]).is_some_and(|why| why.contains("10000 times")));
     }
 
     #[test]

@@ -3,10 +3,12 @@
 
 mod control;
 mod error;
+mod free_memory;
 mod limits;
 
 pub use control::LoadControl;
-pub(super) use error::{Attempt, plain, quoted};
-pub use error::{Explanation, LoadError, LoadErrorKind, without_controls};
+pub(super) use error::{Attempt, quoted};
+pub use error::{Explanation, LoadError, LoadErrorKind, plain, single_line, without_controls};
+pub(crate) use free_memory::address_bytes_left;
 pub(crate) use limits::default_budget_bytes as memory_budget_bytes;
-pub(super) use limits::{Extent, human_bytes, is_usable_affine, is_usable_spacing};
+pub(super) use limits::{Extent, human_bytes, is_usable_affine, is_usable_spacing, unlike_spacings};

@@ -46,7 +46,7 @@ pub struct LoadOptions {
 
 impl Default for LoadOptions {
     /// Nothing said about RAW files, every voxel kept; a budget of three quarters of the memory that is free now
-    /// (`MemAvailable` in `/proc/meminfo`), or 4 GiB where that is not known.
+    /// (what the machine, its container and the user's limits leave), or 4 GiB where that is not known.
     fn default() -> Self {
         Self { raw: RawFormat::default(), reduce: 1, memory_budget_bytes: memory_budget_bytes() }
     }

@@ -10,7 +10,7 @@ use super::input::{Input, is_gzip, stem};
 use super::samples::{Layout, read_binary, read_gzip};
 use super::{Endian, LoadControl, LoadError, LoadOptions};
 use crate::data::attempt::{Attempt, plain, quoted};
-use crate::data::attempt::{Extent, is_usable_spacing};
+use crate::data::attempt::{Extent, is_usable_spacing, unlike_spacings};
 use crate::data::{Volume, VoxelType};
 
 /// How a RAW file is stored. What is given overrides what the file's name says.
@@ -76,6 +76,9 @@ pub(super) fn load(
             format!("{spacing_mm:?} mm cannot be distances between voxels"),
             "give three lengths in millimetres, each above 0",
         ));
+    }
+    if let Some(why) = unlike_spacings(spacing_mm) {
+        return Err(attempt.bad_input("--spacing", why, "give the three lengths in one unit, millimetres"));
     }
     let extent = Extent::checked(attempt, dims_field, dims, voxel_type, options.memory_budget_bytes)?;
     let layout = Layout { extent, voxel_type, endian: format.endian.unwrap_or(Endian::Little) };

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use self::clock::Clock;
 use super::GpuError;
+use crate::data::plain;
 use crate::fault::{self, Count, Fault};
 
 /// Said when there is no adapter.
@@ -173,7 +174,9 @@ impl Context {
     /// The adapter and its driver, in words.
     pub fn description(&self) -> String {
         let info = &self.info;
-        format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info).trim().to_owned()
+        let words = format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info);
+        // A driver may call itself whatever it likes.
+        plain(words.trim(), 400)
     }
 
     /// Another device on the same adapter, for work beside a window: long work on the window's own

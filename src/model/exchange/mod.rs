@@ -18,7 +18,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::data::ValueRange;
-use crate::model::{ControlPoint, Easing, Interpolation, Mixing, STEPS, TransferFunction};
+use crate::model::{ControlPoint, Easing, Interpolation, MAX_POINTS, Mixing, STEPS, TransferFunction};
 
 /// Endings of the files that [`import`] reads.
 pub const IMPORTED: [&str; 6] = ["json", "vp", "itf", "tfi", "clut", "lut"];
@@ -26,14 +26,14 @@ pub const IMPORTED: [&str; 6] = ["json", "vp", "itf", "tfi", "clut", "lut"];
 /// Endings of the files that [`export`] writes.
 pub const EXPORTED: [&str; 5] = ["json", "vp", "itf", "clut", "lut"];
 
-/// Most points of a function that is used: those of the largest tables are 4096.
-const MOST_POINTS: usize = 4096;
-
 /// Largest value: that of data in 32-bit floats.
 const MOST_VALUE: f64 = f32::MAX as f64;
 
 /// Bytes of the longest XML files and tables that are read: a table of 4096 keys has as many.
 const MOST_XML: usize = 2 << 20;
+
+/// Bytes of the longest JSON files that are read: 4096 points of opacity and as many of colour have them in Slicer's.
+const MOST_JSON: usize = 2 << 20;
 
 /// Bytes of the longest table of nodes: 256 of them have a tenth of it.
 const MOST_CLUT: usize = 1 << 16;
@@ -73,9 +73,9 @@ pub fn import(path: &Path, bytes: &[u8], range: ValueRange) -> Result<TransferFu
         "tfi" => voreen::from_tfi(within(text, MOST_XML)?, range)?,
         "clut" => tables::from_clut(within(text, MOST_CLUT)?, range)?,
         "lut" => tables::from_rows(text, range)?,
-        _ => from_json(text, range)?,
+        _ => from_json(within(text, MOST_JSON)?, range)?,
     };
-    if function.points.len() > MOST_POINTS {
+    if function.points.len() > MAX_POINTS {
         return Err(form(&format!("{} points are more than anybody has set", function.points.len())));
     }
     if function.points.iter().any(|point| point.value.abs() > MOST_VALUE) {
@@ -93,7 +93,7 @@ fn within(text: &str, most: usize) -> Result<&str, ExchangeError> {
 /// A JSON file of whichever program writes what it holds.
 fn from_json(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     // ParaView itself ships a file with a comma too many.
-    let tree: Value = serde_json::from_str(text).or_else(|err| {
+    let mut tree: Value = serde_json::from_str(text).or_else(|err| {
         let trimmed = text.trim_end().strip_suffix(']').map(str::trim_end);
         let Some(list) = trimmed.and_then(|list| list.strip_suffix(',')) else { return Err(err) };
         serde_json::from_str(&format!("{list}]"))
@@ -103,7 +103,7 @@ fn from_json(text: &str, range: ValueRange) -> Result<TransferFunction, Exchange
     } else if tree.get("channels").is_some() {
         agave::from_agave(&tree, range)
     } else if tree.get("transfer").is_some() {
-        own::from_own(&tree, range)
+        own::from_own(&mut tree, range)
     } else {
         paraview::from_paraview(&tree)
     }

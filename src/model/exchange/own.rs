@@ -7,8 +7,8 @@ use crate::data::ValueRange;
 use crate::model::{Settings, TransferFunction, apply_relative};
 
 /// Reads the transfer function of a preset or a session.
-pub(crate) fn from_own(tree: &Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
-    let overlay = json!({ "transfer": tree["transfer"], "_values": tree.get("_values") });
+pub(crate) fn from_own(tree: &mut Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
+    let overlay = json!({ "transfer": tree["transfer"].take(), "_values": tree["_values"].take() });
     let applied = apply_relative(&Settings::default(), &overlay, range);
     let (settings, _) = applied.map_err(|err| form(&err.to_string()))?;
     Ok(settings.transfer)

@@ -303,3 +303,16 @@ fn other_files_are_refused_in_words() {
         assert!(err.contains(what), "{name}: {err}");
     }
 }
+
+#[test]
+fn files_that_are_longer_than_functions_are_not_made_into_trees() {
+    let long = format!("{{\"transfer\": {{\"points\": [{}{{}}]}}}}", "0,".repeat(MOST_JSON / 2));
+    let refused = import(Path::new("a.json"), long.as_bytes(), ValueRange::UNIT).unwrap_err().to_string();
+    assert!(refused.contains("longer than any transfer function"), "{refused}");
+    // And so is what has more points than anybody sets.
+    let point = "{\"value\":0,\"opacity\":0.5}";
+    let many =
+        format!("{{\"transfer\": {{\"points\": [{}{point}]}}}}", format!("{point},").repeat(MAX_POINTS));
+    let function = import(Path::new("a.json"), many.as_bytes(), ValueRange::UNIT).unwrap();
+    assert_eq!(function.points.len(), MAX_POINTS);
+}

@@ -8,6 +8,9 @@ use crate::model::Camera;
 /// As many lights as a picture can have; each has its own attenuation volume.
 pub const MAX_LIGHTS: usize = 8;
 
+/// Most characters of a name: more than any list or label shows.
+pub const MAX_NAME: usize = 200;
+
 /// How a light's rays run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -1,15 +1,16 @@
 //! Bringing settings into range, so that nothing typed or loaded can reach a shader as NaN, as a
 //! negative extinction or as an endless loop.
 
+use crate::data::single_line;
 use crate::model::{
     Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light, MAX_BIAS_VOXELS,
-    MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_PLANE_OFFSET, MIN_CROP, Output, Sampling, Settings, Shading,
-    Shadows,
+    MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_NAME, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, Output, Sampling,
+    Settings, Shading, Shadows,
 };
 
 impl Settings {
     /// Brings every number into its documented range, so that nothing typed or loaded can reach a
-    /// shader as NaN, as a negative extinction or as an endless loop.
+    /// shader as NaN, as a negative extinction or as an endless loop, and names and lists to lengths that can be shown.
     pub fn sanitise(&mut self) {
         let number = |value: &mut f64, low: f64, high: f64, fallback: f64| {
             *value = if value.is_finite() { value.clamp(low, high) } else { fallback };
@@ -52,7 +53,7 @@ impl Settings {
         self.lights.truncate(crate::model::MAX_LIGHTS);
         for light in &mut self.lights {
             let Light {
-                name: _,
+                name,
                 kind: _,
                 position,
                 color,
@@ -63,6 +64,7 @@ impl Settings {
                 hood: Hood { on: _, half_angle_deg, rim_deg },
                 density_scale,
             } = light;
+            *name = single_line(name, MAX_NAME);
             point(position, 1e6);
             rgb(color);
             number(intensity, 0.0, 1e3, 1.0);
@@ -72,6 +74,7 @@ impl Settings {
         }
         for function in [&mut self.transfer, &mut self.lighting.curve] {
             function.points.retain(|point| point.value.is_finite());
+            function.points.truncate(MAX_POINTS);
             for ControlPoint { value: _, color, opacity, easing: _ } in &mut function.points {
                 rgb(color);
                 number(opacity, 0.0, 1.0, 0.0);
@@ -172,6 +175,19 @@ mod tests {
         assert_eq!(settings.lights[0].intensity, 0.0);
         assert!(settings.transfer.points.is_empty());
         assert_eq!(settings.opacity_unit, Length::Voxels(1.0));
+    }
+
+    #[test]
+    fn names_and_curves_have_lengths_that_can_be_shown() {
+        let mut settings = Settings::default();
+        settings.lights[0].name = format!("Sun\u{202e}\u{1b}[2J{}", "x".repeat(1 << 20));
+        settings.transfer.points = vec![ControlPoint::new(0.0, [1.0; 3], 0.1); MAX_POINTS + 1];
+        settings.lighting.curve.points = settings.transfer.points.clone();
+        settings.sanitise();
+        let name = &settings.lights[0].name;
+        assert!(name.starts_with("Sun[2Jxx") && name.chars().count() == MAX_NAME, "{name}");
+        let lengths = [&settings.transfer, &settings.lighting.curve].map(|function| function.points.len());
+        assert_eq!(lengths, [MAX_POINTS; 2]);
     }
 
     #[test]

@@ -1,8 +1,11 @@
 //! Looks as text: presets, sessions, the library, and what a picture says of how it was made.
 
+pub(super) mod bounds;
 pub(super) mod library;
 pub(super) mod made_by;
+pub(super) mod place;
 pub(super) mod preset;
+pub(super) mod preset_error;
 pub(super) mod record;
 mod renames;
 mod schemas;

@@ -4,33 +4,15 @@
 
 use serde_json::Value;
 
+use super::bounds::{self, Bounded};
+use super::preset_error::PresetError;
 use super::renames::{current_path, rename};
 use super::schemas::{complete, keep_named_balance};
-use crate::model::{SCHEMA, Settings};
+use crate::data::plain;
+use crate::model::{MAX_NAME, SCHEMA, Settings};
 
-/// Why JSON does not become settings.
-#[derive(Debug, thiserror::Error)]
-pub enum PresetError {
-    /// Not JSON at all.
-    #[error("not valid JSON: {0}")]
-    Syntax(#[source] serde_json::Error),
-    /// JSON, but a field has the wrong form.
-    #[error("a setting has the wrong form: {0}")]
-    Form(#[source] serde_json::Error),
-    /// Not an object.
-    #[error("a preset must be a JSON object, for instance {{\"shadows\": {{\"strength\": 0.8}}}}")]
-    NotAnObject,
-    /// `--set` names something that does not exist.
-    #[error("there is no setting `{path}`; at `{at}` there are: {known}")]
-    UnknownPath {
-        /// The whole path.
-        path: String,
-        /// The part that exists.
-        at: String,
-        /// What exists there.
-        known: String,
-    },
-}
+/// Unknown settings that are told one by one.
+const MAX_TOLD: usize = 8;
 
 /// Settings as pretty JSON.
 pub fn to_json(settings: &Settings) -> String {
@@ -38,28 +20,34 @@ pub fn to_json(settings: &Settings) -> String {
 }
 
 /// Lays a JSON object over settings: objects are merged field by field, everything else replaces.
-/// Returns the result, in range, and a warning for every field that is not known.
+///
+/// Returns the result, in range, and warnings of what was not understood: what is more than a look may have and was
+/// cut, fields that are not known, and a newer version.
 ///
 /// # Errors
-/// When the value is not an object or a field has the wrong type.
+/// When the value is not an object, a field has the wrong type, or there is more of it than of any look.
 pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec<String>), PresetError> {
     if !overlay.is_object() {
         return Err(PresetError::NotAnObject);
     }
-    let mut overlay = overlay.clone();
+    let Bounded { tree: mut overlay, cuts: mut warnings } = bounds::cut(overlay)?;
     rename("", &mut overlay);
     complete(&mut overlay);
     keep_named_balance(&mut overlay);
     let mut merged = serde_json::to_value(settings).map_err(PresetError::Form)?;
     merge(&mut merged, &overlay);
     let mut result: Settings = serde_json::from_value(merged).map_err(PresetError::Form)?;
-    let mut warnings = Vec::new();
     if result.schema > SCHEMA {
         warnings.push(format!("written by a newer version (schema {}, known {SCHEMA})", result.schema));
     }
     result.schema = SCHEMA;
     let understood = serde_json::to_value(&result).map_err(PresetError::Form)?;
-    list_unknown(&overlay, &understood, "", &mut warnings);
+    let mut unknown = Vec::new();
+    list_unknown(&overlay, &understood, "", &mut unknown);
+    let more = unknown.len().saturating_sub(MAX_TOLD);
+    warnings
+        .extend(unknown.iter().take(MAX_TOLD).map(|path| format!("unknown setting `{path}` was ignored")));
+    warnings.extend((more > 0).then(|| format!("{more} more unknown settings were ignored")));
     result.sanitise();
     Ok((result, warnings))
 }
@@ -69,7 +57,9 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
 /// # Errors
 /// As [`apply_json`], and when the text is not JSON.
 pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<String>), PresetError> {
-    apply_json(settings, &serde_json::from_str(text).map_err(PresetError::Syntax)?)
+    let Bounded { tree, cuts } = bounds::read(text)?;
+    let (result, warnings) = apply_json(settings, &tree)?;
+    Ok((result, [cuts, warnings].concat()))
 }
 
 /// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). The text is read as JSON
@@ -78,7 +68,21 @@ pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<Strin
 /// # Errors
 /// When the path names nothing or the value has the wrong form.
 pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Settings, PresetError> {
+    assign(settings, path, text).map(|(result, _)| result)
+}
+
+/// As [`apply_path`], with a warning if the value was brought into the setting's range.
+///
+/// # Errors
+/// As [`apply_path`].
+pub fn assign(
+    settings: &Settings,
+    path: &str,
+    text: &str,
+) -> Result<(Settings, Option<String>), PresetError> {
     let mut tree = serde_json::to_value(settings).map_err(PresetError::Form)?;
+    // It says how a file is to be read, and nothing of how a picture looks.
+    tree.as_object_mut().map(|fields| fields.shift_remove("schema"));
     let mut node = &mut tree;
     let mut walked: Vec<&str> = Vec::new();
     let current = current_path(path);
@@ -105,8 +109,22 @@ pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Setting
     let mut result: Settings = serde_json::from_value(tree).map_err(PresetError::Form)?;
     // As in a preset: whoever names the balance means it.
     result.shadows.keep_balanced &= current != "shadows.balance";
+    let asked = value_at(&result, &current);
     result.sanitise();
-    Ok(result)
+    let used = value_at(&result, &current);
+    let warning = (asked != used).then(|| {
+        let [asked, used] =
+            [asked, used].map(|value| value.map_or_else(|| "nothing".to_owned(), |v| v.to_string()));
+        let [asked, used] = [asked, used].map(|value| plain(&value, MAX_NAME));
+        format!("`{path}` is out of its range: {asked} was asked for, {used} is used")
+    });
+    Ok((result, warning))
+}
+
+/// What a setting is, by its path.
+fn value_at(settings: &Settings, path: &str) -> Option<Value> {
+    let tree = serde_json::to_value(settings).ok()?;
+    tree.pointer(&format!("/{}", path.replace('.', "/"))).cloned()
 }
 
 fn merge(base: &mut Value, overlay: &Value) {
@@ -126,23 +144,32 @@ fn is_tagged_swap(base: &serde_json::Map<String, Value>, overlay: &serde_json::M
     base.len() == 1 && overlay.len() == 1 && base.keys().next() != overlay.keys().next()
 }
 
-fn list_unknown(given: &Value, understood: &Value, path: &str, warnings: &mut Vec<String>) {
-    let (Value::Object(given), Value::Object(understood)) = (given, understood) else { return };
-    for (key, value) in given {
-        let here = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        match understood.get(key) {
-            Some(known) => list_unknown(value, known, &here, warnings),
-            // Presets may carry remarks under names that begin with an underscore.
-            None if key.starts_with('_') => {}
-            None => warnings.push(format!("unknown setting `{here}` was ignored")),
+/// Lists the paths of what was given and does not come back. Presets may carry remarks under names that begin with an
+/// underscore.
+fn list_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut Vec<String>) {
+    let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    match (given, understood) {
+        (Value::Object(given), Value::Object(understood)) => {
+            for (key, value) in given.iter().filter(|(key, _)| !key.starts_with('_')) {
+                match understood.get(key) {
+                    Some(known) => list_unknown(value, known, &below(key), unknown),
+                    None => unknown.push(plain(&below(key), MAX_NAME)),
+                }
+            }
         }
+        (Value::Array(given), Value::Array(understood)) => {
+            for (at, (value, known)) in given.iter().zip(understood).enumerate() {
+                list_unknown(value, known, &below(&at.to_string()), unknown);
+            }
+        }
+        _ => {}
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Kernel, Length, LightLock, LightStorage};
+    use crate::model::{Kernel, Length, LightLock, LightStorage, MAX_LIGHTS};
 
     #[test]
     fn round_trip() {
@@ -195,6 +222,46 @@ mod tests {
         let err = apply_path(&settings, "shadows.strenght", "1").unwrap_err().to_string();
         assert!(err.contains("shadows") && err.contains("strength"), "{err}");
         assert!(apply_path(&settings, "shadows.strength", "much").is_err());
+    }
+
+    #[test]
+    fn what_is_brought_into_range_is_told_and_the_schema_is_no_setting() {
+        let told = |path: &str, text: &str| assign(&Settings::default(), path, text).unwrap().1;
+        assert_eq!(
+            told("shadows.strength", "-1e308").unwrap(),
+            "`shadows.strength` is out of its range: -1e+308 was asked for, 0.0 is used"
+        );
+        assert_eq!(told("shadows.strength", "0.3"), None);
+        assert_eq!(told("output.background.top", "[0.3,1,1]"), None, "32-bit numbers are what they are");
+        assert!(told("lights.0.name", &"x".repeat(300)).is_some());
+        let refused = apply_path(&Settings::default(), "schema", "99999").unwrap_err().to_string();
+        assert!(refused.contains("there is no setting `schema`"), "{refused}");
+    }
+
+    #[test]
+    fn what_is_unknown_is_named_wherever_it_stands_and_not_without_end() {
+        let warnings = |text: &str| load_json(&Settings::default(), text).unwrap().1;
+        assert_eq!(
+            warnings(r#"{"lights": [{"films": 1, "_note": 2}]}"#),
+            ["unknown setting `lights.0.films` was ignored"]
+        );
+        let many: Vec<_> = (0..3000).map(|at| format!("\"k\u{1b}{at}\": 0")).collect();
+        let many = format!("{{{}}}", many.join(",").replace('\u{1b}', "\\u001b"));
+        let warnings = warnings(&many);
+        assert_eq!(warnings.len(), MAX_TOLD + 1);
+        assert!(warnings[0].contains("k·0") && warnings[MAX_TOLD].starts_with("2992 more"), "{warnings:?}");
+    }
+
+    #[test]
+    fn more_than_a_look_has_is_cut_before_anything_is_made_of_it() {
+        let light = r#"{"name": "a"}"#;
+        let text = format!(r#"{{"lights": [{}{light}]}}"#, format!("{light},").repeat(60_000));
+        let (settings, warnings) = load_json(&Settings::default(), &text).unwrap();
+        assert_eq!((settings.lights.len(), warnings.len()), (MAX_LIGHTS, 1));
+        assert_eq!(warnings[0], "60001 entries of `lights` were cut to 8");
+        // Also when something else has read it.
+        let tree = serde_json::from_str(&text).unwrap();
+        assert_eq!(apply_json(&Settings::default(), &tree).unwrap(), (settings, warnings));
     }
 
     #[test]

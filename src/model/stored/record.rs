@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::bounds::{self, Bounded, MAX_LOOK_BYTES};
 use super::made_by::tells_maker;
 use super::renames::rename;
 use super::unknown;
 use crate::data::ValueRange;
-use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, apply_relative};
+use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_relative};
 
 /// The volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,6 +40,8 @@ pub struct PictureRecord {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
     overlay: Value,
+    /// What was cut when it was read.
+    cuts: Vec<String>,
     /// What it is of.
     pub volume: Option<VolumeRecord>,
     /// How the picture that carries it was made.
@@ -47,19 +50,16 @@ pub struct Record {
 
 impl VolumeRecord {
     /// A volume that was opened from `source`, for a record that is written to `folder`.
-    pub fn new(source: &str, content_id: u64, folder: Option<&Path>) -> Self {
-        let source =
-            if source.starts_with("builtin:") { source.to_owned() } else { relative(source, folder) };
+    pub fn new(source: impl AsRef<Path>, content_id: u64, folder: Option<&Path>) -> Self {
+        let source = source.as_ref();
+        let builtin = source.to_str().filter(|name| name.starts_with("builtin:"));
+        let source = builtin.map_or_else(|| relative(source, folder), str::to_owned);
         Self { source, content_id: format!("{content_id:016x}") }
     }
 
-    /// Where to open it, for a record that was read from `folder`.
-    pub fn source_from(&self, folder: Option<&Path>) -> String {
-        if self.source.starts_with("builtin:") {
-            return self.source.clone();
-        }
-        let beside = folder.map(|folder| folder.join(&self.source)).filter(|path| path.exists());
-        beside.map_or_else(|| self.source.clone(), |path| path.display().to_string())
+    /// Where it is, for a record that was read from `folder`; without one, as for a record that is in no folder.
+    pub fn place(&self, folder: Option<&Path>) -> VolumePlace {
+        VolumePlace::of(&self.source, folder)
     }
 
     /// Whether a volume has the values and the geometry that this one had.
@@ -76,9 +76,12 @@ impl PictureRecord {
 }
 
 /// A path as seen from a folder, if it lies below it; else the whole of it.
-fn relative(source: &str, folder: Option<&Path>) -> String {
-    let whole = std::path::absolute(source).unwrap_or_else(|_| PathBuf::from(source));
-    let folder = folder.and_then(|folder| std::path::absolute(folder).ok());
+fn relative(source: &Path, folder: Option<&Path>) -> String {
+    let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
+    // The folder of a bare name is the current one.
+    let here =
+        |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
+    let folder = folder.and_then(|folder| std::path::absolute(here(folder)).ok());
     let below = folder.and_then(|folder| whole.strip_prefix(folder).ok().map(Path::to_owned));
     below.unwrap_or(whole).display().to_string()
 }
@@ -113,19 +116,41 @@ impl Record {
         }
         unknown::add(&mut tree, unknown);
         let tree = tells_maker(tree);
-        serde_json::to_string_pretty(&tree).unwrap_or_default()
+        let pretty = serde_json::to_string_pretty(&tree).unwrap_or_default();
+        // The longest transfer functions are within what is read only without spaces.
+        if pretty.len() > MAX_LOOK_BYTES { tree.to_string() } else { pretty }
     }
 
     /// Reads a record. Any preset is one, of no volume.
     ///
     /// # Errors
-    /// When the text is not a JSON object, or its remarks have the wrong form.
+    /// When the text is not a JSON object, its remarks have the wrong form, or it has more than any look.
     pub fn read(text: &str) -> Result<Self, PresetError> {
-        let overlay: Value = serde_json::from_str(text).map_err(PresetError::Syntax)?;
+        let Bounded { tree: overlay, cuts } = bounds::read(text)?;
         if !overlay.is_object() {
             return Err(PresetError::NotAnObject);
         }
-        Ok(Self { volume: remark(&overlay, "_volume")?, picture: remark(&overlay, "_picture")?, overlay })
+        Ok(Self {
+            volume: remark(&overlay, "_volume")?,
+            picture: remark(&overlay, "_picture")?,
+            overlay,
+            cuts,
+        })
+    }
+
+    /// Reads a record from the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and when the bytes are no text.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PresetError> {
+        Self::read(std::str::from_utf8(bytes).map_err(PresetError::NoText)?)
+    }
+
+    /// Whether all settings of the record are understood: nothing was cut, none is unknown or of a wrong form, and it
+    /// is not of a newer version. What is not understood is lost where the record is written again.
+    pub fn is_understood(&self) -> bool {
+        let applied = self.apply(&Settings::default(), ValueRange::UNIT);
+        applied.is_ok_and(|(_, warnings)| warnings.is_empty())
     }
 
     /// The schema that the record names; a preset names none.
@@ -160,7 +185,8 @@ impl Record {
     /// # Errors
     /// As [`apply_relative`].
     pub fn apply(&self, over: &Settings, range: ValueRange) -> Result<(Settings, Vec<String>), PresetError> {
-        apply_relative(over, &self.overlay, range)
+        let (settings, warnings) = apply_relative(over, &self.overlay, range)?;
+        Ok((settings, [self.cuts.clone(), warnings].concat()))
     }
 }
 
@@ -172,7 +198,7 @@ fn remark<T: serde::de::DeserializeOwned>(overlay: &Value, name: &str) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Depth;
+    use crate::model::{ControlPoint, Depth};
 
     #[test]
     fn records_are_read_as_they_were_written() {
@@ -230,17 +256,37 @@ mod tests {
     }
 
     #[test]
+    fn whether_a_record_is_understood_is_known() {
+        let is_understood = |text: &str| Record::read(text).unwrap().is_understood();
+        let whole = Record::text(&Settings::default(), None, None);
+        assert!(is_understood(&whole) && is_understood(r#"{"_note": 1, "shadows": {"gain": 2.0}}"#));
+        let nine = format!(r#"{{"lights": [{}{{}}]}}"#, "{},".repeat(8));
+        for text in [r#"{"schema": 999}"#, r#"{"later": 1}"#, r#"{"shadows": {"gain": "much"}}"#, &nine] {
+            assert!(!is_understood(text), "{text}");
+        }
+        let told = Record::read(&nine).unwrap().apply(&Settings::default(), ValueRange::UNIT).unwrap().1;
+        assert_eq!(told, ["9 entries of `lights` were cut to 8"]);
+    }
+
+    #[test]
+    fn the_longest_transfer_function_is_read_again() {
+        let mut settings = Settings::default();
+        let point = |at| ControlPoint::new(f64::from(at) / 7.0 - 1e3, [1.0 / 3.0; 3], f64::from(at) / 4321.0);
+        settings.transfer.points = (0..4096).map(point).collect();
+        settings.lighting.curve.points = settings.transfer.points[..2048].to_vec();
+        let read = Record::read(&Record::text(&settings, None, None)).unwrap();
+        assert_eq!(read.apply(&Settings::default(), ValueRange::UNIT).unwrap(), (settings, vec![]));
+    }
+
+    #[test]
     fn files_below_a_record_move_with_it() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("data/a.nrrd");
-        let volume = VolumeRecord::new(&file.display().to_string(), 7, Some(folder.path()));
+        let volume = VolumeRecord::new(&file, 7, Some(folder.path()));
         assert_eq!(Path::new(&volume.source), Path::new("data/a.nrrd"));
-        // Not there: the path as it was written.
-        assert_eq!(volume.source_from(Some(folder.path())), volume.source);
-        std::fs::create_dir(folder.path().join("data")).unwrap();
-        std::fs::write(&file, "x").unwrap();
-        assert_eq!(Path::new(&volume.source_from(Some(folder.path()))), file);
-        let elsewhere = VolumeRecord::new(&file.display().to_string(), 7, Some(Path::new("/no/such/folder")));
+        assert_eq!(volume.place(Some(folder.path())), VolumePlace::Beside(file.clone()));
+        assert_eq!(VolumeRecord::new("data/a.nrrd", 7, Some(Path::new(""))).source, volume.source);
+        let elsewhere = VolumeRecord::new(&file, 7, Some(Path::new("/no/such/folder")));
         assert_eq!(Path::new(&elsewhere.source), file);
     }
 }

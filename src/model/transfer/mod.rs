@@ -15,6 +15,9 @@ use crate::data::ValueRange;
 /// Entries of a baked table; values between are interpolated.
 pub const LUT_SIZE: usize = 1024;
 
+/// Most points of a function: those of the largest tables that programs exchange.
+pub const MAX_POINTS: usize = 4096;
+
 /// Opacities are cut here so that extinction stays finite: 0.9999 per unit is e^−9.2, opaque
 /// within one unit for every display.
 pub const MAX_OPACITY: f64 = 0.9999;

@@ -35,8 +35,8 @@ pub(crate) fn saved(file: &Path) -> String {
 }
 
 /// Which volume could not be opened, after its loader panicked.
-pub(crate) fn failed(source: &str) -> String {
-    format!("Opening {source} failed")
+pub(crate) fn failed(source: &Path) -> String {
+    format!("Opening {} failed", source.display())
 }
 
 /// What a loader said that panicked.
@@ -45,8 +45,8 @@ pub(crate) fn stopped(panic: &str) -> String {
 }
 
 /// A volume that was read and is beyond the graphics card.
-pub(crate) fn not_shown(source: &str) -> String {
-    format!("cannot show {source}")
+pub(crate) fn not_shown(source: &Path) -> String {
+    format!("cannot show {}", source.display())
 }
 
 /// The graphics adapter cannot hold all voxels of a volume.

@@ -19,6 +19,7 @@ pub(crate) const OPEN_VOLUME: Question = Question {
     hint: "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
     verb: "Open",
 };
+pub(crate) const VOLUME_OF_LOOK: Question = Question { title: "Open the volume of the look", ..OPEN_VOLUME };
 pub(crate) const LOAD_SETTINGS: Question = Question {
     title: "Load settings",
     hint: "a .json file, or a .png or .exr picture that was exported",
@@ -62,11 +63,6 @@ pub(crate) const SLICE: &str = "Slice";
 
 /// The window for typing a path.
 pub(crate) const PATH: &str = "Path";
-
-/// Bytes that are no UTF-8.
-pub(crate) fn no_text(err: impl Display) -> String {
-    format!("it is no text: {err}")
-}
 
 /// A picture that this program did not export.
 pub(crate) fn no_settings(picture: &Path) -> String {

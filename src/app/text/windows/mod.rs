@@ -3,6 +3,7 @@
 pub(in crate::app) mod contact_sheet;
 pub(in crate::app) mod export;
 pub(in crate::app) mod files;
+pub(in crate::app) mod foreign_path;
 pub(in crate::app) mod help;
 pub(in crate::app) mod light_volume;
 pub(in crate::app) mod raw;

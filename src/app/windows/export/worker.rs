@@ -22,7 +22,7 @@ pub(in crate::app) struct Subject {
     /// The whole look.
     pub settings: Settings,
     /// What was opened.
-    pub source: String,
+    pub source: PathBuf,
     /// The light that turns, if one is to.
     pub selected_light: usize,
 }

@@ -9,7 +9,7 @@ use super::super::LoadError;
 use super::header::Header;
 use super::space::{directions, flips, is_anatomical, mm_per_unit, origin};
 use crate::data::attempt::{Attempt, quoted};
-use crate::data::attempt::{is_usable_affine, is_usable_spacing};
+use crate::data::attempt::{is_usable_affine, is_usable_spacing, unlike_spacings};
 
 /// The largest dimension that NRRD allows.
 const MOST_AXES: usize = 16;
@@ -74,12 +74,15 @@ impl Geometry {
             matrix3: ras_from_file * DMat3::from_cols(step(0), step(1), step(2)),
             translation: ras_from_file * origin_mm,
         };
+        let field = if header.get("space directions").is_some() { "space directions" } else { "spacings" };
+        let axes = world_from_index.matrix3;
+        if let Some(why) = unlike_spacings([axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length)) {
+            return Err(attempt.bad_input(field, why, "give the lengths of all axes in one unit"));
+        }
         if is_usable_affine(&world_from_index) {
             let dims = [size(0), size(1), size(2)];
             Ok(Self { dims, world_from_index, is_anatomical: is_anatomical(header) })
         } else {
-            let field =
-                if header.get("space directions").is_some() { "space directions" } else { "spacings" };
             Err(attempt.bad_input(
                 field,
                 "the axes are unusable: too short, too long, or in one plane",
@@ -136,7 +139,7 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
     // Axes with different known units are not a case that occurs: the first known one counts.
     let axis_unit_mm = mm_per_unit(header, "units").unwrap_or(space_unit_mm);
     if directions.is_none() && spacings.is_none() {
-        log::warn!("{}: no spacings: the voxels are taken as 1 mm cubes", attempt.path.display());
+        attempt.warn("no spacings: the voxels are taken as 1 mm cubes");
     }
     Ok((0..dimension)
         .map(|i| {
@@ -145,7 +148,7 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
             let spatial = kind_is_spatial && (directions.is_none() || direction_mm.is_some());
             let spacing_mm = spacings.as_ref().map_or(1.0, |all| all[i] * axis_unit_mm);
             if spatial && direction_mm.is_none() && spacing_mm.is_nan() {
-                log::warn!("{}: the spacing of axis {i} is unknown: 1 mm is used", attempt.path.display());
+                attempt.warn(format_args!("the spacing of axis {i} is unknown: 1 mm is used"));
             }
             Axis { size: sizes[i], spatial, direction_mm, spacing_mm }
         })

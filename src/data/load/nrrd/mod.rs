@@ -105,11 +105,7 @@ fn read_data(
             }
             if found > bytes {
                 // Legal: several headers can point into one file.
-                log::warn!(
-                    "{}: {} bytes after the voxels are ignored",
-                    attempt.path.display(),
-                    found - bytes
-                );
+                attempt.warn(format_args!("{} bytes after the voxels are ignored", found - bytes));
             }
             input.seek(start + skip).map_err(|error| attempt.io(error))?;
             read_binary(&mut input.reader, layout, control)

@@ -62,7 +62,7 @@ pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Loa
     match &vectors[..] {
         [None] => Ok(DVec3::ZERO),
         [Some(components)] if components.iter().all(|component| component.is_nan()) => {
-            log::warn!("{}: the space origin is unknown: 0 is used", attempt.path.display());
+            attempt.warn("the space origin is unknown: 0 is used");
             Ok(DVec3::ZERO)
         }
         [Some(components)] => in_space(components, space_dimension).ok_or_else(wrong),

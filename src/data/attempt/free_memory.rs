@@ -1,0 +1,129 @@
+//! How much memory this program may still take: what the machine has, what its container is allowed, and what the
+//! user's limits leave (`ulimit -v`). The least of them counts.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Bytes that may still be taken, as far as the system says.
+pub(super) fn free_bytes() -> Option<u64> {
+    let root = Path::new("/");
+    [available(root), left_of_container(root), left_of_addresses(root)].into_iter().flatten().min()
+}
+
+/// Bytes of addresses that are left under the limit of this process; `None` without a limit.
+pub(crate) fn address_bytes_left() -> Option<u64> {
+    left_of_addresses(Path::new("/"))
+}
+
+/// `MemAvailable` of `/proc/meminfo`.
+fn available(root: &Path) -> Option<u64> {
+    kibibytes(&text(&root.join("proc/meminfo"))?, "MemAvailable:")
+}
+
+/// The limit of addresses (`RLIMIT_AS`) less those in use.
+fn left_of_addresses(root: &Path) -> Option<u64> {
+    let limits = text(&root.join("proc/self/limits"))?;
+    let soft = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    // `unlimited` is no number.
+    let limit: u64 = soft.split_whitespace().next()?.parse().ok()?;
+    let used = kibibytes(&text(&root.join("proc/self/status"))?, "VmSize:")?;
+    Some(limit.saturating_sub(used))
+}
+
+/// What the control groups of this process leave, of either version.
+fn left_of_container(root: &Path) -> Option<u64> {
+    let groups = text(&root.join("proc/self/cgroup"))?;
+    let left = |line: &str| {
+        // `4:memory:/path` in version 1, `0::/path` in version 2.
+        let (kinds, path) = line.split_once(':')?.1.split_once(':')?;
+        let (mount, limit, used) = if kinds.is_empty() {
+            ("sys/fs/cgroup", "memory.max", "memory.current")
+        } else if kinds.split(',').any(|kind| kind == "memory") {
+            ("sys/fs/cgroup/memory", "memory.limit_in_bytes", "memory.usage_in_bytes")
+        } else {
+            return None;
+        };
+        let mount = root.join(mount);
+        let own = mount.join(path.trim_start_matches('/'));
+        // A group has what all above it leave. A container may see its own group as the root, under another's path.
+        let of = |group: &Path| {
+            let number = |name: &str| text(&group.join(name))?.trim().parse::<u64>().ok();
+            // What of files is kept in memory is given back when it is needed.
+            let stat = text(&group.join("memory.stat")).unwrap_or_default();
+            let of_files =
+                stat.lines().find_map(|line| line.strip_prefix("inactive_file ")?.trim().parse().ok());
+            let used = number(used)?.saturating_sub(of_files.unwrap_or(0));
+            Some(number(limit)?.saturating_sub(used))
+        };
+        let groups: Vec<PathBuf> =
+            own.ancestors().take_while(|group| group.starts_with(&mount)).map(Path::to_owned).collect();
+        groups.iter().filter_map(|group| of(group)).min()
+    };
+    groups.lines().filter_map(left).min()
+}
+
+/// A number in KiB behind a name at the beginning of a line.
+fn kibibytes(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+}
+
+fn text(path: &Path) -> Option<String> {
+    fs::read_to_string(path).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A system of files as Linux has them.
+    fn system(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let root = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            let path = root.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        root
+    }
+
+    #[test]
+    fn the_machine_says_what_is_available() {
+        let root = system(&[("proc/meminfo", "MemTotal: 9 kB\nMemAvailable:    2048 kB\n")]);
+        assert_eq!(available(root.path()), Some(2 << 20));
+        assert_eq!(available(system(&[("proc/meminfo", "MemTotal: 9 kB\n")]).path()), None);
+        assert_eq!(available(system(&[]).path()), None);
+    }
+
+    #[test]
+    fn limits_of_addresses_count_what_is_in_use() {
+        let status = ("proc/self/status", "Name:\tx\nVmSize:\t    1024 kB\n");
+        let of = |soft: &str| {
+            let limits =
+                format!("Limit  Soft  Hard  Units\nMax address space         {soft}   unlimited   bytes\n");
+            left_of_addresses(system(&[("proc/self/limits", &limits), status]).path())
+        };
+        assert_eq!((of("3145728"), of("1000"), of("unlimited")), (Some(2 << 20), Some(0), None));
+    }
+
+    #[test]
+    fn containers_of_both_versions_leave_what_they_leave() {
+        let second = system(&[
+            ("proc/self/cgroup", "0::/a/b\n"),
+            ("sys/fs/cgroup/a/memory.max", "1000000\n"),
+            ("sys/fs/cgroup/a/memory.current", "900000\n"),
+            ("sys/fs/cgroup/a/memory.stat", "anon 1\ninactive_file 50000\n"),
+            ("sys/fs/cgroup/a/b/memory.max", "max\n"),
+            ("sys/fs/cgroup/a/b/memory.current", "5\n"),
+        ]);
+        assert_eq!(left_of_container(second.path()), Some(150_000));
+        let first = system(&[
+            ("proc/self/cgroup", "5:devices:/\n4:cpu,memory:/not/seen/from/inside\n0::/\n"),
+            ("sys/fs/cgroup/memory/memory.limit_in_bytes", "1000\n"),
+            ("sys/fs/cgroup/memory/memory.usage_in_bytes", "400\n"),
+        ]);
+        assert_eq!(left_of_container(first.path()), Some(600));
+        assert_eq!(left_of_container(system(&[("proc/self/cgroup", "0::/\n")]).path()), None);
+        assert_eq!(left_of_container(system(&[]).path()), None);
+    }
+}

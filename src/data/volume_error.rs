@@ -1,0 +1,19 @@
+//! Why numbers are no volume.
+
+/// Why a grid and its values do not make a volume.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum VolumeError {
+    #[error("the volume is empty ({dims:?} voxels): every dimension must be at least 1")]
+    Empty { dims: [usize; 3] },
+    #[error("{dims:?} voxels were announced, {found} are there")]
+    WrongCount { dims: [usize; 3], found: usize },
+    #[error("the spacing or orientation is unusable ({what}): it must be finite and not flat")]
+    BadGeometry { what: String },
+    #[error("no voxel has a finite value")]
+    NothingFinite,
+    #[error(
+        "the values reach {range}, further than 64-bit numbers can count: they must span less than 1.8e308"
+    )]
+    TooWide { range: String },
+}

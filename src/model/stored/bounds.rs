@@ -1,0 +1,283 @@
+//! What a look may contain, wherever it comes from: it is cut to that while it is read, before anything is built
+//! from it.
+//!
+//! Texts and trees go through the same reader, so that nothing larger than a look ever stands in memory.
+
+use std::cell::{Cell, RefCell};
+use std::fmt;
+
+use serde::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+
+use super::preset_error::PresetError;
+use crate::data::plain;
+use crate::model::{MAX_LIGHTS, MAX_NAME, MAX_POINTS};
+
+/// Bytes of the longest look: a transfer function of [`MAX_POINTS`] points has nearly as many, written with an item a
+/// line.
+pub const MAX_LOOK_BYTES: usize = 1 << 20;
+
+/// Lists and objects in one another: settings have 6 levels.
+const MAX_DEPTH: usize = 64;
+
+/// Values in a look: two transfer functions have 2 × 4096 points of 8, and the rest a few hundred.
+const MAX_VALUES: usize = 100_000;
+
+/// Views that can be kept: one for each digit.
+const MAX_VIEWS: usize = 9;
+
+/// Characters of a text in a remark, whose name begins with an underscore: the longest paths.
+const MAX_REMARK: usize = 4096;
+
+/// Cuts that are told one by one.
+const MAX_TOLD: usize = 8;
+
+/// A look within its bounds, and what was cut to bring it there.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bounded {
+    /// What is left.
+    pub(super) tree: Value,
+    /// A sentence for each cut.
+    pub(super) cuts: Vec<String>,
+}
+
+/// Reads the JSON of a look.
+///
+/// # Errors
+/// When it is longer, deeper or fuller than any look, or is not JSON.
+pub(super) fn read(text: &str) -> Result<Bounded, PresetError> {
+    if text.len() > MAX_LOOK_BYTES {
+        return Err(PresetError::TooLong { bytes: text.len() });
+    }
+    let mut source = serde_json::Deserializer::from_str(text);
+    let bounded = cut_from(&mut source).map_err(PresetError::Syntax)?;
+    source.end().map_err(PresetError::Syntax)?;
+    Ok(bounded)
+}
+
+/// Cuts a tree that something else has read.
+///
+/// # Errors
+/// When it is deeper or fuller than any look.
+pub(super) fn cut(tree: &Value) -> Result<Bounded, PresetError> {
+    cut_from(tree).map_err(PresetError::Form)
+}
+
+fn cut_from<'de, D: Deserializer<'de>>(source: D) -> Result<Bounded, D::Error> {
+    let log = Log::default();
+    let place = Place { path: String::new(), depth: 0, text: MAX_NAME, log: &log };
+    let tree = place.deserialize(source)?;
+    Ok(Bounded { tree, cuts: log.sentences() })
+}
+
+/// What happened so far.
+#[derive(Debug, Default)]
+struct Log {
+    values: Cell<usize>,
+    cuts: RefCell<Vec<String>>,
+    untold: Cell<usize>,
+}
+
+impl Log {
+    fn tell(&self, cut: String) {
+        let mut cuts = self.cuts.borrow_mut();
+        if cuts.len() < MAX_TOLD {
+            cuts.push(cut);
+        } else {
+            self.untold.set(self.untold.get() + 1);
+        }
+    }
+
+    fn sentences(self) -> Vec<String> {
+        let more = (self.untold.get() > 0).then(|| format!("{} more cuts", self.untold.get()));
+        self.cuts.into_inner().into_iter().chain(more).collect()
+    }
+}
+
+/// Where a value stands, which says how long it may be.
+#[derive(Debug)]
+struct Place<'a> {
+    path: String,
+    depth: usize,
+    /// Characters of texts here.
+    text: usize,
+    log: &'a Log,
+}
+
+impl Place<'_> {
+    fn below(&self, key: &str) -> Self {
+        let path = if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) };
+        let text = if key.starts_with('_') { MAX_REMARK } else { self.text };
+        Self { path, depth: self.depth + 1, text, log: self.log }
+    }
+
+    /// How many items a list or an object may have here.
+    fn most(&self) -> usize {
+        match self.path.as_str() {
+            "lights" => MAX_LIGHTS,
+            "views" => MAX_VIEWS,
+            // Of transfer functions, and of whatever later versions may have.
+            _ => MAX_POINTS,
+        }
+    }
+
+    fn told(&self, found: usize) {
+        let (most, path) = (self.most(), plain(&self.path, MAX_NAME));
+        if found > most {
+            self.log.tell(format!("{found} entries of `{path}` were cut to {most}"));
+        }
+    }
+
+    /// # Errors
+    /// When the value is one too many, or too deep.
+    fn enter<E: serde::de::Error>(&self) -> Result<(), E> {
+        let values = self.log.values.get() + 1;
+        self.log.values.set(values);
+        if values > MAX_VALUES {
+            return Err(E::custom(format!("more than the {MAX_VALUES} values that a look may have")));
+        }
+        if self.depth > MAX_DEPTH {
+            return Err(E::custom(format!("nested deeper than the {MAX_DEPTH} levels that a look may have")));
+        }
+        Ok(())
+    }
+
+    fn text(&self, text: &str) -> String {
+        let kept: String = text.chars().take(self.text).collect();
+        if kept.len() < text.len() {
+            let (found, path) = (text.chars().count(), plain(&self.path, MAX_NAME));
+            self.log.tell(format!("a text of {found} characters was cut to {} (`{path}`)", self.text));
+        }
+        kept
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Place<'_> {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, source: D) -> Result<Value, D::Error> {
+        self.enter()?;
+        source.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Place<'_> {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(Number::from_f64(value).map_or(Value::Null, Value::Number))
+    }
+
+    fn visit_str<E>(self, text: &str) -> Result<Value, E> {
+        Ok(Value::String(self.text(text)))
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Value, A::Error> {
+        let mut items = Vec::new();
+        while items.len() < self.most() {
+            let Some(item) = list.next_element_seed(self.below(&items.len().to_string()))? else {
+                return Ok(Value::Array(items));
+            };
+            // One by one: what a list says of its length need not be true.
+            items.try_reserve(1).map_err(A::Error::custom)?;
+            items.push(item);
+        }
+        let mut found = items.len();
+        while list.next_element::<IgnoredAny>()?.is_some() {
+            found += 1;
+        }
+        self.told(found);
+        Ok(Value::Array(items))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Value, A::Error> {
+        let (mut fields, mut found) = (Map::new(), 0);
+        while let Some(key) = object.next_key::<String>()? {
+            found += 1;
+            if fields.len() < self.most() {
+                let below = self.below(&plain(&key, MAX_NAME));
+                let key = below.text(&key);
+                fields.insert(key, object.next_value_seed(below)?);
+            } else {
+                object.next_value::<IgnoredAny>()?;
+            }
+        }
+        self.told(found);
+        Ok(Value::Object(fields))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn cuts(tree: &Value) -> Vec<String> {
+        let text = tree.to_string();
+        let (of_text, of_tree) = (read(&text).unwrap(), cut(tree).unwrap());
+        assert_eq!(of_text, of_tree, "texts and trees are cut alike");
+        assert!(cut(&of_text.tree).unwrap().cuts.is_empty(), "what was cut is within its bounds");
+        of_text.cuts
+    }
+
+    #[test]
+    fn what_is_in_bounds_stays_as_it_is() {
+        let tree =
+            json!({"a": [1, -2, 0.5, null, true, "x\u{202e}"], "_about": "x".repeat(MAX_REMARK), "": {}});
+        assert_eq!(cuts(&tree), [""; 0]);
+        assert_eq!(cut(&tree).unwrap().tree, tree);
+    }
+
+    #[test]
+    fn lists_and_texts_are_cut_and_each_cut_is_told() {
+        let found = cuts(&json!({
+            "lights": vec![json!({"name": "n".repeat(MAX_NAME + 1)}); 12],
+            "transfer": {"points": vec![json!({"value": 1.0}); MAX_POINTS + 1]},
+            "views": (0..10).map(|slot| (slot.to_string(), json!({}))).collect::<Map<_, _>>(),
+        }));
+        assert_eq!(found.len(), MAX_TOLD + 1);
+        assert_eq!(found[0], "a text of 201 characters was cut to 200 (`lights.0.name`)");
+        assert_eq!(found[MAX_TOLD], "3 more cuts");
+        let found = cuts(&json!({"lights": vec![json!({}); 12], "later": {"films": vec![0; 5000]}}));
+        assert_eq!(
+            found,
+            ["12 entries of `lights` were cut to 8", "5000 entries of `later.films` were cut to 4096"]
+        );
+        let long = "k".repeat(300);
+        let object: Map<_, _> = [(long, json!(1))].into_iter().collect();
+        assert!(cuts(&Value::Object(object))[0].contains("300 characters"));
+    }
+
+    #[test]
+    fn what_no_look_has_is_refused_in_words() {
+        let refused = |text: &str| read(text).unwrap_err().to_string();
+        let nested = |levels: usize| format!("{}1{}", "{\"a\":".repeat(levels), "}".repeat(levels));
+        assert!(read(&nested(MAX_DEPTH)).is_ok());
+        assert!(refused(&nested(MAX_DEPTH + 1)).contains("nested deeper than the 64 levels"));
+        assert!(!refused(&nested(200)).is_empty());
+        let nothings = format!("[{}0]", "[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0],".repeat(4000));
+        assert!(refused(&nothings).contains("values"), "{}", refused(&nothings));
+        assert!(refused(&" ".repeat(MAX_LOOK_BYTES + 1)).contains("1 MiB"));
+        assert!(!refused("{} {}").is_empty() && !refused("").is_empty() && !refused("[1e999]").is_empty());
+    }
+}
