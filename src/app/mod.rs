@@ -197,7 +197,7 @@ impl App {
     /// Exports the picture as the export window does.
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
         self.export.set_size(size);
-        self.export.set_path(path);
+        self.export.agree_to(path);
         self.start_export(ctx);
     }
 

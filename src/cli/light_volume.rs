@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CliError;
-use super::outputs::print_line;
+use super::outputs::{destination, finish};
 use super::scene::SceneArgs;
 use crate::export::{check_ending, write_atomically};
 use crate::gpu::{RenderOptions, Renderer, export_slice, light_volume_nrrd};
@@ -52,6 +52,7 @@ fn parse_slice(text: &str) -> Result<Slice, String> {
 /// Fills and writes one attenuation volume.
 pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     args.scene.keep_apart(&[&args.output])?;
+    let output = destination(&args.output, if args.slice.is_some() { "png" } else { "nrrd" })?;
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
@@ -72,11 +73,11 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     match args.slice {
         None => {
             check_ending(
-                &args.output,
+                output.path(),
                 &["nrrd"],
                 "light volumes are written as .nrrd, their slices as .png",
             )?;
-            write_atomically(&args.output, &light_volume_nrrd(loaded.volume(), &attenuation))?;
+            write_atomically(output.path(), &light_volume_nrrd(loaded.volume(), &attenuation))?;
         }
         Some(Slice { axis, index }) => {
             let slice = attenuation.slice(axis, index).ok_or_else(|| {
@@ -85,9 +86,8 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
                     attenuation.dims[axis], AXES[axis]
                 ))
             })?;
-            export_slice(&slice, &args.output)?;
+            export_slice(&slice, output.path())?;
         }
     }
-    print_line(&format!("{}", args.output.display()))?;
-    Ok(())
+    finish(output)
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::CliError;
 use crate::data::without_controls;
+use crate::export::{Destination, is_ours};
 
 /// Refuses names under which a command would replace what it reads, or what else it writes, whatever they are called.
 ///
@@ -30,6 +31,21 @@ pub(super) fn keep_apart(inputs: &[&Path], outputs: &[&Path]) -> Result<(), CliE
     Ok(())
 }
 
+/// Refuses names of files that this program has not made. What is no file is refused when it is written.
+///
+/// # Errors
+/// Which file it is.
+pub(super) fn spare_others(outputs: &[&Path]) -> Result<(), CliError> {
+    let theirs = |path: &&&Path| **path != Path::new("-") && path.is_file() && !is_ours(path);
+    match outputs.iter().find(theirs) {
+        None => Ok(()),
+        Some(path) => Err(CliError::Usage(format!(
+            "{} is there already, and this program has not made it; another name, or --force, helps",
+            path.display()
+        ))),
+    }
+}
+
 /// Whether two names stand for one file: there is one of both, or there would be.
 fn is_same_file(a: &Path, b: &Path) -> bool {
     #[cfg(unix)]
@@ -49,6 +65,33 @@ fn whole_name(path: &Path) -> Option<PathBuf> {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         Some(folder.canonicalize().ok()?.join(path.file_name()?))
     })
+}
+
+/// Where something goes: to a file of that name, or to standard output as a file of some ending.
+///
+/// # Errors
+/// When the system has no room for temporary files.
+pub(super) fn destination(name: &Path, ending: &str) -> Result<Destination, CliError> {
+    Destination::new(name, ending).map_err(CliError::Output)
+}
+
+/// What has been written goes to standard output if it is for that.
+///
+/// # Errors
+/// When what is behind it takes no more; a closed pipe is no error.
+pub(super) fn hand_over(to: Destination) -> Result<(), CliError> {
+    match to.hand_over() {
+        Err(err) if err.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(err)),
+        _ => Ok(()),
+    }
+}
+
+/// As [`hand_over`]; what is in a file is said.
+///
+/// # Errors
+/// As [`hand_over`].
+pub(super) fn finish(to: Destination) -> Result<(), CliError> {
+    if to.is_standard_output() { hand_over(to) } else { print_line(&to.path().display().to_string()) }
 }
 
 /// Prints a line to standard output; a closed pipe (`| head`) is no error.

@@ -7,9 +7,9 @@ use serde_json::json;
 
 use super::CliError;
 use super::image_args::ImageArgs;
-use super::outputs::{print_line, warn_line};
+use super::outputs::{destination, finish, hand_over, warn_line};
 use super::scene::SceneArgs;
-use crate::export::{check_picture, check_writable, write_atomically, write_picture};
+use crate::export::{Destination, check_picture, check_writable, write_atomically, write_picture};
 use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
 use crate::model::{PictureRecord, Record, VolumeRecord, tells_maker};
 
@@ -40,6 +40,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     };
     let written: Vec<_> = std::iter::once(&args.output).chain(&args.report).map(PathBuf::as_path).collect();
     args.scene.keep_apart(&written)?;
+    let output = destination(&args.output, "png")?;
+    let report_to = args.report.as_deref().map(|path| destination(path, "json")).transpose()?;
+    let shot = args.shot.spec(output.path());
+    check_picture(output.path(), &shot)?;
+    for to in std::iter::once(&output).chain(&report_to) {
+        check_writable(to.path())?;
+    }
     say("loading the volume");
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
@@ -47,11 +54,6 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     say("finding the look");
     let settings = look.settings(&mut renderer, &loaded)?;
     say("rendering");
-    let shot = args.shot.spec(&args.output);
-    check_picture(&args.output, &shot)?;
-    for path in written {
-        check_writable(path)?;
-    }
     let mut report = None;
     if args.report.is_some() {
         // It measures a whole picture, light volumes included, not what the balance left over.
@@ -84,8 +86,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             "settings": settings,
         }));
     }
-    let folder = args.output.parent();
-    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().content_id(), folder);
+    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().content_id(), output.folder());
     let how = PictureRecord::new(shot, context.description());
     let record = Record::text(&settings, Some(&volume), Some(&how));
     let mut bands = renderer.bands(&loaded, &settings, &shot);
@@ -96,13 +97,14 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         }
         Ok(bands.next_rows()?)
     };
-    write_picture(&args.output, &shot, Some(&record), &mut rows)?;
+    write_picture(output.path(), &shot, Some(&record), &mut rows)?;
     // A report without its picture would mislead.
-    if let Some((path, report)) = args.report.as_ref().zip(report) {
-        write_atomically(path, format!("{:#}\n", tells_maker(report)).as_bytes())?;
+    let is_told = report_to.as_ref().is_some_and(Destination::is_standard_output);
+    if let Some((to, report)) = report_to.zip(report) {
+        write_atomically(to.path(), format!("{:#}\n", tells_maker(report)).as_bytes())?;
+        hand_over(to)?;
     }
-    print_line(&format!("{}", args.output.display()))?;
-    Ok(())
+    if is_told { hand_over(output) } else { finish(output) }
 }
 
 /// FNV-1a of a text: the same settings have the same hash in every version and on every machine.

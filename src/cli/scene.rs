@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::outputs::{keep_apart, warn_line};
+use super::outputs::{keep_apart, spare_others, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
@@ -194,6 +194,9 @@ pub(super) struct SceneArgs {
     file: PathBuf,
     #[command(flatten)]
     look: LookArgs,
+    /// Replace files that this program has not made
+    #[arg(long)]
+    force: bool,
 }
 
 /// A volume with what follows from it, after a word about values that are not finite.
@@ -219,11 +222,12 @@ impl SceneArgs {
         &self.file
     }
 
-    /// Refuses to write over what is read, or twice over one file.
+    /// Refuses to write over what is read, or twice over one file, or over files of others unless that is wanted.
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
         let LookArgs { preset, session, .. } = &self.look;
         let inputs = [Some(self.file.as_path()), preset.as_deref(), session.as_deref()];
-        keep_apart(&inputs.into_iter().flatten().collect::<Vec<_>>(), outputs)
+        keep_apart(&inputs.into_iter().flatten().collect::<Vec<_>>(), outputs)?;
+        if self.force { Ok(()) } else { spare_others(outputs) }
     }
 
     /// Finds the look.

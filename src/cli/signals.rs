@@ -15,6 +15,15 @@ pub(super) fn before_the_end(act: fn()) {
     LAST_ACTS.lock().unwrap_or_else(PoisonError::into_inner).push(act);
 }
 
+/// Ends the process without the destructors of threads that are in the middle of something.
+#[expect(
+    clippy::exit,
+    reason = "whoever sent the signal waits for the process, and all that matters is on the disk"
+)]
+fn end() -> ! {
+    std::process::exit(INTERRUPTED)
+}
+
 /// Listens, from now on, on a thread of its own.
 pub(super) fn listen() {
     let handler = || {
@@ -22,8 +31,7 @@ pub(super) fn listen() {
             act();
         }
         remove_unfinished();
-        // Without the destructors of threads that are in the middle of something.
-        std::process::exit(INTERRUPTED);
+        end();
     };
     if let Err(err) = ctrlc::set_handler(handler) {
         log::warn!("files that are being written will stay when this is interrupted: {err}");

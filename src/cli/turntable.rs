@@ -1,13 +1,13 @@
 //! `chiaroscuro turntable`: the camera or a light goes once around the volume.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::CliError;
 use super::outputs::{print_line, warn_line};
 use super::scene::{SceneArgs, parse_size};
-use crate::export::{Animation, AnimationFormat, AnimationSpec};
+use crate::export::{Animation, AnimationFormat, AnimationSpec, frame_names};
 use crate::gpu::{RenderOptions, Renderer};
 use crate::model::{ImageSpec, PictureRecord, Record, VolumeRecord};
 
@@ -41,7 +41,15 @@ pub(super) struct TurntableArgs {
 
 /// Renders one turn.
 pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
-    args.scene.keep_apart(&[&args.output])?;
+    let mut written = vec![args.output.clone()];
+    if AnimationFormat::of_path(&args.output) == AnimationFormat::Folder {
+        written = frame_names(&args.output, args.frames);
+    }
+    args.scene.keep_apart(&written.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    if args.output == Path::new("-") {
+        let why = "--output: a turn is written to a file or a folder; standard output takes single pictures";
+        return Err(CliError::Usage(why.to_owned()));
+    }
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;

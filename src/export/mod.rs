@@ -11,11 +11,11 @@ mod picture_file;
 mod png_file;
 mod rows;
 
-pub use animation::{Animation, AnimationFormat, AnimationSpec};
+pub use animation::{Animation, AnimationFormat, AnimationSpec, frame_names};
 pub use error::{ExportError, ReadPictureError};
 pub use files::{
-    check_ending, check_writable, hold_lock, is_ours, keep_backup, make_folder, put_aside, remove,
-    remove_abandoned, remove_unfinished, rename, write_atomically,
+    Destination, check_ending, check_writable, hold_lock, is_ours, keep_backup, make_folder, put_aside,
+    remove, remove_abandoned, remove_unfinished, rename, write_atomically,
 };
 pub use picture_file::{
     PictureFormat, check_picture, picture_size, read_picture, read_record, write_picture,

@@ -2,16 +2,13 @@
 
 mod cuts;
 mod editor;
-mod export;
-mod foreign_paths;
+mod files;
 mod gestures;
 mod harness;
 mod keep_balanced;
 mod lights;
 mod names;
-mod opening;
 mod panels;
-mod sessions;
 mod snapshots;
 mod thresholds;
 mod views;

@@ -10,6 +10,7 @@ mod info;
 mod inputs;
 mod light_volume;
 mod limits;
+mod outputs;
 mod program;
 mod render;
 mod replay;

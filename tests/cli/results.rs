@@ -23,8 +23,8 @@ fn failures_leave_an_older_result_as_it_was() {
     let folder = Folder::new();
     folder.write("short_8x8x8_uint8.raw", vec![0; 511]);
     folder.write("words.json", "this is no JSON");
-    let older = b"what was there before".to_vec();
-    folder.write("out.png", &older);
+    folder.succeed("render builtin:sphere:16 -o out.png --size 16x12");
+    let older = folder.read("out.png");
     for (args, code) in [
         ("render missing.raw -o out.png", 6),
         ("render short_8x8x8_uint8.raw -o out.png", 3),

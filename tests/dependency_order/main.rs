@@ -3,6 +3,7 @@
 //! folders can be taken in at a glance.
 
 mod circles;
+mod disk;
 mod form;
 mod layers;
 mod paths;

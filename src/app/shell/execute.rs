@@ -188,6 +188,10 @@ impl App {
         }
         if let Some((purpose, path)) = self.files.take() {
             self.chosen(purpose, &path, ctx);
+            if purpose == Purpose::ExportPicture {
+                // The desktop's dialog has asked.
+                self.export.agree_to(&path);
+            }
         }
     }
 

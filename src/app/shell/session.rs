@@ -50,6 +50,7 @@ impl Session {
         let is_json = self.path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
         self.protected = match record.schema() {
             Some(schema) if schema > u64::from(SCHEMA) => Some(text::memory::NEWER_SESSION),
+            Some(_) if record.was_cut() => Some(text::memory::NOT_UNDERSTOOD),
             Some(_) if is_json => None,
             _ => Some(text::memory::NO_SESSION),
         };

@@ -36,6 +36,11 @@ pub(crate) enum Purpose {
 }
 
 impl Purpose {
+    /// Whether a file is written at once, which the desktop's dialog asks about by itself.
+    fn writes(self) -> bool {
+        matches!(self, Self::SaveSettings | Self::ExportTransfer | Self::ExportLight)
+    }
+
     /// How the user is asked.
     fn question(self) -> Question {
         match self {
@@ -68,6 +73,8 @@ struct Typed {
     purpose: Purpose,
     text: String,
     focus: bool,
+    /// There is such a file, and the user is being asked whether it may be replaced.
+    asks: bool,
 }
 
 /// Dialogs that are open.
@@ -128,7 +135,7 @@ impl Files {
 
     /// Opens the window for typing a path.
     pub(crate) fn type_path(&mut self, purpose: Purpose) {
-        self.typed = Some(Typed { purpose, text: String::new(), focus: true });
+        self.typed = Some(Typed { purpose, text: String::new(), focus: true, asks: false });
     }
 
     /// What the user chose, once.
@@ -165,9 +172,22 @@ impl Files {
                 }
                 accepted = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             });
+            let path = PathBuf::from(typed.text.trim());
+            // Another name was typed meanwhile.
+            typed.asks &= path.is_file();
+            if typed.asks {
+                ui.label(text::files::is_there_already(&path));
+            }
             ui.horizontal(|ui| {
-                accepted |= ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
+                let verb = if typed.asks { text::files::REPLACE } else { verb };
+                let pressed =
+                    ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
                 cancelled = ui.button(text::common::CANCEL).clicked();
+                // Enter alone replaces nothing.
+                accepted = pressed || accepted && !typed.asks;
+                if accepted && !typed.asks && typed.purpose.writes() && path.is_file() {
+                    (typed.asks, accepted) = (true, false);
+                }
             });
         });
         let chosen = (accepted && !typed.text.trim().is_empty())

@@ -11,6 +11,7 @@ use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::attempt::{Extent, human_bytes};
 use crate::data::{Samples, VoxelType};
+use crate::fault;
 
 /// Bytes that are read and decoded at a time, and between two looks at `cancel`.
 const BLOCK_BYTES: usize = 1 << 20;
@@ -195,11 +196,17 @@ fn is_corruption(error: &io::Error) -> bool {
     )
 }
 
+/// Blocks that were read, for faults on purpose.
+static BLOCKS: fault::Count = fault::Count::new();
+
 /// Fills `block` as far as the reader goes; the number of bytes read.
 fn fill(reader: &mut impl Read, block: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
     let mut filled = 0;
     while filled < block.len() {
         control.check().map_err(Fault::Stopped)?;
+        if fault::is_due(&BLOCKS, fault::Fault::ReadError) {
+            return Err(Fault::Io(io::Error::other("a fault was asked for")));
+        }
         match reader.read(&mut block[filled..]) {
             Ok(0) => break,
             Ok(n) => filled += n,

@@ -10,6 +10,11 @@ fn name(at: u32) -> String {
     format!("{at:04}.png")
 }
 
+/// The names of so many pictures in a folder.
+pub fn frame_names(folder: &Path, frames: u32) -> Vec<PathBuf> {
+    (0..frames).map(|at| folder.join(name(at))).collect()
+}
+
 /// A folder of pictures.
 pub(super) struct Folder {
     path: PathBuf,

@@ -5,6 +5,8 @@ mod folder;
 mod gif;
 mod mp4;
 
+pub use folder::frame_names;
+
 use std::path::Path;
 
 use super::ExportError;

@@ -8,7 +8,7 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
-use crate::export::files::{Unfinished, place, temporary_beside};
+use crate::export::files::{Unfinished, place, scratch, temporary_beside};
 use crate::export::png_file::rgb;
 use crate::model::made_by;
 
@@ -78,7 +78,7 @@ impl Mp4 {
         let known = Command::new(program).args(["-v", "error", "-encoders"]).output().map_err(not_there)?;
         let has_x264 = String::from_utf8_lossy(&known.stdout).contains(" libx264 ");
         let file = temporary_beside(path)?;
-        let words = tempfile::tempfile().map_err(ExportError::writing(path))?;
+        let words = scratch().map_err(ExportError::writing(path))?;
         let [width, height] = reel.size;
         let mut child = Command::new(program)
             .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"])

@@ -2,14 +2,16 @@
 //!
 //! Files are written whole or not at all, never in place of what is no file, and say who made them.
 
+mod destination;
 mod guarded;
 mod made_by;
 mod unfinished;
 mod whole;
 
+pub use destination::Destination;
 pub use guarded::{hold_lock, make_folder, put_aside, remove, rename};
 pub use made_by::is_ours;
-pub(super) use unfinished::Unfinished;
+pub(super) use unfinished::{Unfinished, scratch};
 pub use unfinished::{remove_abandoned, remove_unfinished};
 pub use whole::{check_ending, check_writable, keep_backup, write_atomically};
 pub(super) use whole::{open_regular, place, temporary_beside};

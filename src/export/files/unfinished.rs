@@ -89,6 +89,11 @@ impl Write for Unfinished {
     }
 }
 
+/// A file without a name, which is gone when it is closed.
+pub(in crate::export) fn scratch() -> std::io::Result<File> {
+    tempfile::tempfile()
+}
+
 /// Takes a file off the list; one that was dropped stays there, which is harmless: its name is not used again.
 fn forget(path: &Path) {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).retain(|known| known != path);

@@ -11,6 +11,7 @@ use super::shader_files::SHADERS;
 use super::variant::Variant;
 use crate::data::address_bytes_left;
 use crate::export::ExportError;
+use crate::fault::{self, Fault};
 use crate::gpu::{Context, GpuError};
 
 /// Addresses that must be left for the compiler of a software adapter: with 128 MiB under `ulimit -v`, that of Mesa
@@ -151,6 +152,9 @@ impl ShaderLibrary {
         let mut source = Self::source(shader, self.context.storage_format, attenuation)?;
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
+        }
+        if fault::is_on(Fault::Shader) {
+            source.push_str("a fault was asked for");
         }
         let groups = self.groups_of(shader, attenuation)?;
         let device = &self.context.device;

@@ -153,6 +153,12 @@ impl Record {
         applied.is_ok_and(|(_, warnings)| warnings.is_empty())
     }
 
+    /// Whether something was cut, because it was more than a look has: it would be lost where the record is written
+    /// again.
+    pub fn was_cut(&self) -> bool {
+        !self.cuts.is_empty()
+    }
+
     /// The schema that the record names; a preset names none.
     pub fn schema(&self) -> Option<u64> {
         self.overlay.get("schema").and_then(Value::as_u64)

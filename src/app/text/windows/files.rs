@@ -51,6 +51,15 @@ pub(crate) const EXPORT_LIGHT: Question = Question {
     verb: "Export",
 };
 
+/// Before a file is replaced.
+pub(crate) const REPLACE: &str = "Replace";
+
+/// Asks whether a file is to be replaced.
+pub(crate) fn is_there_already(file: &Path) -> String {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    format!("{name} is there already. Replace it?")
+}
+
 /// Kinds of files, which the desktop's dialog lists.
 pub(crate) const VOLUMES: &str = "Volumes";
 pub(crate) const ALL_FILES: &str = "All files";

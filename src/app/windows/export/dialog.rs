@@ -1,6 +1,6 @@
 //! The export window: what is made, how large and how fine, and into which file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use eframe::egui::{self, Ui};
@@ -74,16 +74,40 @@ impl Export {
             });
             ui.horizontal(|ui| {
                 let ready = !self.is_busy() && !self.path.trim().is_empty();
-                if ui.add_enabled(ready, egui::Button::new(text::export::EXPORT)).clicked() {
-                    request = Some(Request::Export);
+                if ui.add_enabled(ready && !self.asks, egui::Button::new(text::export::EXPORT)).clicked() {
+                    self.asks = self.would_replace();
+                    request = (!self.asks).then_some(Request::Export);
                 }
                 if self.is_busy() {
                     self.progress_ui(ui);
                 }
             });
+            if self.asks && self.question_ui(ui) {
+                request = Some(Request::Export);
+            }
         });
         self.open = open;
         request
+    }
+
+    /// Whether there is a file of that name, which the user has not agreed to replace.
+    fn would_replace(&self) -> bool {
+        let path = Path::new(self.path.trim());
+        path.is_file() && self.agreed.as_deref() != Some(path)
+    }
+
+    /// Asks whether the file may be replaced; whether it may.
+    fn question_ui(&mut self, ui: &mut Ui) -> bool {
+        let path = PathBuf::from(self.path.trim());
+        // Another name was typed meanwhile.
+        self.asks = path.is_file();
+        let mut agreed = false;
+        ui.horizontal(|ui| {
+            ui.label(text::files::is_there_already(&path));
+            agreed = ui.button(text::files::REPLACE).clicked();
+            self.asks &= !agreed && !ui.button(text::common::CANCEL).clicked();
+        });
+        agreed
     }
 
     /// What a turn is written as.

@@ -49,6 +49,10 @@ pub(crate) struct Export {
     kind: Kind,
     frames: u32,
     rate: u16,
+    /// The file that may be replaced, as the user has said.
+    agreed: Option<PathBuf>,
+    /// The user is being asked whether it may.
+    asks: bool,
     progress: Arc<Progress>,
     work: Option<Work<Result<Exported, String>>>,
 }
@@ -62,6 +66,8 @@ impl Default for Export {
             kind: Kind::Still,
             frames: 72,
             rate: 24,
+            agreed: None,
+            asks: false,
             progress: Arc::default(),
             work: None,
         }
@@ -82,6 +88,12 @@ impl Export {
         self.path = path.display().to_string();
         self.follow_name();
         self.open = true;
+    }
+
+    /// A file that may be replaced: whoever named it has been asked, or is a program.
+    pub(crate) fn agree_to(&mut self, path: &Path) {
+        self.set_path(path);
+        self.agreed = Some(path.to_owned());
     }
 
     /// How large.
@@ -112,6 +124,7 @@ impl Export {
 
     /// Starts to render and write.
     pub(crate) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
+        self.agreed = None;
         let (shot, path) = (self.shot.within_limits(), PathBuf::from(self.path.trim()));
         self.progress = Arc::default();
         let progress = Arc::clone(&self.progress);

@@ -25,7 +25,12 @@ fn exports_are_what_the_renderer_makes() {
 
     // The open export window, with its box ticked.
     click(&mut harness, "Transparent background");
+    let before = std::fs::read(&exported).unwrap();
     click(&mut harness, "Export");
+    harness.run_steps(2);
+    assert!(harness.query_by_label("window.png is there already. Replace it?").is_some());
+    assert!(!harness.state().is_exporting() && std::fs::read(&exported).unwrap() == before);
+    click(&mut harness, "Replace");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let options = RenderOptions { transparent: true, ..RenderOptions::default() };
     export_png([200, 150], &render_with(&harness, [200, 150], &options).shown, true, None, &expected)
@@ -46,6 +51,9 @@ fn fine_pictures_come_from_the_window() {
         click(&mut harness, label);
         click(&mut harness, "4 samples per pixel");
         click(&mut harness, "Export");
+        if path.with_extension(ending).exists() {
+            click(&mut harness, "Replace");
+        }
         wait_until(&mut harness, "never exported", |app| !app.is_exporting());
         let app = harness.state();
         let (dataset, mut renderer) = beside();
@@ -67,6 +75,7 @@ fn turntables_and_copies_come_from_the_window() {
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     click(&mut harness, "Turntable");
     click(&mut harness, "Export");
+    click(&mut harness, "Replace");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap()));
     let frames = image::AnimationDecoder::into_frames(decoder.unwrap().apng().unwrap());

@@ -1,0 +1,6 @@
+//! Files that the window opens, writes, and keeps from one run to the next.
+
+mod export;
+mod foreign_paths;
+mod opening;
+mod sessions;

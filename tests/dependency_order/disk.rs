@@ -1,0 +1,83 @@
+//! One module opens files for writing, renames and removes them: `src/export/files/`.
+
+use crate::sources::files;
+use crate::tokens::tokens;
+
+/// The one gate to the disk.
+const GATE: &str = "export/files/";
+
+/// What changes the disk, as the last two words of a path, or one that says all.
+const OF_FS: [&str; 12] = [
+    "write",
+    "rename",
+    "copy",
+    "remove_file",
+    "remove_dir",
+    "remove_dir_all",
+    "create_dir",
+    "create_dir_all",
+    "hard_link",
+    "soft_link",
+    "set_permissions",
+    "symlink",
+];
+const OF_FILE: [&str; 3] = ["create", "create_new", "options"];
+const BY_THEMSELVES: [&str; 3] = ["OpenOptions", "DirBuilder", "tempfile"];
+
+/// The parts of a source text that change the disk, its tests apart.
+fn writers(source: &str) -> Vec<String> {
+    let program = source.split("\nmod tests {").next().unwrap_or_default();
+    let words = tokens(program);
+    let at = |index: Option<usize>| index.and_then(|index| words.get(index)).map_or("", String::as_str);
+    let is_writer = |index: usize, word: &str| {
+        let of = if at(index.checked_sub(1)) == "::" { at(index.checked_sub(2)) } else { "" };
+        BY_THEMSELVES.contains(&word)
+            || of == "fs" && OF_FS.contains(&word)
+            || of == "File" && OF_FILE.contains(&word)
+            // A name that was brought in could be used without its path.
+            || of.is_empty() && ["remove_file", "create_dir_all", "hard_link"].contains(&word)
+    };
+    words
+        .iter()
+        .enumerate()
+        .filter(|(index, word)| is_writer(*index, word))
+        .map(|(_, word)| word.clone())
+        .collect()
+}
+
+#[test]
+fn nothing_else_opens_files_for_writing() {
+    let sources = files("src", "rs");
+    assert!(sources.iter().any(|source| source.path.starts_with(GATE) && !writers(&source.text).is_empty()));
+    let elsewhere = sources.iter().filter(|source| {
+        !source.path.starts_with(GATE)
+            && !source.path.ends_with("/tests.rs")
+            && !source.path.contains("/tests/")
+    });
+    let found: Vec<_> = elsewhere
+        .flat_map(|source| writers(&source.text).into_iter().map(|word| format!("{}: {word}", source.path)))
+        .collect();
+    assert!(found.is_empty(), "src/{GATE} is the place for this:\n{}", found.join("\n"));
+}
+
+#[test]
+fn writers_are_noticed() {
+    for text in [
+        "fn f() { std::fs::write(a, b) }",
+        "use std::fs; fn f() { fs::rename(a, b) }",
+        "fn f() { let file = File::create(path)?; }",
+        "fn f() { std::fs::File::options().write(true) }",
+        "use std::fs::OpenOptions;",
+        "use std::fs::remove_file;",
+        "fn f() { tempfile::tempdir() }",
+    ] {
+        assert!(!writers(text).is_empty(), "{text}");
+    }
+    for text in [
+        "fn f() { std::fs::read(a); File::open(b); stdout().write(c) }",
+        "// std::fs::write\nfn f() { \"fs::write\" }",
+        "fn f() {}\n#[cfg(test)]\nmod tests { fn g() { std::fs::write(a, b) } }",
+    ] {
+        assert!(writers(text).is_empty(), "{text}");
+    }
+}
