@@ -19,6 +19,9 @@ pub(super) fn put_aside(path: &Path) -> String {
 /// anything of ours runs, and only says where windows and panels were.
 pub(crate) fn check_window_state(folder: &Path) -> Option<String> {
     let path = folder.join("app.ron");
+    if super::starts_have_failed(folder) && path.exists() {
+        return Some(put_aside(&path));
+    }
     let bytes = match read_small(&path) {
         Err(err) if err.kind() == std::io::ErrorKind::NotFound => return None,
         Err(_) => return Some(put_aside(&path)),

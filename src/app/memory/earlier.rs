@@ -120,18 +120,39 @@ pub(super) fn adopt(folder: &Path, runs: &Path) {
     }
 }
 
-/// The runs of a folder that have ended, the latest first, with notices of what was damaged. More than [`MOST`] are
-/// not kept.
-pub(super) fn read(folder: &Path) -> (Vec<EarlierRun>, Vec<String>) {
+/// How often the program was cut off before it had a look, since it had one.
+pub(super) fn failed_starts(folder: &Path) -> usize {
+    failed(&files_of(folder)).0.len()
+}
+
+/// The files of a folder, in the order of their names.
+fn files_of(folder: &Path) -> Vec<PathBuf> {
     let names = std::fs::read_dir(folder).into_iter().flatten().take(MOST_NAMES);
     let mut files: Vec<PathBuf> = names.filter_map(|entry| Some(entry.ok()?.path())).collect();
     files.sort();
-    // A run that had not come to a look.
-    for lock in files.iter().filter(|file| file.extension().is_some_and(|ending| ending == "lock")) {
+    files
+}
+
+/// The locks of runs that were cut off before they had a look: after the latest run that had one, and before.
+fn failed(files: &[PathBuf]) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
+    let has_ending = |file: &&PathBuf, wanted: &str| file.extension().is_some_and(|ending| ending == wanted);
+    let latest = files.iter().rfind(|file| has_ending(file, "json"));
+    let locks = files.iter().filter(|file| has_ending(file, "lock"));
+    let cut_off = locks.filter(|lock| {
         let look = lock.with_extension("json");
-        if !look.exists() && matches!(how_ended(&look), Ended::Crashed) {
-            export::remove(lock);
-        }
+        !look.exists() && matches!(how_ended(&look), Ended::Crashed)
+    });
+    cut_off.partition(|lock| latest.is_none_or(|latest| *lock > latest))
+}
+
+/// The runs of a folder that have ended, the latest first, with notices of what was damaged. More than [`MOST`] are
+/// not kept.
+pub(super) fn read(folder: &Path) -> (Vec<EarlierRun>, Vec<String>) {
+    let files = files_of(folder);
+    // Starts that failed matter until one has not.
+    let (_, over) = failed(&files);
+    for lock in over {
+        export::remove(lock);
     }
     let (mut runs, mut notices) = (Vec::new(), Vec::new());
     for look in files.into_iter().rev().filter(|file| file.extension().is_some_and(|ending| ending == "json"))

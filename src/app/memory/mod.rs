@@ -24,6 +24,14 @@ use crate::app::text;
 use crate::export;
 use crate::model::Settings;
 
+/// Starts in succession that have to fail before one leaves out what may be to blame.
+const FAILED_STARTS: usize = 3;
+
+/// Whether the last starts of the program have failed, one after the other, of those that remember in a folder.
+pub(crate) fn starts_have_failed(folder: &Path) -> bool {
+    earlier::failed_starts(&folder.join("runs")) >= FAILED_STARTS
+}
+
 /// The look that was handed over last, and what it is of.
 type Kept = (Settings, u64);
 
@@ -35,6 +43,8 @@ pub(crate) struct Memory {
     earlier: Vec<EarlierRun>,
     /// There was no run before.
     is_first: bool,
+    /// The last starts have failed, one after the other.
+    is_troubled: bool,
     /// What the user should know, once.
     notices: Vec<String>,
     kept: Option<Kept>,
@@ -60,6 +70,7 @@ impl Memory {
         let (recent, notice) = recent::read(folder);
         (memory.recent, memory.notices) = (recent, notice.into_iter().collect());
         memory.recent.truncate(recent::MOST);
+        memory.is_troubled = starts_have_failed(folder);
         let (earlier, notices) = earlier::read(&runs);
         memory.earlier = earlier;
         memory.notices.extend(notices);
@@ -76,6 +87,11 @@ impl Memory {
     /// Whether nobody has used the program here before.
     pub(crate) fn is_first(&self) -> bool {
         self.is_first
+    }
+
+    /// Whether the last starts have failed: the next one leaves out what may be to blame.
+    pub(crate) fn is_troubled(&self) -> bool {
+        self.is_troubled
     }
 
     /// What was opened, the latest first.

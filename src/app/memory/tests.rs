@@ -115,6 +115,24 @@ fn a_run_that_panics_is_one_that_was_cut_off() {
 }
 
 #[test]
+fn starts_that_fail_are_counted_until_one_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let fail = || kill(remember(folder.path()));
+    drop(remember(folder.path()));
+    for failed in 0..4 {
+        assert_eq!(starts_have_failed(folder.path()), failed >= 3, "{failed}");
+        assert_eq!(remember(folder.path()).is_troubled(), failed >= 3);
+        fail();
+    }
+    let mut memory = remember(folder.path());
+    memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
+    drop(memory);
+    assert!(!starts_have_failed(folder.path()));
+    drop(remember(folder.path()));
+    assert_eq!(fs::read_dir(folder.path().join("runs")).unwrap().count(), 1, "the look alone");
+}
+
+#[test]
 fn two_windows_take_nothing_from_each_other() {
     let folder = tempfile::tempdir().unwrap();
     let mut first = remember(folder.path());

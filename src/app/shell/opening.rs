@@ -277,8 +277,9 @@ impl App {
                 self.memory.show(picture);
             }
             // Not before there is a volume, which clears what was said.
-            for notice in self.memory.take_notices() {
-                self.messages.error(text::memory::NOT_ALL_KEPT, notice);
+            let notices = self.memory.take_notices();
+            if !notices.is_empty() {
+                self.messages.error(text::memory::WORTH_KNOWING, notices.join("\n\n"));
             }
         }
     }

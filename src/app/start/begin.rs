@@ -37,7 +37,7 @@ use crate::app::{App, text};
 use crate::data::load::LoadOptions;
 use crate::fault::{self, Count, Fault, Place, may_panic};
 use crate::gpu::{Context, GpuError, WindowPainter};
-use crate::model::Settings;
+use crate::model::{Quality, Settings};
 
 /// Frames of all windows, for faults on purpose.
 static FRAMES: Count = Count::new();
@@ -59,6 +59,9 @@ impl App {
     ) -> Result<Self, AppError> {
         let Options { source, load, session, volume, trust_paths, adjust, storage } = options;
         let memory = Memory::new(storage.as_deref(), &cc.egui_ctx);
+        if memory.is_troubled() {
+            return Self::begin_safely(cc, storage, memory, legacy);
+        }
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
         app.recovery = Recovery::of(app.memory.earlier(), &cc.egui_ctx);
         app.hints = Hints { on: app.memory.is_first() };
@@ -67,6 +70,26 @@ impl App {
         app.adjust = adjust;
         app.trusts_paths = trust_paths;
         app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
+        Ok(app)
+    }
+
+    /// A window after several starts have failed: without the file and the session that were named, without what the
+    /// driver has kept of pipelines, and with the least work for it.
+    fn begin_safely(
+        cc: &eframe::CreationContext<'_>,
+        storage: Option<PathBuf>,
+        mut memory: Memory,
+        legacy: Legacy,
+    ) -> Result<Self, AppError> {
+        memory.add_notice(text::memory::STARTED_SAFELY.to_owned());
+        let mut app = Self::build(cc, LoadOptions::default(), None, memory, legacy)?;
+        app.storage = storage;
+        app.recovery = Recovery::of(app.memory.earlier(), &cc.egui_ctx);
+        app.adjust = Some(Box::new(|mut settings| {
+            Quality::Fast.apply(&mut settings);
+            settings
+        }));
+        app.open_first(None, None, &cc.egui_ctx);
         Ok(app)
     }
 

@@ -117,6 +117,29 @@ fn a_run_that_was_cut_off_is_offered() {
 }
 
 #[test]
+fn after_three_failed_starts_the_file_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("runs")).unwrap();
+    for at in 1..=3 {
+        std::fs::write(folder.path().join(format!("runs/000000000000{at}-1-0.lock")), "").unwrap();
+    }
+    let start = || {
+        let options = Options {
+            source: Some("builtin:sphere:16".into()),
+            storage: Some(folder.path().to_owned()),
+            adjust: Some(Box::new(|settings| settings)),
+            ..Options::default()
+        };
+        window_with(options, Vec2::new(760.0, 900.0))
+    };
+    let harness = start();
+    assert_eq!(harness.state().volume_name(), Some("chair"));
+    assert!(harness.query_by_label("Something is not as it was").is_some());
+    drop(harness);
+    assert_eq!(start().state().volume_name(), Some("sphere"), "one start was enough");
+}
+
+#[test]
 fn quitting_while_a_picture_is_exported_asks() {
     let mut harness = window();
     let folder = tempfile::tempdir().unwrap();

@@ -11,8 +11,13 @@ pub(crate) const GO_ON: &str = "Go on";
 pub(crate) const NOT_NOW: &str = "Not now";
 pub(crate) const NOT_NOW_TIP: &str = "It stays in File, Earlier looks";
 
+/// After several starts have failed.
+pub(crate) const STARTED_SAFELY: &str = "The program did not get to a picture three times. It has started without the \
+     file and the session that were named, and with quick light: File, Open… opens the file, and Quality in Shadows has \
+     the better light";
+
 /// Of what follows with the details.
-pub(crate) const NOT_ALL_KEPT: &str = "not everything is kept";
+pub(crate) const WORTH_KNOWING: &str = "Something is not as it was";
 
 /// The window that asks before an export is given up.
 pub(crate) const EXPORTING: &str = "Quit while a picture is being exported?";
