@@ -102,6 +102,7 @@ impl Count {
 }
 
 /// Chooses the faults of this process.
+#[cfg(any(feature = "cli", test))]
 pub(crate) fn choose(faults: Vec<Fault>) {
     ANY.store(!faults.is_empty(), Ordering::Relaxed);
     *FAULTS.write().unwrap_or_else(PoisonError::into_inner) = faults;
@@ -123,6 +124,7 @@ pub(crate) fn is_due(count: &Count, fault: impl Fn(u64) -> Fault) -> bool {
 }
 
 /// Panics where that was chosen.
+#[cfg(any(feature = "window", test))]
 pub(crate) fn may_panic(place: Place) {
     assert!(!is_on(Fault::Panic(place)), "a fault was asked for: panic in {place:?}");
 }

@@ -106,6 +106,12 @@ pub struct ViewerRequest {
     pub trust_paths: bool,
 }
 
+/// What is done when the process is told to end: the window's look is kept.
+#[cfg(feature = "window")]
+const LAST_ACTS: &[fn()] = &[crate::app::end_in_a_hurry];
+#[cfg(not(feature = "window"))]
+const LAST_ACTS: &[fn()] = &[];
+
 /// Runs the command line; `open_window` runs the viewer. Returns the exit code.
 pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> u8 {
     let args = match Args::try_parse() {
@@ -118,9 +124,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         }
     };
     fault::choose(args.fault.clone());
-    #[cfg(feature = "window")]
-    signals::before_the_end(crate::app::end_in_a_hurry);
-    signals::listen();
+    signals::listen(LAST_ACTS);
     let result = match args.command {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Turntable(args)) => turntable::run(&args),

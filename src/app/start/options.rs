@@ -23,7 +23,7 @@ pub struct Options {
     pub trust_paths: bool,
     /// Applied to the first volume's settings, after the session.
     pub adjust: Option<Adjustment>,
-    /// Where things are kept from one run to the next; see [`storage_folder`].
+    /// Where things are kept from one run to the next; see [`super::run::storage_folder`].
     pub storage: Option<PathBuf>,
 }
 

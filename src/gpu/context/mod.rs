@@ -252,6 +252,7 @@ impl Context {
     }
 
     /// Takes the device away.
+    #[cfg(feature = "window")]
     pub(crate) fn lose(&self) {
         self.device.destroy();
     }
