@@ -139,7 +139,10 @@ const LAST_TASKS: Duration = Duration::from_secs(10);
 
 impl Drop for App {
     fn drop(&mut self) {
-        task::wait_for_all(LAST_TASKS);
+        // Where another window takes the place of this one, that waits in the end.
+        if !self.is_ending {
+            task::wait_for_all(LAST_TASKS);
+        }
     }
 }
 
@@ -350,17 +353,18 @@ impl eframe::App for App {
             pixels_per_point: ctx.pixels_per_point(),
         };
         self.status_file.update(&state);
-        if self.loader.progress().is_some() {
-            // The progress bar moves.
+        if self.loader.progress().is_some() || self.export.is_busy() {
+            // The progress bar moves; and an export of an earlier window does not know this one.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }
     }
 
     fn on_exit(&mut self) {
         self.keep_look();
-        self.export.abandon();
         if self.is_ending {
             self.leave();
+        } else {
+            self.export.abandon();
         }
     }
 

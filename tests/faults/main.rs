@@ -6,4 +6,5 @@
 mod kills;
 mod mutations;
 mod random;
+mod relations;
 mod samples;

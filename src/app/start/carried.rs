@@ -12,6 +12,7 @@ use crate::app::shell::history::History;
 use crate::app::shell::opening::PendingLook;
 use crate::app::shell::session::Session;
 use crate::app::viewport::compare::Compare;
+use crate::app::windows::export::Export;
 use crate::app::windows::lost_again::Answer;
 use crate::app::worker::loader::Reading;
 use crate::app::{App, text};
@@ -34,6 +35,8 @@ pub(in crate::app) struct Carried {
     keeps_look: bool,
     compare: Compare,
     selected_light: usize,
+    /// It goes on: it has a device of its own.
+    export: Export,
     /// What was being opened.
     opening: Option<(PathBuf, Reading)>,
     pending: Option<PendingLook>,
@@ -76,6 +79,7 @@ impl App {
             keeps_look: self.keeps_look,
             compare: self.compare.clone(),
             selected_light: self.selected_light,
+            export: std::mem::take(&mut self.export),
             opening,
             pending: self.pending.take(),
             load: self.loader.options().clone(),
@@ -105,6 +109,7 @@ impl App {
             keeps_look,
             compare,
             selected_light,
+            export,
             opening,
             pending,
             load,
@@ -116,7 +121,7 @@ impl App {
         (app.settings, app.defaults, app.history) = (settings, defaults, history);
         (app.volume, app.session, app.session_is_due) = (volume, session, session_is_due);
         (app.keeps_look, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
-        (app.pending, app.trusts_paths) = (pending, trusts_paths);
+        (app.pending, app.trusts_paths, app.export) = (pending, trusts_paths, export);
         app.waiting = dataset;
         if asks {
             app.lost_again.ask();

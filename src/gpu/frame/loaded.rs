@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::data::Dataset;
+use crate::data::{Dataset, VoxelType};
 use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::cached::Cached;
@@ -18,6 +18,8 @@ use crate::plan::{CombinedKey, LightKey, TablesKey};
 pub(crate) struct Loaded {
     /// Density, pyramid and gradients.
     pub volume: GpuVolume,
+    /// What the voxels were: the same numbers of another type are stored otherwise.
+    voxel_type: VoxelType,
     /// Both transfer functions, and where they show anything.
     pub tables: Cached<TablesKey, Tables>,
     /// Attenuation volumes, most recently used first.
@@ -42,7 +44,13 @@ impl Loaded {
         let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks())?;
         let (tables, _) = Tables::new(context, &volume, settings, tables_key, None)?;
         let tables = Cached::complete(tables_key.clone(), tables);
-        Ok(Self { volume, tables, lights: Vec::new(), combined: None, voxels: None })
+        let voxel_type = dataset.volume().samples().voxel_type();
+        Ok(Self { volume, voxel_type, tables, lights: Vec::new(), combined: None, voxels: None })
+    }
+
+    /// Whether it was made from voxels of the type of these.
+    pub(crate) fn has_type_of(&self, dataset: &Dataset) -> bool {
+        self.voxel_type == dataset.volume().samples().voxel_type()
     }
 
     /// Brings the tables up to date. Returns how many were baked.

@@ -52,8 +52,12 @@ impl Renderer {
         let mut steps = Vec::new();
 
         let loaded = match self.loaded.take() {
-            Some(known) if known.holds(&keys.volume) => known,
-            _ => {
+            Some(known) if known.holds(&keys.volume) && known.value.has_type_of(dataset) => known,
+            other => {
+                if other.is_some_and(|known| known.holds(&keys.volume)) {
+                    // The same numbers in another type, which differ in the last bits.
+                    self.targets.forget();
+                }
                 self.tools.pool.clear();
                 let start = Instant::now();
                 let fresh = Loaded::new(&self.tools.context, dataset, &request.settings, &keys.tables)?;
