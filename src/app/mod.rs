@@ -299,7 +299,8 @@ impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.fail_on_purpose();
         // Before anything is drawn, which would panic.
-        if self.is_ending || self.window_context.is_lost() {
+        let is_lost = self.window_context.is_lost() || self.viewport.context().was_lost();
+        if self.is_ending || is_lost {
             return self.end_for_another(ctx);
         }
         self.collect(ctx);

@@ -257,6 +257,13 @@ impl Context {
         self.device.destroy();
     }
 
+    /// As [`Self::is_lost`], as far as somebody has waited for the device: asking does not get into the way of a thread
+    /// that does.
+    #[cfg(feature = "window")]
+    pub(crate) fn was_lost(&self) -> bool {
+        self.lost.load(Ordering::Relaxed)
+    }
+
     /// What to say of a device that is gone.
     fn gone(&self) -> GpuError {
         GpuError::Lost(self.info.name.clone())
@@ -268,7 +275,13 @@ impl Context {
     /// What the device complained about.
     pub fn check(&self) -> Result<(), GpuError> {
         let complaint = self.complaint.lock().unwrap_or_else(PoisonError::into_inner).take();
-        complaint.map_or(Ok(()), Err)
+        // What a device complains about that is gone says nothing: nothing on it is valid any more.
+        let is_lost = self.lost.load(Ordering::Relaxed);
+        match complaint {
+            Some(complaint) if is_lost && !matches!(complaint, GpuError::Lost(_)) => Err(self.gone()),
+            Some(complaint) => Err(complaint),
+            None => Ok(()),
+        }
     }
 
     /// Makes a texture, or says that memory is out.
