@@ -73,6 +73,9 @@ pub enum CliError {
     /// What is told could not be written.
     #[error("could not write to standard output: {0}; room where it goes helps")]
     Output(std::io::Error),
+    /// There are to be no threads.
+    #[error("no thread could be started ({0}); fewer limits (`ulimit -u`, `ulimit -v`) help")]
+    Threads(String),
     /// The window could not be opened.
     #[error("{0}; `chiaroscuro render FILE -o OUT.png` needs no window")]
     Window(String),
@@ -90,7 +93,10 @@ impl CliError {
                 LoadErrorKind::Limit => 5,
                 LoadErrorKind::Io | LoadErrorKind::Cancelled => 6,
             },
-            Self::Gpu(GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. }) => 5,
+            Self::Gpu(
+                GpuError::OutOfMemory { .. } | GpuError::FewAddresses { .. } | GpuError::OverLimit { .. },
+            )
+            | Self::Threads(_) => 5,
             Self::Gpu(_) | Self::Window(_) => 4,
             Self::Read { .. } | Self::Export(_) | Self::Picture(_) | Self::Output(_) => 6,
         }

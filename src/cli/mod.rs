@@ -13,6 +13,7 @@ mod render;
 mod replay;
 mod scene;
 mod signals;
+mod threads;
 mod turntable;
 
 use std::path::{Path, PathBuf};
@@ -125,7 +126,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     };
     fault::choose(args.fault.clone());
     signals::listen(LAST_ACTS);
-    let result = match args.command {
+    let result = threads::start().and_then(|()| match args.command {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Turntable(args)) => turntable::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
@@ -134,7 +135,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         None => args.request().and_then(open_window),
-    };
+    });
     match result {
         Ok(()) => 0,
         Err(err) => {

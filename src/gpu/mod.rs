@@ -18,6 +18,8 @@ mod volume;
 pub use self::readback::statistics::LightFigures;
 pub use self::readback::tiled::Bands;
 pub use crate::plan::RenderOptions;
+#[cfg(feature = "window")]
+pub(crate) use context::check_room_for_drivers;
 pub use context::error::GpuError;
 pub use context::{Context, device_descriptor};
 pub use frame::first_look::{balance, balance_quickly, dark_share, first_look, mean_luminance};

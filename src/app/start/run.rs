@@ -12,7 +12,7 @@ use super::icon;
 use super::options::Options;
 use crate::app::memory::{check_window_state, write_last_words};
 use crate::app::{App, text};
-use crate::gpu::device_descriptor;
+use crate::gpu::{check_room_for_drivers, device_descriptor};
 
 /// Names our window to the desktop, and the folder in which we keep things.
 const APP_ID: &str = "chiaroscuro";
@@ -34,6 +34,7 @@ pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
 /// # Errors
 /// When there is no display or no usable graphics adapter.
 pub fn run(options: Options) -> Result<(), AppError> {
+    check_room_for_drivers()?;
     let damaged = options.storage.as_deref().and_then(check_window_state);
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |what| {

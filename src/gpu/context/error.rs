@@ -21,6 +21,18 @@ pub enum GpuError {
         /// Size of what was to be made.
         mebibytes: u64,
     },
+    /// A user's limit leaves too few addresses for something that would end the program without them.
+    #[error(
+        "{what} needs {needed_mebibytes} MiB of addresses and a limit of this process leaves {left_mebibytes}; `ulimit -v unlimited` helps"
+    )]
+    FewAddresses {
+        /// What needs them.
+        what: String,
+        /// How many it needs.
+        needed_mebibytes: u64,
+        /// How many there are.
+        left_mebibytes: u64,
+    },
     /// A size is beyond what the adapter can do.
     #[error("{what} is {size} along an axis, this adapter allows {limit}; {help}")]
     OverLimit {

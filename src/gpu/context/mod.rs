@@ -1,5 +1,6 @@
 //! The device, what it can do, and what it complains about.
 
+mod addresses;
 pub(super) mod clock;
 pub(super) mod error;
 
@@ -8,6 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+pub(crate) use self::addresses::check_room_for_drivers;
+pub(super) use self::addresses::{OF_THE_COMPILER, check_room};
 use self::clock::Clock;
 use super::GpuError;
 use crate::data::plain;
@@ -76,6 +79,7 @@ impl Context {
     /// # Errors
     /// When there is no adapter or it cannot store the textures that we need.
     pub fn headless() -> Result<Self, GpuError> {
+        check_room_for_drivers()?;
         let no_adapter = |why: String| GpuError::NoAdapter { why, help: ADAPTER_HELP };
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             // Vulkan, Metal, DX12; `WGPU_BACKEND` narrows it.

@@ -9,14 +9,10 @@ use super::layouts::LAYOUTS;
 use super::pipeline_cache::PipelineCache;
 use super::shader_files::SHADERS;
 use super::variant::Variant;
-use crate::data::address_bytes_left;
 use crate::export::ExportError;
 use crate::fault::{self, Fault};
+use crate::gpu::context::{OF_THE_COMPILER, check_room};
 use crate::gpu::{Context, GpuError};
-
-/// Addresses that must be left for the compiler of a software adapter: with 128 MiB under `ulimit -v`, that of Mesa
-/// 22.3.6 still crashed.
-const COMPILER_ROOM: u64 = 256 << 20;
 
 /// Joins sources and makes pipelines, each once.
 #[derive(Debug, Clone)]
@@ -145,9 +141,8 @@ impl ShaderLibrary {
         attenuation: wgpu::TextureFormat,
     ) -> Result<Pipeline, GpuError> {
         // Mesa's compiler does not look whether it got the memory that it asked for, and ends the program.
-        if self.context.is_software() && address_bytes_left().is_some_and(|left| left < COMPILER_ROOM) {
-            let what = format!("the pipeline of {shader}");
-            return Err(GpuError::OutOfMemory { what, mebibytes: COMPILER_ROOM >> 20 });
+        if self.context.is_software() {
+            check_room(&format!("the pipeline of {shader}"), OF_THE_COMPILER)?;
         }
         let mut source = Self::source(shader, self.context.storage_format, attenuation)?;
         if let Some((from, to)) = &self.mutation {
