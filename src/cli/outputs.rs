@@ -1,5 +1,6 @@
 //! What commands write: never in place of what they read, nor of one another; and what they print.
 
+use std::collections::{HashMap, HashSet};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -7,64 +8,60 @@ use super::CliError;
 use crate::data::without_controls;
 use crate::export::{Destination, is_ours};
 
-/// Refuses names under which a command would replace what it reads, or what else it writes, whatever they are called.
+/// Refuses names under which a command would replace what it reads, or what else it writes, whatever they are called,
+/// or, unless that is wanted (`force`), files that this program has not made. What is no file is refused when it is
+/// written.
 ///
 /// # Errors
 /// Which file it is.
-pub(super) fn keep_apart(inputs: &[&Path], outputs: &[&Path]) -> Result<(), CliError> {
-    for (at, output) in outputs.iter().enumerate() {
-        let is_same = |other: &&&Path| is_same_file(output, other);
-        if let Some(input) = inputs.iter().find(is_same) {
-            return Err(CliError::Usage(format!(
-                "{} would replace {}, which is read; another name helps",
-                output.display(),
-                input.display()
-            )));
+pub(super) fn keep_apart(inputs: &[&Path], outputs: &[&Path], force: bool) -> Result<(), CliError> {
+    let inputs: HashMap<_, _> =
+        inputs.iter().filter_map(|input| Some((Identity::of(input)?, *input))).collect();
+    let mut written = HashSet::new();
+    for output in outputs {
+        let refused = |why: String| Err(CliError::Usage(format!("{} {why}", output.display())));
+        if let Some(identity) = Identity::of(output) {
+            if let Some(input) = inputs.get(&identity) {
+                let input = input.display();
+                return refused(format!("would replace {input}, which is read; another name helps"));
+            }
+            if !written.insert(identity) {
+                return refused("would be written twice; two names help".to_owned());
+            }
         }
-        if outputs[..at].iter().any(|other| is_same_file(output, other)) {
-            return Err(CliError::Usage(format!(
-                "{} would be written twice; two names help",
-                output.display()
-            )));
+        if !force && *output != Path::new("-") && output.is_file() && !is_ours(output) {
+            let why = "is there already, and this program has not made it; another name, or --force, helps";
+            return refused(why.to_owned());
         }
     }
     Ok(())
 }
 
-/// Refuses names of files that this program has not made. What is no file is refused when it is written.
-///
-/// # Errors
-/// Which file it is.
-pub(super) fn spare_others(outputs: &[&Path]) -> Result<(), CliError> {
-    let theirs = |path: &&&Path| **path != Path::new("-") && path.is_file() && !is_ours(path);
-    match outputs.iter().find(theirs) {
-        None => Ok(()),
-        Some(path) => Err(CliError::Usage(format!(
-            "{} is there already, and this program has not made it; another name, or --force, helps",
-            path.display()
-        ))),
-    }
-}
-
-/// Whether two names stand for one file: there is one of both, or there would be.
-fn is_same_file(a: &Path, b: &Path) -> bool {
+/// What two names of one file have in common: there is one of both, or there would be.
+#[derive(Debug, PartialEq, Eq, Hash)]
+enum Identity {
+    /// Device and number of a file that is there; also of hard links.
     #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt as _;
-        // Also of hard links.
-        if let (Ok(a), Ok(b)) = (std::fs::metadata(a), std::fs::metadata(b)) {
-            return (a.dev(), a.ino()) == (b.dev(), b.ino());
-        }
-    }
-    matches!((whole_name(a), whole_name(b)), (Some(a), Some(b)) if a == b)
+    Found(u64, u64),
+    /// The name from the root.
+    Named(PathBuf),
 }
 
-/// The name from the root of a file that may not be there yet; none where its folder is not there.
-fn whole_name(path: &Path) -> Option<PathBuf> {
-    path.canonicalize().ok().or_else(|| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Some(folder.canonicalize().ok()?.join(path.file_name()?))
-    })
+impl Identity {
+    /// That of a file; none where its folder is not there, so that nothing can be written.
+    fn of(path: &Path) -> Option<Self> {
+        #[cfg(unix)]
+        if let Ok(found) = std::fs::metadata(path) {
+            use std::os::unix::fs::MetadataExt as _;
+            return Some(Self::Found(found.dev(), found.ino()));
+        }
+        let whole = path.canonicalize().ok().or_else(|| {
+            let folder =
+                path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            Some(folder.canonicalize().ok()?.join(path.file_name()?))
+        })?;
+        Some(Self::Named(whole))
+    }
 }
 
 /// Where something goes: to a file of that name, or to standard output as a file of some ending.
@@ -122,6 +119,8 @@ mod tests {
         std::fs::write(path("a"), "a").unwrap();
         std::fs::write(path("b"), "a").unwrap();
         std::fs::create_dir(path("sub")).unwrap();
+        let is_same_file =
+            |a: &Path, b: &Path| matches!((Identity::of(a), Identity::of(b)), (Some(a), Some(b)) if a == b);
         assert!(is_same_file(&path("a"), &path("sub/../a")) && !is_same_file(&path("a"), &path("b")));
         assert!(
             is_same_file(&path("new"), &path("sub/../new")) && !is_same_file(&path("new"), &path("newer"))
@@ -134,7 +133,9 @@ mod tests {
             assert!(is_same_file(&path("link"), &path("a")) && is_same_file(&path("hard"), &path("link")));
         }
         let (a, b, new) = (path("a"), path("b"), path("new"));
-        assert!(keep_apart(&[&a], &[&b, &new]).is_ok());
-        assert!(keep_apart(&[&a, &b], &[&new, &b]).is_err() && keep_apart(&[&a], &[&b, &b]).is_err());
+        let is_refused =
+            |inputs: &[&Path], outputs: &[&Path], force| keep_apart(inputs, outputs, force).is_err();
+        assert!(!is_refused(&[&a], &[&b, &new], true) && is_refused(&[&a], &[&b, &new], false));
+        assert!(is_refused(&[&a, &b], &[&new, &b], true) && is_refused(&[&a], &[&new, &new], true));
     }
 }

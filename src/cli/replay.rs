@@ -29,6 +29,9 @@ pub(super) struct ReplayArgs {
     /// Write the new picture
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
+    /// Replace a file that this program has not made
+    #[arg(long, requires = "output")]
+    force: bool,
     /// Fail (exit code 1) unless both pictures are the same byte for byte
     #[arg(long)]
     check: bool,
@@ -69,7 +72,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         (None, None) => return Err(unusable("it does not say of which volume".to_owned())),
     };
     if let Some(output) = &args.output {
-        keep_apart(&[&args.picture, &source], &[output])?;
+        keep_apart(&[&args.picture, &source], &[output], args.force)?;
     }
     let (volume, context) = args.load.open(&source)?;
     if stated.is_some_and(|of| !of.is_of(volume.content_id())) {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::outputs::{keep_apart, spare_others, warn_line};
+use super::outputs::{keep_apart, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
@@ -226,8 +226,7 @@ impl SceneArgs {
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
         let LookArgs { preset, session, .. } = &self.look;
         let inputs = [Some(self.file.as_path()), preset.as_deref(), session.as_deref()];
-        keep_apart(&inputs.into_iter().flatten().collect::<Vec<_>>(), outputs)?;
-        if self.force { Ok(()) } else { spare_others(outputs) }
+        keep_apart(&inputs.into_iter().flatten().collect::<Vec<_>>(), outputs, self.force)
     }
 
     /// Finds the look.

@@ -30,6 +30,10 @@ fn files_of_others_are_replaced_only_by_force() {
     assert_eq!(folder.read("p.png"), theirs);
     folder.succeed(&format!("{RENDER} -o p.png --force --report r.json"));
     assert_eq!(folder.json("r.json")["image_size"][0], 16);
+    folder.write("again.png", &theirs);
+    assert!(folder.fail("replay p.png -o again.png", 2).contains("--force"));
+    assert_eq!(folder.read("again.png"), theirs);
+    folder.succeed("replay p.png -o again.png --force");
     // Other files of a folder stay.
     folder.write("turn/notes.txt", "mine");
     folder.succeed("turntable builtin:sphere:16 --size 16x12 --frames 2 -o turn --force");
@@ -95,7 +99,13 @@ fn a_dash_is_standard_output() {
 
 /// A turn that is being written: so long that nobody waits for its end.
 fn long_turn(folder: &Folder) -> std::process::Child {
-    let child = Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_chiaroscuro"));
+    begin_turn(&mut command, folder)
+}
+
+/// The same with a command that ends in the program's name, if it has arguments.
+fn begin_turn(command: &mut Command, folder: &Folder) -> std::process::Child {
+    let child = command
         .args("turntable builtin:sphere:16 --size 640x480 --frames 3600 -o t.png".split_whitespace())
         .current_dir(folder.path(""))
         .stdin(Stdio::null())
@@ -116,12 +126,27 @@ fn long_turn(folder: &Folder) -> std::process::Child {
 #[test]
 fn what_is_half_written_goes_with_its_writer_or_with_the_next() {
     let folder = Folder::new();
-    for signal in ["INT", "TERM", "HUP"] {
-        let mut child = long_turn(&folder);
+    let send = |signal: &str, child: &std::process::Child| {
         let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status();
         assert!(sent.expect("kill is there").success());
-        assert_eq!(child.wait().expect("it ends").code(), Some(130), "{signal}");
+    };
+    // As shells have it: 128 and the number of the signal.
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        let mut child = long_turn(&folder);
+        send(signal, &child);
+        assert_eq!(child.wait().expect("it ends").code(), Some(code), "{signal}");
         assert_eq!(folder.names(), Vec::<String>::new(), "{signal}");
+    }
+    // What was started with a signal ignored (`nohup`) goes on where that is known.
+    #[cfg(target_os = "linux")]
+    {
+        let ignoring = ["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_chiaroscuro")];
+        let mut child = begin_turn(Command::new("sh").args(ignoring), &folder);
+        send("HUP", &child);
+        std::thread::sleep(Duration::from_millis(300));
+        assert!(child.try_wait().expect("it can be asked").is_none(), "it was not to end");
+        send("TERM", &child);
+        assert_eq!(child.wait().expect("it ends").code(), Some(143));
     }
     let mut child = long_turn(&folder);
     // One that is alive stays while another writes beside it.

@@ -26,14 +26,23 @@ const BY_THEMSELVES: [&str; 3] = ["OpenOptions", "DirBuilder", "tempfile"];
 
 /// The parts of a source text that change the disk, its tests apart.
 fn writers(source: &str) -> Vec<String> {
-    let program = source.split("\nmod tests {").next().unwrap_or_default();
-    let words = tokens(program);
+    let (before, tests) = source.split_once("\nmod tests {").unwrap_or((source, ""));
+    let after = tests.split_once("\n}\n").map_or("", |(_, after)| after);
+    let words = tokens(&[before, after].concat());
     let at = |index: Option<usize>| index.and_then(|index| words.get(index)).map_or("", String::as_str);
+    // In `use std::fs::{self, write};` all of the group is of `fs`.
+    let of_group = |index: usize| {
+        let open = words[..index].iter().rposition(|word| word == "{")?;
+        let is_list = words[open..index].iter().all(|word| word != ";" && word != "}");
+        (is_list && at(open.checked_sub(1)) == "::").then(|| at(open.checked_sub(2)))
+    };
     let is_writer = |index: usize, word: &str| {
-        let of = if at(index.checked_sub(1)) == "::" { at(index.checked_sub(2)) } else { "" };
+        let is_named = at(index.checked_sub(1)) == "::";
+        let of = if is_named { at(index.checked_sub(2)) } else { of_group(index).unwrap_or("") };
         BY_THEMSELVES.contains(&word)
             || of == "fs" && OF_FS.contains(&word)
             || of == "File" && OF_FILE.contains(&word)
+            || ["fs", "File"].contains(&word) && at(Some(index + 1)) == "as"
             // A name that was brought in could be used without its path.
             || of.is_empty() && ["remove_file", "create_dir_all", "hard_link"].contains(&word)
     };
@@ -69,6 +78,10 @@ fn writers_are_noticed() {
         "fn f() { std::fs::File::options().write(true) }",
         "use std::fs::OpenOptions;",
         "use std::fs::remove_file;",
+        "use std::fs::{self, write};",
+        "use std::{fs::{File, rename}, io};",
+        "use std::fs as disk;",
+        "#[cfg(test)]\nmod tests {\n    fn g() {}\n}\nfn f() { std::fs::write(a, b) }",
         "fn f() { tempfile::tempdir() }",
     ] {
         assert!(!writers(text).is_empty(), "{text}");
@@ -76,7 +89,8 @@ fn writers_are_noticed() {
     for text in [
         "fn f() { std::fs::read(a); File::open(b); stdout().write(c) }",
         "// std::fs::write\nfn f() { \"fs::write\" }",
-        "fn f() {}\n#[cfg(test)]\nmod tests { fn g() { std::fs::write(a, b) } }",
+        "fn f() {}\n#[cfg(test)]\nmod tests {\n    fn g() { std::fs::write(a, b) }\n}\nfn h() {}",
+        "use std::fs::{self, File}; fn f() { x.write(a) } struct A { write: u8 }",
     ] {
         assert!(writers(text).is_empty(), "{text}");
     }

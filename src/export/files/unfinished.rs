@@ -2,7 +2,7 @@
 //! that was killed.
 
 use std::fs::{File, TryLockError};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -40,6 +40,20 @@ impl Unfinished {
     /// A new one in a folder. Those that were abandoned there go.
     pub(super) fn begin(folder: &Path) -> std::io::Result<Self> {
         remove_abandoned(folder);
+        loop {
+            let file = Self::make(folder)?;
+            // Others lock for as long as they look whether a file is abandoned, so this waits for them. Windows keeps
+            // what is locked from other writers of this process, too.
+            let locked = cfg!(unix) && file.file.as_file().lock().is_ok();
+            // What was not locked yet when they looked is gone. Where there are no locks, its age tells.
+            if !locked || file.path().exists() {
+                return Ok(file);
+            }
+        }
+    }
+
+    /// A new one, not locked.
+    fn make(folder: &Path) -> std::io::Result<Self> {
         #[cfg_attr(not(unix), expect(unused_mut, reason = "modes are there on Unix alone"))]
         let mut builder = named();
         #[cfg(unix)]
@@ -49,8 +63,6 @@ impl Unfinished {
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let file = builder.tempfile_in(folder)?;
-        // Where there are no locks, its age tells.
-        file.as_file().try_lock().ok();
         UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).push(file.path().to_owned());
         Ok(Self { file })
     }
@@ -120,16 +132,18 @@ pub fn remove_abandoned(folder: &Path) {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         let is_one = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
-        if is_one && entry.file_type().is_ok_and(|kind| kind.is_file()) && is_abandoned(&entry.path()) {
-            std::fs::remove_file(entry.path()).ok();
+        if is_one && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            remove_if_abandoned(&entry.path());
         }
     }
 }
 
-/// Whether nobody writes to a file any more.
-fn is_abandoned(path: &Path) -> bool {
-    let Ok(file) = File::open(path) else { return false };
-    match file.try_lock() {
+/// Removes a file to which nobody writes any more.
+fn remove_if_abandoned(path: &Path) {
+    let Ok(file) = File::open(path) else { return };
+    let locked =
+        if cfg!(unix) { file.try_lock() } else { Err(TryLockError::Error(ErrorKind::Unsupported.into())) };
+    let is_abandoned = match locked {
         Ok(()) => true,
         Err(TryLockError::WouldBlock) => false,
         Err(TryLockError::Error(_)) => {
@@ -137,6 +151,10 @@ fn is_abandoned(path: &Path) -> bool {
                 file.metadata().and_then(|found| found.modified()).ok().and_then(|when| when.elapsed().ok());
             age.is_some_and(|age| age > ABANDONED_AFTER)
         }
+    };
+    if is_abandoned {
+        // While it is locked: whoever has just made it waits, and finds that it is gone.
+        std::fs::remove_file(path).ok();
     }
 }
 
@@ -158,7 +176,25 @@ mod tests {
         assert!(first.path().exists() && second.path().exists(), "both are alive");
         second.persist(&folder.path().join("done")).unwrap();
         assert!(UNFINISHED.lock().unwrap().contains(&first.path().to_owned()));
-        remove_unfinished();
-        assert!(!first.path().exists() && folder.path().join("done").exists());
+        let path = first.path().to_owned();
+        drop(first);
+        assert!(!path.exists() && folder.path().join("done").exists());
+    }
+
+    #[test]
+    fn nobody_takes_away_what_others_have_just_begun() {
+        let folder = tempfile::tempdir().unwrap();
+        let begin_many = || {
+            for _ in 0..200 {
+                let file = Unfinished::begin(folder.path()).unwrap();
+                assert!(file.path().exists());
+                file.persist(&folder.path().join("done")).unwrap();
+            }
+        };
+        std::thread::scope(|threads| {
+            for _ in 0..4 {
+                threads.spawn(begin_many);
+            }
+        });
     }
 }
