@@ -5,6 +5,6 @@
 
 mod kills;
 mod mutations;
+mod pictures;
 mod random;
-mod relations;
 mod samples;

@@ -1,0 +1,4 @@
+//! Relations between pictures of random scenes.
+
+mod relations;
+mod scenes;
