@@ -168,4 +168,6 @@ impl Memory {
 }
 
 #[cfg(test)]
+mod kills;
+#[cfg(test)]
 mod tests;

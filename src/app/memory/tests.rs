@@ -8,18 +8,18 @@ use super::*;
 use crate::data::ValueRange;
 use crate::model::Record;
 
-fn remember(folder: &Path) -> Memory {
+pub(super) fn remember(folder: &Path) -> Memory {
     Memory::new(Some(folder), &egui::Context::default())
 }
 
 /// A look that can be told from others.
-fn look(gain: f64) -> Settings {
+pub(super) fn look(gain: f64) -> Settings {
     let mut settings = Settings::default();
     settings.shadows.gain = gain;
     settings
 }
 
-fn gain_of(path: &Path) -> f64 {
+pub(super) fn gain_of(path: &Path) -> f64 {
     let record = Record::read(&fs::read_to_string(path).unwrap()).unwrap();
     record.apply(&Settings::default(), ValueRange::UNIT).unwrap().0.shadows.gain
 }

@@ -129,7 +129,9 @@ fn all_relations(seed: u64, studio: &mut Studio) {
         let apart = steps(&studio.draw(&placed(dims, Samples::U8(voxels), world), &settings), &first);
         assert!(apart <= 2, "seed {seed}, axes {order:?}: {apart} steps");
     }
-    for axis in 0..3 {
+    // The pixels of a light go through the middle voxel. Of an even number there is none, and one of the two is taken,
+    // which is another one when they are turned.
+    for axis in (0..3).filter(|&axis| dims[axis] % 2 == 1) {
         let (voxels, world) = reversed(dims, &voxels, axis);
         let apart = steps(&studio.draw(&placed(dims, Samples::U8(voxels), world), &settings), &first);
         assert!(apart <= 2, "seed {seed}, axis {axis} reversed: {apart} steps");

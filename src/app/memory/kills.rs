@@ -1,0 +1,114 @@
+//! Processes that are killed while a window's files are written: what was said to be kept is kept.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::tests::{gain_of, look, remember};
+use crate::app::shell::session::Session;
+use crate::model::Record;
+
+/// Where the process writes that is to be killed; it is this test itself, once more.
+const FOLDER: &str = "CHIAROSCURO_TEST_KILLED_IN";
+
+/// Whatever a window writes, again and again: its look, what was opened, a session and a preset. A number goes to
+/// standard output when all that holds it is written.
+fn write_until_killed(folder: &Path) -> ! {
+    let mut memory = remember(folder);
+    let mut session = None;
+    let volume = Path::new("builtin:chair");
+    let words = memory.last_words().unwrap();
+    for gain in 2.. {
+        let settings = look(f64::from(gain) / 1000.0);
+        memory.opened(&format!("/{gain}.nrrd"));
+        memory.keep(&settings, volume, 7);
+        words.write();
+        for name in ["session.json", "preset.json"] {
+            Session::save(&mut session, &folder.join(name), &settings, Some((volume, 7))).unwrap();
+        }
+        // Unlike `println`, this is not kept back by the test.
+        writeln!(std::io::stdout(), "kept {gain}").unwrap();
+    }
+    unreachable!("it is killed before it runs out of numbers")
+}
+
+/// Starts a writer and kills it when it has written for a while; the last number that it said.
+fn kill_one(folder: &Path, after: Duration) -> u32 {
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "--nocapture"])
+        .arg(concat!(module_path!(), "::killed_windows_lose_nothing").split_once("::").unwrap().1)
+        .env(FOLDER, folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(child.stdout.take().unwrap());
+    let (mut line, mut last) = (String::new(), 0);
+    let number = |line: &str| line.trim().strip_prefix("kept ").and_then(|number| number.parse().ok());
+    while last == 0 {
+        line.clear();
+        assert!(said.read_line(&mut line).unwrap() > 0, "it has ended before anything was kept");
+        last = number(&line).unwrap_or(0);
+    }
+    let begin = Instant::now();
+    std::thread::sleep(after.saturating_sub(begin.elapsed()));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let mut rest = String::new();
+    said.read_to_string(&mut rest).unwrap();
+    // The last line may be cut.
+    let whole = rest.rsplit_once('\n').map_or("", |(whole, _)| whole);
+    whole.lines().filter_map(number).next_back().unwrap_or(last)
+}
+
+fn kills(count: u32) {
+    let folder = tempfile::tempdir().unwrap();
+    for at in 0..count {
+        // Somewhere in what takes a few milliseconds.
+        let kept = f64::from(kill_one(folder.path(), Duration::from_micros(u64::from(at) * 7919 % 20_000)));
+        let is_kept = |path: &Path| {
+            let found = gain_of(path) * 1000.0;
+            // What was being written may be there already.
+            assert!((-0.5..1.5).contains(&(found - kept)), "{}: {found} not {kept}", path.display());
+        };
+        is_kept(&folder.path().join("session.json"));
+        is_kept(&folder.path().join("preset.json"));
+        // There is one from the second save on.
+        let backups: &[_] = if at > 0 || kept > 2.0 { &["session.json.bak", "preset.json.bak"] } else { &[] };
+        for backup in backups {
+            let text = fs::read_to_string(folder.path().join(backup)).unwrap();
+            assert!(Record::read(&text).unwrap().schema().is_some());
+        }
+        let mut memory = remember(folder.path());
+        assert_eq!(memory.take_notices(), Vec::<String>::new(), "nothing is damaged");
+        let run = memory.earlier().first().expect("it is offered");
+        assert!(run.crashed);
+        is_kept(&run.look);
+        let opened = format!("/{kept}.nrrd");
+        assert!(memory.recent().contains(&opened), "{opened} is not in {:?}", memory.recent());
+        memory.settle();
+        drop(memory);
+        crate::export::remove_abandoned(folder.path());
+        let names: Vec<_> =
+            fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        let left = names.iter().filter(|name| name.to_string_lossy().contains(".part")).count();
+        assert_eq!(left, 0, "{names:?}");
+    }
+    println!("a window's files: {count} kills, 0 broken or lost");
+}
+
+#[test]
+fn killed_windows_lose_nothing() {
+    match std::env::var_os(FOLDER) {
+        Some(folder) => write_until_killed(Path::new(&folder)),
+        None => kills(8),
+    }
+}
+
+#[test]
+#[ignore = "five hundred kills: minutes"]
+fn windows_that_are_killed_again_and_again_lose_nothing() {
+    kills(500);
+}
