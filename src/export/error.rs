@@ -55,6 +55,16 @@ impl ExportError {
     pub(super) fn writing(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Write { path: path.to_owned(), source }
     }
+
+    /// Says which file the disk refused, where an encoder only passes on that it did.
+    pub(super) fn about(path: &Path) -> impl Fn(Self) -> Self {
+        move |err| match err {
+            Self::Encode(png::EncodingError::IoError(source))
+            | Self::Exr(exr::error::Error::Io(source))
+            | Self::Gif(gif::EncodingError::Io(source)) => Self::Write { path: path.to_owned(), source },
+            other => other,
+        }
+    }
 }
 
 /// Why a picture could not be read.

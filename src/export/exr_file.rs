@@ -79,7 +79,7 @@ pub(super) fn write<E: From<ExportError>>(
     });
     match (refused, written) {
         (Some(err), _) => return Err(err),
-        (None, written) => written.map_err(ExportError::Exr)?,
+        (None, written) => written.map_err(|err| ExportError::about(path)(ExportError::Exr(err)))?,
     }
     sort_attributes(file.as_file()).map_err(ExportError::writing(path))?;
     Ok(place(file, path)?)

@@ -70,17 +70,18 @@ pub(super) fn write<E: From<ExportError>>(
     rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
 ) -> Result<(), E> {
     let failed = ExportError::writing(path);
+    let not_encoded = |err| ExportError::about(path)(ExportError::Encode(err));
     let file = temporary_beside(path)?;
     let mut out = BufWriter::new(file.reopen().map_err(&failed)?);
     let mut encoder = png::Encoder::new(&mut out, shot.size[0], shot.size[1]);
     encoder.set_depth(if shot.depth == Depth::Eight { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
     encoder.set_color(if shot.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
-    mark(&mut encoder).map_err(ExportError::Encode)?;
+    mark(&mut encoder).map_err(not_encoded)?;
     if let Some(record) = record {
-        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned()).map_err(ExportError::Encode)?;
+        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned()).map_err(not_encoded)?;
     }
-    let mut writer = encoder.write_header().map_err(ExportError::Encode)?;
-    let mut stream = writer.stream_writer_with_size(1 << 20).map_err(ExportError::Encode)?;
+    let mut writer = encoder.write_header().map_err(not_encoded)?;
+    let mut stream = writer.stream_writer_with_size(1 << 20).map_err(not_encoded)?;
     while let Some(rows) = rows()? {
         let bytes = match rows {
             Rows::Bytes(shown) if shot.transparent => shown,
@@ -89,8 +90,8 @@ pub(super) fn write<E: From<ExportError>>(
         };
         stream.write_all(&bytes).map_err(&failed)?;
     }
-    stream.finish().map_err(ExportError::Encode)?;
-    writer.finish().map_err(ExportError::Encode)?;
+    stream.finish().map_err(not_encoded)?;
+    writer.finish().map_err(not_encoded)?;
     out.flush().map_err(&failed)?;
     Ok(place(file, path)?)
 }

@@ -4,7 +4,9 @@
 #![expect(clippy::print_stdout, reason = "what was tried, and with which seeds, for whoever reads the log")]
 
 mod kills;
+mod many_volumes;
 mod mutations;
 mod pictures;
 mod random;
+mod refusing_disks;
 mod samples;

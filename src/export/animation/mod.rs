@@ -7,7 +7,7 @@ mod mp4;
 
 pub use folder::frame_names;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::ExportError;
 
@@ -69,7 +69,10 @@ trait AnimationEncoder: Send {
 
 /// A file of pictures of one size that is being written. It takes its name when it is complete, and leaves
 /// nothing when it is not; but pictures in a folder are complete one by one.
-pub struct Animation(Box<dyn AnimationEncoder>);
+pub struct Animation {
+    encoder: Box<dyn AnimationEncoder>,
+    path: PathBuf,
+}
 
 impl std::fmt::Debug for Animation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -89,12 +92,8 @@ impl Animation {
             let what = "turns are written as .png, .gif, .mp4 or into a folder";
             return Err(ExportError::Unfit { what, path: path.to_owned() });
         }
-        Ok(Self(match AnimationFormat::of_path(path) {
-            AnimationFormat::Apng => Box::new(apng::Apng::create(path, reel)?),
-            AnimationFormat::Gif => Box::new(gif::Gif::create(path, reel)?),
-            AnimationFormat::Mp4 => Box::new(mp4::Mp4::create(path, reel, "ffmpeg".as_ref())?),
-            AnimationFormat::Folder => Box::new(folder::Folder::create(path, reel)?),
-        }))
+        let encoder = Self::encoder(path, reel).map_err(ExportError::about(path))?;
+        Ok(Self { encoder, path: path.to_owned() })
     }
 
     /// Adds a picture: sRGB bytes, RGBA, row by row from the top left; and how it was made.
@@ -102,7 +101,7 @@ impl Animation {
     /// # Errors
     /// When the disk refuses, or the picture is one too many.
     pub fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
-        self.0.add(shown, record)
+        self.encoder.add(shown, record).map_err(ExportError::about(&self.path))
     }
 
     /// Completes the file.
@@ -110,7 +109,17 @@ impl Animation {
     /// # Errors
     /// When the disk refuses, or pictures are missing; an older file of that name stays.
     pub fn finish(self) -> Result<(), ExportError> {
-        self.0.finish()
+        self.encoder.finish().map_err(ExportError::about(&self.path))
+    }
+
+    /// What writes the kind of file that a name says.
+    fn encoder(path: &Path, reel: &AnimationSpec) -> Result<Box<dyn AnimationEncoder>, ExportError> {
+        Ok(match AnimationFormat::of_path(path) {
+            AnimationFormat::Apng => Box::new(apng::Apng::create(path, reel)?),
+            AnimationFormat::Gif => Box::new(gif::Gif::create(path, reel)?),
+            AnimationFormat::Mp4 => Box::new(mp4::Mp4::create(path, reel, "ffmpeg".as_ref())?),
+            AnimationFormat::Folder => Box::new(folder::Folder::create(path, reel)?),
+        })
     }
 }
 

@@ -153,7 +153,9 @@ fn all_relations(seed: u64, studio: &mut Studio) {
     let options = RenderOptions { part: Some(window), ..RenderOptions::default() };
     let part = studio.draw_as(&bytes, &settings, window.size, &options);
     let row = |y: usize| &first.shown[(4 + y) * 128 + 32..][..64];
-    assert_eq!(part.shown, (0..12).flat_map(row).copied().collect::<Vec<_>>(), "seed {seed}");
+    let cut = Picture { shown: (0..12).flat_map(row).copied().collect(), ..part.clone() };
+    // A ray that is counted from another pixel is rounded otherwise.
+    assert!(steps(&part, &cut) <= 1, "seed {seed}");
     let large = studio.draw_as(&bytes, &settings, SIZE.map(|edge| edge * 2), &RenderOptions::default());
     let apart = mean_steps(&halved(&large), &first.shown);
     assert!(apart <= 4.0, "seed {seed}: {apart} steps between sizes");
