@@ -12,9 +12,10 @@ use super::scenes::{SIZE, Scene, Studio, dataset, distance, largest, placed, sce
 /// 2⁻¹¹ exact, and a picture looks up a few.
 const LINEAR: f32 = 2e-3;
 
-/// How far pictures of the same voxels in another order may be apart, in 255ths. Rounding may give a ray from a voxel
-/// to a light one step more or less: once in 200 scenes that made 3, otherwise it was 1.
-const TURNED: u8 = 4;
+/// How far pictures of the same voxels in another order may be apart, in 255ths: on the mean, and anywhere. Sums are
+/// rounded in another order; in noise as coarse as a voxel, where that decides on which side of a step something lies, a
+/// pixel of 768 is seen to change by up to 6, once in 100 scenes.
+const TURNED: (f64, u8) = (0.1, 8);
 
 /// Voxels with other axes first, and where they lie then: where they lay.
 fn permuted(dims: [usize; 3], voxels: &[u8], order: [usize; 3]) -> ([usize; 3], Vec<u8>, DAffine3) {
@@ -55,6 +56,11 @@ fn steps(left: &Picture, right: &Picture) -> u8 {
 fn mean_steps(left: &[u8], right: &[u8]) -> f64 {
     assert_eq!(left.len(), right.len());
     left.iter().zip(right).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / left.len() as f64
+}
+
+fn assert_turned(turned: &Picture, first: &Picture, what: &str) {
+    let (mean, most) = (mean_steps(&turned.shown, &first.shown), steps(turned, first));
+    assert!(mean <= TURNED.0 && most <= TURNED.1, "{what}: {mean} on the mean, {most} at most");
 }
 
 /// A picture with half as many columns and rows: means of four.
@@ -130,15 +136,15 @@ fn all_relations(seed: u64, studio: &mut Studio) {
     // P7: the same world with its voxels in another order in memory.
     for order in [[1, 2, 0], [2, 0, 1]] {
         let (dims, voxels, world) = permuted(dims, &voxels, order);
-        let apart = steps(&studio.draw(&placed(dims, Samples::U8(voxels), world), &settings), &first);
-        assert!(apart <= TURNED, "seed {seed}, axes {order:?}: {apart} steps");
+        let turned = studio.draw(&placed(dims, Samples::U8(voxels), world), &settings);
+        assert_turned(&turned, &first, &format!("seed {seed}, axes {order:?}"));
     }
     // The pixels of a light go through the middle voxel. Of an even number there is none, and one of the two is taken,
     // which is another one when they are turned.
     for axis in (0..3).filter(|&axis| dims[axis] % 2 == 1) {
         let (voxels, world) = reversed(dims, &voxels, axis);
-        let apart = steps(&studio.draw(&placed(dims, Samples::U8(voxels), world), &settings), &first);
-        assert!(apart <= TURNED, "seed {seed}, axis {axis} reversed: {apart} steps");
+        let turned = studio.draw(&placed(dims, Samples::U8(voxels), world), &settings);
+        assert_turned(&turned, &first, &format!("seed {seed}, axis {axis} reversed"));
     }
 
     // P5: what keeps away more light makes nothing brighter.
