@@ -34,7 +34,7 @@ pub enum GpuError {
         left_mebibytes: u64,
     },
     /// A size is beyond what the adapter can do.
-    #[error("{what} is {size} along an axis, this adapter allows {limit}; {help}")]
+    #[error("{what} needs {size}, this adapter allows {limit}; {help}")]
     OverLimit {
         /// What is too large.
         what: String,

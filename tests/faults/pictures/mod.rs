@@ -2,3 +2,4 @@
 
 mod relations;
 mod scenes;
+mod small_adapters;

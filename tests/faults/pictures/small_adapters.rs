@@ -1,0 +1,114 @@
+//! Adapters that allow less than ours: a volume is shown whole, or with fewer voxels, or refused in words.
+
+use chiaroscuro::data::load::{LoadControl, LoadOptions};
+use chiaroscuro::data::{Dataset, open};
+use chiaroscuro::gpu::{Context, GpuError, RenderOptions, Renderer, device_descriptor, fitted};
+use chiaroscuro::model::{Engine, auto};
+
+const SIZE: [u32; 2] = [96, 72];
+
+/// How far a picture of as many voxels may be from that of our adapter, in 255ths on the mean.
+const SAME: f64 = 2.0;
+
+/// Longest axis of a volume, largest buffer and largest binding, in MiB. WebGPU promises 2048 texels, 256 MiB and
+/// 128 MiB; less than that is what a driver says that lacks memory.
+const LIMITS: [(u32, u64, u64); 8] = [
+    (2048, 256, 128),
+    (2048, 256, 1),
+    (2048, 16, 128),
+    (2048, 1, 1),
+    (256, 256, 128),
+    (256, 16, 1),
+    (64, 256, 128),
+    (64, 1, 1),
+];
+
+/// Our adapter, opened with lower limits.
+fn context((longest, buffer, binding): (u32, u64, u64)) -> Context {
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    let instance = wgpu::Instance::new(descriptor);
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let ours = Context::headless().expect("an adapter").info.name;
+    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == ours).expect("it is there");
+    let mut descriptor = device_descriptor(&adapter);
+    let limits = &mut descriptor.required_limits;
+    limits.max_texture_dimension_3d = limits.max_texture_dimension_3d.min(longest);
+    limits.max_buffer_size = limits.max_buffer_size.min(buffer << 20);
+    limits.max_storage_buffer_binding_size = limits.max_storage_buffer_binding_size.min(binding << 20);
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("less than it can");
+    Context::new(&adapter, device, queue).expect("the same features")
+}
+
+fn mean_steps(left: &[u8], right: &[u8]) -> f64 {
+    let apart: u64 = left.iter().zip(right).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    apart as f64 / left.len() as f64
+}
+
+/// Draws volumes by both engines with such limits.
+fn small_adapters(names: &[&str], limits: &[(u32, u64, u64)]) {
+    let full = Context::headless().expect("an adapter");
+    let mut at_home = Renderer::new(&full).expect("a renderer");
+    let contexts = limits.iter().map(|&limits| (limits, context(limits))).collect::<Vec<_>>();
+    let (mut shown, mut reduced, mut refused) = (0, 0, 0);
+    for name in names {
+        let volume = || open(name, &LoadOptions::default(), &LoadControl::new()).expect("a volume");
+        let dataset = Dataset::new(volume());
+        for engine in [Engine::Gather, Engine::Scatter] {
+            let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
+            settings.sampling.engine = engine;
+            // What is refused is refused before it is worked on; what is not takes the time that it takes.
+            if dataset.volume().dims()[0] > 200 && engine == Engine::Scatter {
+                continue;
+            }
+            let draw = |renderer: &mut Renderer, dataset: &Dataset| {
+                renderer.render_shown(dataset, &settings, SIZE, &RenderOptions::default())
+            };
+            let expected = draw(&mut at_home, &dataset).expect("a picture");
+            for (limits, context) in &contexts {
+                let what = format!("{name}, {engine:?}, {limits:?}");
+                let result = fitted(context, volume()).and_then(|fitting| {
+                    let is_whole = fitting.dims() == dataset.volume().dims();
+                    let mut renderer = Renderer::new(context)?;
+                    Ok((draw(&mut renderer, &Dataset::new(fitting))?, is_whole))
+                });
+                match result {
+                    Ok((picture, true)) => {
+                        shown += 1;
+                        let apart = mean_steps(&picture, &expected);
+                        assert!(apart <= SAME, "{what}: {apart} steps");
+                    }
+                    Ok((picture, false)) => {
+                        reduced += 1;
+                        let is_empty = picture.chunks(4).all(|pixel| pixel == &picture[..4]);
+                        assert!(!is_empty, "{what}: nothing is to be seen");
+                    }
+                    Err(err @ (GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. })) => {
+                        refused += 1;
+                        println!("{what}: {err}");
+                    }
+                    Err(other) => panic!("{what}: {other}"),
+                }
+                context.check().expect("nothing is complained about later");
+            }
+        }
+    }
+    println!("small adapters: {shown} shown, {reduced} with fewer voxels, {refused} refused");
+    assert!(shown > 0 && refused > 0);
+}
+
+#[test]
+fn volumes_are_shown_or_refused_by_a_small_adapter() {
+    small_adapters(&["builtin:chair:20", "builtin:sphere:100"], &LIMITS[7..]);
+}
+
+#[test]
+#[ignore = "eight adapters: minutes"]
+fn volumes_are_shown_or_refused_by_small_adapters() {
+    let names = ["builtin:chair:20", "builtin:chair:56", "builtin:sphere:100", "builtin:chair:300"];
+    small_adapters(&names, &LIMITS);
+}
+
+#[test]
+fn the_mean_notices_a_difference() {
+    assert!(mean_steps(&[0; 8], &[3; 8]) > SAME && mean_steps(&[7; 8], &[7; 8]) == 0.0);
+}
