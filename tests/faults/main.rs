@@ -3,6 +3,7 @@
 
 #![expect(clippy::print_stdout, reason = "what was tried, and with which seeds, for whoever reads the log")]
 
+mod changing_files;
 mod hostile;
 mod kills;
 mod many_volumes;

@@ -3,6 +3,7 @@
 use std::fs::{self, File, FileType};
 use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
+use std::time::SystemTime;
 
 use super::{LoadControl, LoadError};
 use crate::data::attempt::{Attempt, plain};
@@ -91,6 +92,44 @@ impl Input {
             skipped += used as u64;
         }
         Ok(Some(skipped))
+    }
+}
+
+/// Remembers a file as it was when it was opened: what is read while somebody writes it would be neither what was there
+/// nor what will be.
+#[derive(Debug)]
+pub(crate) struct Witness {
+    file: File,
+    before: (u64, Option<SystemTime>),
+}
+
+/// Length and, where the system knows it, the time of the last write.
+fn state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
+    file.metadata().map(|metadata| (metadata.len(), metadata.modified().ok()))
+}
+
+impl Witness {
+    /// Looks at an input that nothing has been read from.
+    pub(crate) fn of(attempt: Attempt<'_>, input: &Input) -> Result<Self, LoadError> {
+        let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((state(&file)?, file)));
+        seen.map(|(before, file)| Self { file, before }).map_err(|error| attempt.io(error))
+    }
+
+    /// What was read, unless the file has changed meanwhile.
+    ///
+    /// # Errors
+    /// `Io` when it has, whatever reading it led to, unless that was given up.
+    pub(crate) fn vouch<T>(&self, attempt: Attempt<'_>, read: Result<T, LoadError>) -> Result<T, LoadError> {
+        if matches!(read, Err(LoadError::Cancelled)) {
+            return read;
+        }
+        if state(&self.file).map_err(|error| attempt.io(error))? == self.before {
+            return read;
+        }
+        Err(attempt.not_a_file(
+            "the file has changed while it was being read",
+            "open it again when whatever writes it has finished",
+        ))
     }
 }
 

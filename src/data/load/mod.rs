@@ -22,7 +22,7 @@ use super::Volume;
 use super::attempt::Attempt;
 pub(crate) use super::attempt::memory_budget_bytes;
 pub use super::attempt::{Explanation, LoadControl, LoadError, LoadErrorKind};
-use input::Input;
+use input::{Input, Witness};
 
 /// The order of the bytes of one voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -64,8 +64,9 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
     control.check()?;
     let attempt = Attempt { what: "open the volume", path };
     let mut input = Input::open(attempt)?;
+    let witness = Witness::of(attempt, &input)?;
     let magic: [u8; 8] = input.magic().map_err(|error| attempt.io(error))?;
-    if nrrd::is_nrrd(&magic) || has_ending(path, ".nrrd") || has_ending(path, ".nhdr") {
+    let loaded = if nrrd::is_nrrd(&magic) || has_ending(path, ".nrrd") || has_ending(path, ".nhdr") {
         nrrd::load(path, input, options, control)
     } else if has_ending(path, ".raw") || has_ending(path, ".raw.gz") || options.raw.dims.is_some() {
         raw::load(path, input, &magic, options, control)
@@ -75,7 +76,8 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
             "its format is not one that is read: .nrrd, .nhdr, .raw or .raw.gz",
             "convert it to NRRD, or describe its voxels with --dims and --type",
         ))
-    }
+    };
+    witness.vouch(attempt, loaded)
 }
 
 /// Whether the file name ends in `ending` (lower case), in any case.

@@ -13,7 +13,7 @@ mod tests;
 
 use std::path::Path;
 
-use super::input::{Input, stem};
+use super::input::{Input, Witness, stem};
 use super::samples::{Layout, read_binary, read_gzip, read_text};
 use super::{Endian, LoadControl, LoadError, LoadOptions};
 use crate::data::attempt::Extent;
@@ -54,7 +54,9 @@ pub(super) fn load(
         Some(name) => {
             let data_path = detached::resolve(attempt, name)?;
             let attempt = Attempt { what: "read the NRRD volume's data file", path: &data_path };
-            read_data(attempt, Input::open(attempt)?, 0, &storage, &layout, control)?
+            let input = Input::open(attempt)?;
+            let witness = Witness::of(attempt, &input)?;
+            witness.vouch(attempt, read_data(attempt, input, 0, &storage, &layout, control))?
         }
     };
     let name = header.get("content").filter(|content| !content.is_empty());

@@ -1,0 +1,112 @@
+//! Volumes that somebody cuts, overwrites, replaces or removes while they are read.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{Seek as _, SeekFrom, Write as _};
+use std::path::Path;
+use std::time::Instant;
+
+use chiaroscuro::data::load::{LoadControl, LoadErrorKind, LoadOptions};
+use chiaroscuro::data::open;
+
+use crate::random::Random;
+
+/// 32 MiB: long enough to be met in the middle.
+const EDGE: usize = 256;
+
+/// The data of a volume of one value.
+fn data(value: u8) -> Vec<u8> {
+    vec![value; EDGE * EDGE * EDGE * 2]
+}
+
+/// What may happen to a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Change {
+    Cut,
+    Overwritten,
+    Replaced,
+    Removed,
+}
+
+const CHANGES: [Change; 4] = [Change::Cut, Change::Overwritten, Change::Replaced, Change::Removed];
+
+impl Change {
+    fn happen(self, path: &Path, random: &mut Random, other: &[u8]) {
+        match self {
+            Self::Cut => {
+                let file = OpenOptions::new().write(true).open(path).expect("it is there");
+                file.set_len(random.below(other.len()) as u64).expect("it can be cut");
+            }
+            Self::Overwritten => {
+                let mut file = OpenOptions::new().write(true).open(path).expect("it is there");
+                // From the end, so that a reader must meet it.
+                file.seek(SeekFrom::Start(other.len() as u64 / 2)).expect("it is long");
+                file.write_all(&other[other.len() / 2..]).expect("room");
+            }
+            Self::Replaced => {
+                let new = path.with_extension("new");
+                fs::write(&new, other).expect("room");
+                fs::rename(&new, path).expect("it can be replaced");
+            }
+            Self::Removed => fs::remove_file(path).expect("it is there"),
+        }
+    }
+}
+
+/// Changes so many files, each at a time of chance of its reading.
+fn change(count: usize) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let name = format!("v_{EDGE}x{EDGE}x{EDGE}_uint16");
+    let paths = [folder.path().join(format!("{name}.raw")), folder.path().join("apart.nhdr")];
+    let header = format!(
+        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: {EDGE} {EDGE} {EDGE}\nencoding: raw\nendian: little\ndata file: {name}.raw\n\n"
+    );
+    fs::write(&paths[1], header).expect("room");
+    let contents = [data(3), data(200)];
+    let load = |path: &Path| open(path, &LoadOptions::default(), &LoadControl::new());
+    fs::write(&paths[0], &contents[0]).expect("room");
+    let begin = Instant::now();
+    let old = load(&paths[0]).expect("it is valid").content_id();
+    let usual = begin.elapsed();
+    fs::write(&paths[0], &contents[1]).expect("room");
+    let new = load(&paths[0]).expect("it is valid").content_id();
+    let mut random = Random::new(count as u64);
+    let mut refused = 0;
+    for at in 0..count {
+        let (path, change) = (&paths[at % 2], CHANGES[at / 2 % CHANGES.len()]);
+        let mut file = File::create(&paths[0]).expect("room");
+        file.write_all(&contents[0]).expect("room");
+        drop(file);
+        let after = usual.mul_f64(random.below(1000) as f64 / 1000.0);
+        let result = std::thread::scope(|threads| {
+            let loader = threads.spawn(|| load(path));
+            std::thread::sleep(after);
+            change.happen(&paths[0], &mut random, &contents[1]);
+            loader.join().expect("no panic")
+        });
+        match result {
+            // As a whole what was there, or what is there now.
+            Ok(volume) => {
+                let id = volume.content_id();
+                assert!(id == old || (id == new && change == Change::Replaced), "{change:?} mixes");
+            }
+            Err(err) => {
+                refused += 1;
+                let expected = [LoadErrorKind::Io, LoadErrorKind::BadInput];
+                assert!(expected.contains(&err.kind()), "{change:?}: {err}");
+            }
+        }
+    }
+    println!("{count} files changed while they were read, {refused} refused, none mixed");
+    assert!(refused > 0);
+}
+
+#[test]
+fn files_that_change_are_refused_or_read_as_they_were() {
+    change(16);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn files_that_change_at_any_time_are_refused_or_read_as_they_were() {
+    change(160);
+}
