@@ -67,7 +67,7 @@ fn refused_in_the_middle(shares: &[f64]) {
             let ended = program(folder.path(), &mut shell, args, &file);
             assert_refused(&ended, &format!("{args} with {blocks} KiB"), &file);
             assert_eq!(std::fs::read(&file).expect("it is there"), before, "{args}");
-            assert_eq!(names(folder.path()), [file.clone()], "{args}");
+            assert_eq!(names(folder.path()), std::slice::from_ref(&file), "{args}");
         }
     }
 }

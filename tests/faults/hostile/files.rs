@@ -74,8 +74,9 @@ fn names(folder: &Path, forbidden: &Path) -> Vec<String> {
 /// Bytes that are small, and large when they are unpacked.
 fn bomb(mebibytes: usize) -> Vec<u8> {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    let zeros = vec![0; 1 << 20];
     for _ in 0..mebibytes {
-        encoder.write_all(&[0; 1 << 20]).expect("it is in memory");
+        encoder.write_all(&zeros).expect("it is in memory");
     }
     encoder.finish().expect("it is in memory")
 }
@@ -162,7 +163,7 @@ impl Maker<'_> {
         self.header(&format!("{zipped}\nsizes: 1024 1024 1"), &valid[..valid.len() / 2]);
         self.header(&format!("{zipped}\nsizes: 1024 1024 1"), b"\x1f\x8b\x08nothing");
         self.add("empty.nrrd", b"", "info @");
-        self.add("endless.nrrd", &[b'N'; 1 << 20], "info @");
+        self.add("endless.nrrd", &vec![b'N'; 1 << 20], "info @");
         self.add("binary.nrrd", &[&b"NRRD0004\n"[..], &[0xff; 4096]].concat(), "info @");
     }
 
