@@ -2,6 +2,7 @@
 //! or take memory without end.
 
 use std::panic::catch_unwind;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::random::Random;
@@ -48,6 +49,15 @@ fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     changed
 }
 
+/// Reads a file, which must neither panic nor take long. Whether it was accepted, and how long it took.
+fn tried(path: &Path, read: fn(&Path) -> bool, what: &str) -> (bool, Duration) {
+    let begin = Instant::now();
+    let result = catch_unwind(|| read(path));
+    let took = begin.elapsed();
+    assert!(took < PROMPT, "{what} takes {took:?}");
+    (result.unwrap_or_else(|_| panic!("{what} panics")), took)
+}
+
 /// Tries so many mutations of each kind.
 fn mutations(of_each: u64) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -56,12 +66,9 @@ fn mutations(of_each: u64) {
         for seed in 0..of_each {
             let path = folder.path().join(&name);
             std::fs::write(&path, mutated(&bytes, &mut Random::new(seed))).expect("room");
-            let begin = Instant::now();
-            let result = catch_unwind(|| read(&path));
-            accepted +=
-                u64::from(*result.as_ref().unwrap_or_else(|_| panic!("{name} panics with seed {seed}")));
-            slowest = slowest.max(begin.elapsed());
-            assert!(slowest < PROMPT, "{name} with seed {seed} takes {slowest:?}");
+            let (is_accepted, took) = tried(&path, read, &format!("{name} with seed {seed}"));
+            accepted += u64::from(is_accepted);
+            slowest = slowest.max(took);
         }
         println!("{name}: seeds 0 … {}, {accepted} accepted, slowest {slowest:?}", of_each - 1);
         assert!(accepted < of_each, "{name}: nothing is ever refused");
@@ -77,4 +84,23 @@ fn damaged_files_are_refused_or_read() {
 #[ignore = "a thousand of each kind: minutes"]
 fn a_thousand_damaged_files_of_each_kind() {
     mutations(1000);
+}
+
+/// `found/READER/` keeps what `script/fuzz` has found and, for each reader, an input that got far into it.
+#[test]
+fn what_was_found_is_mended() {
+    let found = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/found");
+    let folder = tempfile::tempdir().expect("a folder");
+    for Sample { name, read, .. } in samples(folder.path()) {
+        let inputs = std::fs::read_dir(found.join(&name)).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let path = folder.path().join(&name);
+        let mut count = 0;
+        for input in inputs {
+            let input = input.expect("it is there").path();
+            std::fs::copy(&input, &path).expect("room");
+            tried(&path, read, &input.display().to_string());
+            count += 1;
+        }
+        assert!(count > 0, "{name}: nothing is kept");
+    }
 }

@@ -168,6 +168,4 @@ impl Memory {
 }
 
 #[cfg(test)]
-mod kills;
-#[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::tests::{gain_of, look, remember};
+use super::{gain_of, look, remember};
 use crate::app::shell::session::Session;
 use crate::model::Record;
 

@@ -4,6 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+mod kills;
+
 use super::*;
 use crate::data::ValueRange;
 use crate::model::Record;
