@@ -8,10 +8,10 @@ pub(super) mod light_build;
 pub(super) mod light_cache;
 mod loaded;
 mod plan;
-#[cfg(test)]
-mod refusals;
 pub(super) mod renderer;
 pub(super) mod report;
 pub(super) mod step;
 mod targets;
+#[cfg(test)]
+mod tests;
 pub(super) mod warm_up;

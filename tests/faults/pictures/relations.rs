@@ -53,7 +53,7 @@ fn steps(left: &Picture, right: &Picture) -> u8 {
 }
 
 /// The mean difference, in 255ths.
-fn mean_steps(left: &[u8], right: &[u8]) -> f64 {
+pub(super) fn mean_steps(left: &[u8], right: &[u8]) -> f64 {
     assert_eq!(left.len(), right.len());
     left.iter().zip(right).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / left.len() as f64
 }

@@ -5,6 +5,8 @@ use chiaroscuro::data::{Dataset, open};
 use chiaroscuro::gpu::{Context, GpuError, RenderOptions, Renderer, device_descriptor, fitted};
 use chiaroscuro::model::{Engine, auto};
 
+use super::relations::mean_steps;
+
 const SIZE: [u32; 2] = [96, 72];
 
 /// How far a picture of as many voxels may be from that of our adapter, in 255ths on the mean.
@@ -37,11 +39,6 @@ fn context((longest, buffer, binding): (u32, u64, u64)) -> Context {
     limits.max_storage_buffer_binding_size = limits.max_storage_buffer_binding_size.min(binding << 20);
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("less than it can");
     Context::new(&adapter, device, queue).expect("the same features")
-}
-
-fn mean_steps(left: &[u8], right: &[u8]) -> f64 {
-    let apart: u64 = left.iter().zip(right).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
-    apart as f64 / left.len() as f64
 }
 
 /// Draws volumes by both engines with such limits.
@@ -106,9 +103,4 @@ fn volumes_are_shown_or_refused_by_a_small_adapter() {
 fn volumes_are_shown_or_refused_by_small_adapters() {
     let names = ["builtin:chair:20", "builtin:chair:56", "builtin:sphere:100", "builtin:chair:300"];
     small_adapters(&names, &LIMITS);
-}
-
-#[test]
-fn the_mean_notices_a_difference() {
-    assert!(mean_steps(&[0; 8], &[3; 8]) > SAME && mean_steps(&[7; 8], &[7; 8]) == 0.0);
 }
