@@ -22,7 +22,9 @@ pub use crate::plan::RenderOptions;
 pub(crate) use context::check_room_for_drivers;
 pub use context::error::GpuError;
 pub use context::{Context, device_descriptor};
-pub use frame::first_look::{balance, balance_quickly, dark_share, first_look, mean_luminance};
+pub use frame::first_look::{
+    balance, balance_quickly, dark_share, first_look, mean_luminance, seen_share, shadowed_share,
+};
 pub use frame::fit::fitted;
 pub use frame::job::Job;
 pub use frame::renderer::Renderer;

@@ -114,6 +114,16 @@ pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     }
 }
 
+/// Puts the eye where every first look of earlier versions had it, and the key light 40° from the line of sight, as much
+/// to the left as up.
+pub(crate) fn seen_as_earlier(settings: &mut Settings) {
+    (settings.camera.azimuth_deg, settings.camera.elevation_deg) = (-60.0, 28.0);
+    let side = 40f64.to_radians().sin() / std::f64::consts::SQRT_2;
+    let place = DVec3::new(-side, side, 40f64.to_radians().cos());
+    let distance = DVec3::from(settings.lights[0].position).length();
+    settings.lights[0].position = (settings.camera.scene_from_view() * place * distance).into();
+}
+
 /// Light as the paper has it: the light volume alone, splatted back with the kernel of the light pass.
 pub(crate) fn paper(settings: &mut Settings) {
     settings.shading.sides = Sides::Two;

@@ -116,6 +116,9 @@ pub(crate) const COMBINED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };
 /// Mean luminance of previews, exposed as at the beginning of a drag, against whole pictures: above a hundredth a swap
 /// is seen, and only previews with a quarter of the pixels and of the light's resolution have more, 0.0103.
 pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.011;
+/// The same under light from the side, whose shadows are larger: 0.0258 for a sixteenth of the pixels, of which a chair
+/// fills few; 0.0168 for all of them, with a light volume at a quarter of the resolution.
+pub(crate) const PREVIEW_BRIGHTNESS_ASIDE: f64 = 0.027;
 
 /// What a crop box and a plane leave of the sum of opacities, in other orders of sheets than image-aligned:
 /// single footprints are cut by whole voxels, of which faces of 32 voxels' edge have 3 % to either side.

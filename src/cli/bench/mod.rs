@@ -5,7 +5,8 @@
 //! halves of the light pass of those frames); *tf-edit* (a transfer function changes); *background* (only the
 //! background does); *load* (from a file to its first picture) and *memory*; *growth* (light volumes of clouds of growing size, splatted
 //! and by rays, with everything that saves work and without);
-//! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms).
+//! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
+//! the picture that a volume is opened with).
 
 use std::path::PathBuf;
 
@@ -13,6 +14,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 mod edit;
+mod first_look;
 mod growth;
 mod paper;
 mod report;
@@ -33,8 +35,21 @@ const WARM_UP: usize = 2;
 const STEP_DEG: f64 = 12.0;
 
 /// What there is to be measured.
-const CASES: [&str; 9] =
-    ["orbit", "light-drag", "light-build", "tf-edit", "background", "load", "memory", "growth", "paper"];
+const CASES: [&str; 10] = [
+    "orbit",
+    "light-drag",
+    "light-build",
+    "tf-edit",
+    "background",
+    "load",
+    "memory",
+    "growth",
+    "paper",
+    "first-look",
+];
+
+/// Longest edge of pictures that are only looked at in figures.
+const MOST_SIZE: u32 = 400;
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -56,7 +71,7 @@ pub(super) struct BenchArgs {
     /// Timed frames per case
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
-    /// Only the case of this name; growth runs only when asked for, since it takes minutes
+    /// Only the case of this name; growth, which takes minutes, and first-look run only when asked for
     #[arg(long, value_name = "CASE", value_parser = CASES)]
     only: Option<String>,
     /// Allow cases that are not rendered at full resolution and with an exact kernel
@@ -68,7 +83,9 @@ pub(super) struct BenchArgs {
 
 /// Runs the cases and prints them.
 pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
-    let wants = |case: &str| args.only.as_deref().map_or(case != "growth", |only| only == case);
+    let wants = |case: &str| {
+        args.only.as_deref().map_or(!["growth", "first-look"].contains(&case), |only| only == case)
+    };
     let mut cases = Vec::new();
     let mut ratios = serde_json::Map::new();
     let context = Context::headless()?;
@@ -103,6 +120,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         }
         if wants("paper") {
             bench.paper(&mut cases, &mut found)?;
+        }
+        if wants("first-look") {
+            bench.first_look(&mut cases)?;
         }
         let several = args.volumes.len() > 1;
         let name = |ratio| if several { format!("{}: {ratio}", loaded.volume().name()) } else { ratio };
@@ -258,6 +278,14 @@ fn is_full_quality(settings: &Settings) -> bool {
 fn print_table(result: &Value) -> Result<(), CliError> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])))?;
+    let cases = result["cases"].as_array().map_or(&[][..], Vec::as_slice);
+    let looks = first_look::lines(cases);
+    for line in &looks {
+        print_line(line)?;
+    }
+    if looks.len() > cases.len() {
+        return Ok(());
+    }
     print_line(
         "case                        volume         wall ms    cpu ms    eye    march  back-project     rays",
     )?;

@@ -85,6 +85,25 @@ pub fn dark_share(light: &[[f32; 4]]) -> f64 {
     mean(light, |texel| f64::from(u8::from(luminance(texel) < NEARLY_BLACK * f64::from(texel[3]))))
 }
 
+/// The share of a picture's pixels that show something.
+pub fn seen_share(light: &[[f32; 4]]) -> f64 {
+    let seen = light.iter().filter(|texel| texel[3] > SEEN).count();
+    seen as f64 / light.len().max(1) as f64
+}
+
+/// Share of its light that a pixel must have lost to shadows to count as shadowed.
+const SHADOWED: f64 = 0.3;
+
+/// Of the pixels that show something, the share that shadows darken by 30 % or more: `with` and `without` them.
+pub fn shadowed_share(with: &[[f32; 4]], without: &[[f32; 4]]) -> f64 {
+    let seen = with.iter().zip(without).filter(|(texel, _)| texel[3] > SEEN);
+    let (dark, count) = seen.fold((0usize, 0usize), |(dark, count), (with, without)| {
+        let is_dark = luminance(with) < (1.0 - SHADOWED) * luminance(without);
+        (dark + usize::from(is_dark), count + 1)
+    });
+    dark as f64 / count.max(1) as f64
+}
+
 /// The mean over the pixels that show something.
 fn mean(light: &[[f32; 4]], value: impl Fn(&[f32; 4]) -> f64) -> f64 {
     let seen = light.iter().filter(|texel| texel[3] > SEEN);
@@ -99,6 +118,16 @@ fn luminance([r, g, b, _]: &[f32; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shadows_are_the_share_that_they_darken() {
+        let grey = |value: f32| [value, value, value, 1.0];
+        let without = [grey(0.5), grey(0.5), grey(0.5), [0.5, 0.5, 0.5, 0.1]];
+        let with = [grey(0.5), grey(0.3), grey(0.4), [0.0, 0.0, 0.0, 0.1]];
+        assert!((shadowed_share(&with, &without) - 1.0 / 3.0).abs() < 1e-12);
+        assert!((seen_share(&with) - 0.75).abs() < 1e-12);
+        assert_eq!(shadowed_share(&[], &[]), 0.0);
+    }
 
     #[test]
     fn darkness_is_the_share_of_what_is_seen() {

@@ -1,7 +1,7 @@
 //! What tells the paper's three algorithms apart (P §3.2): how often each of them blurs a shadow.
 
 use crate::common::{Dataset, context, render};
-use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
+use crate::scenes::{self, isotropic, linear_extinction, paper, seen_as_earlier, straight};
 use crate::thresholds::{
     DIRECT_BEER_LAMBERT, EDGE_CENTRE, EDGE_WIDTH, EDGE_WIDTHS, FAINT, SELF_SHADOW, SELF_SHADOW_GROWS,
 };
@@ -174,6 +174,7 @@ fn cures_brighten_and_splatting_is_slightly_darker() {
     let volume = chiaroscuro::data::synthetic::builtin("chair", Some(48)).expect("the chair");
     let histogram = Histogram::of(&volume);
     let mut settings = auto::first_settings(&volume, &histogram);
+    seen_as_earlier(&mut settings);
     paper(&mut settings);
     let loaded = Dataset::new(volume);
     let mut renderer = renderer();

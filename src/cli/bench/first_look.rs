@@ -1,0 +1,82 @@
+//! What the first picture of a volume is like, in figures: how much of it the object covers, how bright it is, how much
+//! of it shadows darken, how much of what is shown is the volume's box, and whether a patient is seen from the front.
+
+use serde_json::{Value, json};
+
+use super::report::round;
+use super::{Bench, MOST_SIZE};
+use crate::cli::CliError;
+use crate::cli::cpu_time::process_cpu_ms;
+use crate::gpu::{RenderOptions, dark_share, mean_luminance, seen_share, shadowed_share};
+use crate::model::{ShadowAlgorithm, auto};
+
+impl Bench<'_> {
+    /// Figures of the first look, whatever look the benchmark has.
+    pub(super) fn first_look(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
+        let volume = self.loaded.volume();
+        let before = process_cpu_ms();
+        let first = auto::first_settings(volume, self.loaded.histogram());
+        let found_ms = process_cpu_ms().zip(before).map(|(after, before)| round(after - before));
+        let mut settings = first;
+        settings.shadows.balance = self.settings.shadows.balance;
+        let mut unshadowed = settings.clone();
+        unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
+        let size = self.args.size.map(|edge| edge.min(MOST_SIZE));
+        let mut light = |settings| {
+            self.renderer
+                .render(self.loaded, settings, size, &RenderOptions::default())
+                .map(|seen| seen.light)
+        };
+        let (with, without) = (light(&settings)?, light(&unshadowed)?);
+        let towards_eye = settings.camera.scene_from_view().z_axis;
+        cases.push(json!({
+            "name": "first-look",
+            "volume": volume.name(),
+            "dims": volume.dims(),
+            "found_cpu_ms": found_ms,
+            "seen_share": round(seen_share(&with)),
+            "mean_luminance": round(mean_luminance(&with)),
+            "dark_share": round(dark_share(&with)),
+            "shadowed_share": round(shadowed_share(&with, &without)),
+            "blockness": round(auto::blockness(&settings, volume)),
+            // World space is right-anterior-superior.
+            "from_the_front": volume.is_anatomical().then_some(towards_eye.y > 0.0),
+        }));
+        Ok(())
+    }
+}
+
+/// Lines of the table.
+pub(super) fn lines(cases: &[Value]) -> Vec<String> {
+    let looks = cases.iter().filter(|case| case["name"] == "first-look");
+    let mut lines: Vec<String> = looks
+        .map(|case| {
+            let number =
+                |name: &str| case[name].as_f64().map_or("–".to_owned(), |value| format!("{value:.3}"));
+            let from = match case["from_the_front"].as_bool() {
+                Some(true) => "front",
+                Some(false) => "elsewhere",
+                None => "–",
+            };
+            format!(
+                "{:<24} {:>6} {:>10} {:>6} {:>9} {:>10} {:>10} {:>9}",
+                case["volume"].as_str().unwrap_or_default().chars().take(24).collect::<String>(),
+                number("seen_share"),
+                number("mean_luminance"),
+                number("dark_share"),
+                number("shadowed_share"),
+                number("blockness"),
+                from,
+                case["found_cpu_ms"].as_f64().map_or("–".to_owned(), |ms| format!("{ms:.0}")),
+            )
+        })
+        .collect();
+    if !lines.is_empty() {
+        lines.insert(
+            0,
+            "first look                 seen  luminance   dark  shadowed  blockness       from  found ms"
+                .to_owned(),
+        );
+    }
+    lines
+}

@@ -1,0 +1,140 @@
+//! Where the camera stands, so that a volume's object fills the picture.
+
+use glam::{DVec2, DVec3};
+
+use super::object::Object;
+use crate::data::Volume;
+use crate::model::{FRAME_ASPECT, Fit, Settings};
+
+/// Share of the frame's height, or of its width, that the object fills: whichever it reaches first.
+const FILL: f64 = 0.8;
+
+/// The most that it fills when rays become parallel, which show what is near no larger than what is far: all of it.
+const FILL_PARALLEL: f64 = 0.98;
+
+/// Share of the outline that may lie beyond each of the sides that the frame is made for: a few voxels of noise.
+const BEYOND: f64 = 0.0005;
+
+/// Share of the outline that may lie below the floor: single voxels of noise.
+const BELOW_FLOOR: f64 = 0.001;
+
+/// The z below which next to nothing of an outline lies.
+fn floor_under(outline: &[DVec3]) -> f64 {
+    let mut heights: Vec<f64> = outline.iter().map(|point| point.z).collect();
+    let at = (heights.len() as f64 * BELOW_FLOOR) as usize;
+    *heights.select_nth_unstable_by(at, f64::total_cmp).1
+}
+
+/// Where all but [`BEYOND`] of some points lie along an axis.
+fn range(points: &[DVec2], along: impl Fn(&DVec2) -> f64) -> [f64; 2] {
+    let mut values: Vec<f64> = points.iter().map(along).collect();
+    let beyond = (values.len() as f64 * BEYOND) as usize;
+    let last = values.len().saturating_sub(1);
+    [beyond, last - beyond].map(|at| *values.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+/// Points the camera at the object, near enough that it fills the frame, which lies within pictures of any shape. Puts
+/// the floor under it.
+pub(super) fn frame(settings: &mut Settings, volume: &Volume, object: &Object) {
+    settings.camera.fit = Fit::Frame;
+    let scene_from_index = volume.scene().scene_from_index;
+    let corners: Vec<DVec3> =
+        object.outline().into_iter().map(|point| scene_from_index.transform_point3(point)).collect();
+    if corners.is_empty() {
+        return;
+    }
+    settings.floor.height = floor_under(&corners) - volume.scene().smallest_edge() / 2.0;
+    let camera = &mut settings.camera;
+    let view = camera.scene_from_view();
+    let half_angle_tan = camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
+    // Two rounds: perspective shifts the middle a little once the distance is known.
+    let mut target = DVec3::ZERO;
+    for _ in 0..3 {
+        let eye = target + view.z_axis * camera.distance;
+        let seen: Vec<DVec2> = corners
+            .iter()
+            .filter_map(|corner| {
+                let local = view.transpose() * (*corner - eye);
+                (local.z < 0.0).then(|| DVec2::new(local.x, local.y) / -local.z)
+            })
+            .collect();
+        if seen.is_empty() {
+            return;
+        }
+        let (x, y) = (range(&seen, |p| p.x), range(&seen, |p| p.y));
+        let (low, high) = (DVec2::new(x[0], y[0]), DVec2::new(x[1], y[1]));
+        let middle = (low + high) / 2.0;
+        target += (view.x_axis * middle.x + view.y_axis * middle.y) * camera.distance;
+        let half = (high - low) / 2.0;
+        let wanted = FILL * half_angle_tan;
+        // In units of the distance, as seen from the new target.
+        let parallel = corners.iter().fold(DVec2::ZERO, |most, corner| {
+            let local = view.transpose() * (*corner - target);
+            most.max(DVec2::new(local.x, local.y).abs() / camera.distance)
+        });
+        let wanted_parallel = FILL_PARALLEL * half_angle_tan;
+        let factor = (half.y / wanted)
+            .max(half.x / (wanted * FRAME_ASPECT))
+            .max(parallel.y / wanted_parallel)
+            .max(parallel.x / (wanted_parallel * FRAME_ASPECT));
+        camera.distance = (camera.distance * factor).clamp(0.3, 20.0);
+    }
+    camera.target = target.into();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Histogram;
+    use crate::data::synthetic::builtin;
+    use crate::model::auto::first_settings;
+    use crate::model::auto::tests::ball;
+
+    #[test]
+    fn the_object_fills_the_picture() {
+        let volume = ball(200.0, 0.0);
+        let settings = first_settings(&volume, &Histogram::of(&volume));
+        let (_, top, _) = settings.camera.pixel_from_scene(DVec3::ZERO, 400.0, 300.0).unwrap();
+        assert!((top - 150.0).abs() < 20.0, "the ball's centre is at row {top}");
+        assert!(settings.camera.distance > 1.0 && settings.camera.distance < 8.0);
+    }
+
+    /// Where the shown voxels of a volume lie in a picture: corners of the box around them, in pixels.
+    fn seen_box(settings: &Settings, volume: &Volume, size: DVec2) -> [DVec2; 2] {
+        let pixels = Object::shown_by(settings, volume).outline().into_iter().map(|point| {
+            let point = volume.scene().scene_from_index.transform_point3(point);
+            let seen = settings.camera.pixel_from_scene(point, size.x, size.y);
+            let (x, y, _) = seen.expect("a point in front of the eye");
+            DVec2::new(x, y)
+        });
+        pixels.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+    }
+
+    #[test]
+    fn the_object_is_framed_in_pictures_of_every_shape() {
+        for name in ["chair", "cloud", "marschner-lobb"] {
+            let volume = builtin(name, Some(48)).unwrap();
+            let mut settings = first_settings(&volume, &Histogram::of(&volume));
+            let mut parallel = settings.clone();
+            parallel.camera.toggle_projection();
+            for size in [[1200, 400], [960, 540], [800, 600], [500, 500], [360, 640], [200, 800]] {
+                let size = DVec2::from(size.map(f64::from));
+                let [low, high] = seen_box(&settings, &volume, size);
+                let margin = (low / size).min((size - high) / size).min_element();
+                assert!(margin >= 0.05, "{name} in {size}: a margin of {margin}");
+                // The largest frame in the picture.
+                let height = size.y.min(size.x / FRAME_ASPECT);
+                let filled = ((high - low) / DVec2::new(height * FRAME_ASPECT, height)).max_element();
+                assert!(filled >= 0.6, "{name} in {size}: fills {filled} of the frame");
+                // Parallel rays show what is far away larger: of a whole cube, a little more than the margin.
+                let [low, high] = seen_box(&parallel, &volume, size);
+                assert!(low.min_element() > 0.0 && (size - high).min_element() > 0.0, "{name} in {size}");
+            }
+            // With the angle of the height, a narrow picture cuts it off.
+            settings.camera.fit = Fit::Height;
+            let size = DVec2::new(200.0, 800.0);
+            let [low, high] = seen_box(&settings, &volume, size);
+            assert!(low.x < 0.0 && high.x > size.x, "{name}: {low} to {high}");
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! What the isosurfaces of a volume are like, all of them in one pass: how large, how distinct, and how much of what
+//! they enclose ends at the volume's own box.
+//!
+//! Pairs of neighbours on either side of a value are the area of its isosurface, and their differences the gradient
+//! there (Pekar, Wiemker & Hempel 2001).
+
+use rayon::prelude::*;
+
+use crate::data::{HISTOGRAM_BINS, Volume};
+
+/// Voxels that are looked at: of larger volumes, one in so many along each axis.
+const LOOKED_AT: f64 = (1u64 << 21) as f64;
+
+/// Largest share of an object's surface that may lie on the volume's box. Of 47 volumes of thirteen domains, those
+/// that were shown as boxes had 0.40 and more, all others at most 0.24.
+const MOST_BLOCKY: f64 = 0.25;
+
+/// What a replacement must be below: well away from the bound.
+const HARDLY_BLOCKY: f64 = 0.1;
+
+/// Share of the volume that an object usually takes, and how far others are from it, in powers of ten.
+const USUAL_SHARE: (f64, f64) = (0.08, 0.9);
+
+/// Figures of the isosurfaces of densities 0, 1/n, 2/n, …
+pub(super) struct Isosurfaces {
+    /// Pairs of neighbours on either side.
+    area: Vec<f64>,
+    /// Sum of the differences of those pairs.
+    contrast: Vec<f64>,
+    /// Voxels of the volume's faces that are above.
+    on_faces: Vec<f64>,
+    /// Voxels that are above.
+    inside: Vec<f64>,
+    voxels: f64,
+}
+
+/// Counts that change at the bins where something begins or ends.
+#[derive(Clone)]
+struct Changes {
+    area: Vec<f64>,
+    contrast: Vec<f64>,
+    inside: Vec<f64>,
+}
+
+impl Changes {
+    fn none() -> Self {
+        let none = vec![0.0; HISTOGRAM_BINS + 2];
+        Self { area: none.clone(), contrast: none.clone(), inside: none }
+    }
+
+    fn add(mut self, other: &Self) -> Self {
+        let sum = |into: &mut Vec<f64>, from: &[f64]| into.iter_mut().zip(from).for_each(|(a, b)| *a += b);
+        sum(&mut self.area, &other.area);
+        sum(&mut self.contrast, &other.contrast);
+        sum(&mut self.inside, &other.inside);
+        self
+    }
+
+    /// A pair of neighbours that stands for so many.
+    fn pair(&mut self, one: f32, other: f32, weight: f64) {
+        let (low, high) = (bin(one.min(other)) + 1, bin(one.max(other)) + 1);
+        let difference = f64::from((one - other).abs()) * weight;
+        self.area[low] += weight;
+        self.area[high] -= weight;
+        self.contrast[low] += difference;
+        self.contrast[high] -= difference;
+    }
+}
+
+fn bin(density: f32) -> usize {
+    ((density * HISTOGRAM_BINS as f32) as usize).min(HISTOGRAM_BINS - 1)
+}
+
+/// Sums from the first on.
+fn running(changes: &[f64]) -> Vec<f64> {
+    changes
+        .iter()
+        .scan(0.0, |sum, change| {
+            *sum += change;
+            Some(*sum)
+        })
+        .collect()
+}
+
+/// Sums from the last on.
+fn running_down(counts: &[f64]) -> Vec<f64> {
+    let mut sums: Vec<f64> = running(&counts.iter().rev().copied().collect::<Vec<_>>());
+    sums.reverse();
+    sums
+}
+
+impl Isosurfaces {
+    /// Looks at a volume.
+    pub(super) fn of(volume: &Volume) -> Self {
+        let [nx, ny, nz] = volume.dims();
+        let voxels = volume.voxel_count() as f64;
+        let step = (voxels / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
+        // Each voxel that is looked at stands for a block of them; on a face, for a square.
+        let (block, square) = ((step * step * step) as f64, (step * step) as f64);
+        let changes = (0..nz)
+            .step_by(step)
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .fold(Changes::none, |mut changes, z| {
+                let slice = volume.slice_densities(z);
+                let next = (z + 1 < nz).then(|| volume.slice_densities(z + 1));
+                for y in (0..ny).step_by(step) {
+                    for x in (0..nx).step_by(step) {
+                        let at = y * nx + x;
+                        let here = slice[at];
+                        changes.inside[bin(here)] += block;
+                        if x + 1 < nx {
+                            changes.pair(here, slice[at + 1], block);
+                        }
+                        if y + 1 < ny {
+                            changes.pair(here, slice[at + nx], block);
+                        }
+                        if let Some(next) = &next {
+                            changes.pair(here, next[at], block);
+                        }
+                    }
+                }
+                changes
+            })
+            .reduce(Changes::none, |a, b| a.add(&b));
+        let mut on_faces = vec![0.0; HISTOGRAM_BINS];
+        let mut face = |density: f64| on_faces[bin(density as f32)] += square;
+        let at = |n: usize| (0..n).step_by(step);
+        let density = |x, y, z| volume.density_of(volume.value(x, y, z));
+        // A slice that is a voxel thick has two faces all the same.
+        for (x, y) in at(nx).flat_map(|x| at(ny).map(move |y| (x, y))) {
+            face(density(x, y, 0));
+            face(density(x, y, nz - 1));
+        }
+        for (x, z) in at(nx).flat_map(|x| at(nz).map(move |z| (x, z))) {
+            face(density(x, 0, z));
+            face(density(x, ny - 1, z));
+        }
+        for (y, z) in at(ny).flat_map(|y| at(nz).map(move |z| (y, z))) {
+            face(density(0, y, z));
+            face(density(nx - 1, y, z));
+        }
+        Self {
+            area: running(&changes.area),
+            contrast: running(&changes.contrast),
+            on_faces: running_down(&on_faces),
+            inside: running_down(&changes.inside),
+            voxels,
+        }
+    }
+
+    /// The share of an object's surface that lies on the volume's box.
+    fn blockness(&self, bin: usize) -> f64 {
+        let surface = self.area[bin] + self.on_faces[bin];
+        if surface == 0.0 { 0.0 } else { self.on_faces[bin] / surface }
+    }
+
+    /// How good a surface of an object that of a density is: distinct, large, compact, of a usual size, and not the box.
+    fn merit(&self, bin: usize, largest_area: f64) -> f64 {
+        if self.area[bin] == 0.0 || self.inside[bin] == 0.0 {
+            return 0.0;
+        }
+        let gradient = self.contrast[bin] / self.area[bin];
+        let surface = self.area[bin] + self.on_faces[bin];
+        // A voxel alone has six faces.
+        let compactness = 1.0 - (surface / (6.0 * self.inside[bin])).min(1.0);
+        let (usual, spread) = USUAL_SHARE;
+        let unusual = (self.inside[bin] / self.voxels / usual).log10() / spread;
+        gradient
+            * (self.area[bin] / largest_area).sqrt()
+            * (1.0 - self.blockness(bin)).powi(2)
+            * compactness
+            * (-0.5 * unusual * unusual).exp()
+    }
+
+    /// The density at which an object begins that would begin at `start`, unless what is shown then is mainly the
+    /// volume's box: there, the best isosurface that is not.
+    pub(super) fn unless_blocky(&self, start: f64) -> f64 {
+        let bins = HISTOGRAM_BINS;
+        let first = ((start * bins as f64) as usize).min(bins - 1);
+        if self.blockness(first) <= MOST_BLOCKY {
+            return start;
+        }
+        let largest = self.area.iter().copied().fold(0.0, f64::max);
+        let best_below = |most: f64| {
+            let allowed = (1..bins).filter(|&bin| self.blockness(bin) <= most);
+            allowed
+                .map(|bin| (self.merit(bin, largest), bin))
+                .filter(|(merit, _)| *merit > 0.0)
+                .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        };
+        let best = best_below(HARDLY_BLOCKY).or_else(|| best_below(MOST_BLOCKY));
+        best.map_or(start, |(_, bin)| bin as f64 / bins as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::data::Samples;
+
+    /// A ball of 200 in a haze that reaches the faces.
+    fn ball_in_haze(haze: u8) -> Volume {
+        let n = 40;
+        let value = |at: usize| {
+            let p = [at % n, at / n % n, at / n / n].map(|c| c as f64 - 19.5);
+            if p.iter().map(|c| c * c).sum::<f64>() < 100.0 { 200 } else { haze + (at % n / 8) as u8 }
+        };
+        let voxels = (0..n * n * n).map(value).collect();
+        Volume::with_spacing("ball", [n; 3], DVec3::ONE, Samples::U8(voxels)).unwrap()
+    }
+
+    #[test]
+    fn areas_and_shares_are_those_of_a_ball() {
+        let volume = ball_in_haze(0);
+        let surfaces = Isosurfaces::of(&volume);
+        let bin = bin(volume.density_of(100.0) as f32);
+        // Neighbours across a sphere: 6 directions' projections, 6 · π r² of them.
+        let expected = 6.0 * std::f64::consts::PI * 100.0;
+        assert!((surfaces.area[bin] / expected - 1.0).abs() < 0.05, "{}", surfaces.area[bin]);
+        let inside = 4.0 / 3.0 * std::f64::consts::PI * 1000.0;
+        assert!((surfaces.inside[bin] / inside - 1.0).abs() < 0.05, "{}", surfaces.inside[bin]);
+        assert_eq!(surfaces.blockness(bin), 0.0);
+        assert_eq!(surfaces.on_faces[0], 6.0 * 1600.0);
+    }
+
+    #[test]
+    fn the_box_is_not_the_object() {
+        let volume = ball_in_haze(60);
+        let surfaces = Isosurfaces::of(&volume);
+        let (low, high) = (volume.density_of(61.0), volume.density_of(150.0));
+        assert_eq!(surfaces.unless_blocky(high), high, "what is no box stays");
+        let start = surfaces.unless_blocky(low);
+        assert!(start > volume.density_of(64.0) && start < volume.density_of(200.0), "{start}");
+    }
+
+    #[test]
+    fn what_is_everywhere_the_same_has_no_surface() {
+        let flat = Volume::with_spacing("flat", [8; 3], DVec3::ONE, Samples::U8(vec![3; 512])).unwrap();
+        assert!(Isosurfaces::of(&flat).unless_blocky(0.4).is_finite());
+    }
+}

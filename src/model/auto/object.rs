@@ -1,0 +1,300 @@
+//! What a transfer function shows of a volume, in cells of a few voxels, without what is not the object: specks, and
+//! tables that it lies on.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::data::{HISTOGRAM_BINS, Volume};
+use crate::model::Settings;
+
+/// Opacity per voxel from which a voxel counts as shown.
+const SHOWN: f64 = 0.05;
+
+/// Most cells along an axis: single pixels of the views that are compared.
+const MOST_CELLS: usize = 128;
+
+/// Share of its voxels that are shown in a cell that is: a line through a cell of four voxels.
+const SHOWN_SHARE: usize = 16;
+
+/// Parts smaller than this share of the largest are specks, unless they lie among or close to the others: within this
+/// share of their box's longest edge. To frame those costs little, and to cut them off would be seen.
+const SPECK: f64 = 0.01;
+const CLOSE: f64 = 0.1;
+
+/// A table is as long and as wide as this share of the volume, and thinner than that one, at one of its faces.
+const TABLE: (f64, f64) = (0.7, 0.06);
+
+/// Cells of a volume, and whether the object is there.
+pub(super) struct Object {
+    /// Cells along each axis.
+    pub(super) cells: [usize; 3],
+    /// Voxels along the edges of a cell; the last ones may have fewer.
+    edge: [usize; 3],
+    dims: [usize; 3],
+    /// x fastest.
+    is_there: Vec<bool>,
+}
+
+/// A connected part.
+struct Part {
+    cells: Vec<usize>,
+    low: [usize; 3],
+    high: [usize; 3],
+}
+
+impl Object {
+    /// What settings show of a volume, but specks and tables; all of it where there is nothing else.
+    pub(super) fn shown_by(settings: &Settings, volume: &Volume) -> Self {
+        Self::of_shown(settings, volume).without_accessories()
+    }
+
+    /// All that is shown.
+    pub(super) fn of_shown(settings: &Settings, volume: &Volume) -> Self {
+        let dims = volume.dims();
+        let edge = dims.map(|n| n.div_ceil(MOST_CELLS));
+        let cells = [0, 1, 2].map(|axis| dims[axis].div_ceil(edge[axis]));
+        // Whether each of many densities is shown: a look-up per voxel.
+        let shown: Vec<bool> = (0..=HISTOGRAM_BINS)
+            .map(|bin| {
+                settings.transfer.opacity_at(volume.value_of(bin as f64 / HISTOGRAM_BINS as f64)) > SHOWN
+            })
+            .collect();
+        let is_there = (0..cells[2])
+            .into_par_iter()
+            .flat_map_iter(|layer| {
+                let mut counts = vec![0usize; cells[0] * cells[1]];
+                for z in layer * edge[2]..((layer + 1) * edge[2]).min(dims[2]) {
+                    for (at, density) in volume.slice_densities(z).into_iter().enumerate() {
+                        let (x, y) = (at % dims[0], at / dims[0]);
+                        let is_shown = shown[(density * HISTOGRAM_BINS as f32) as usize];
+                        counts[y / edge[1] * cells[0] + x / edge[0]] += usize::from(is_shown);
+                    }
+                }
+                let enough = (edge.iter().product::<usize>() / SHOWN_SHARE).max(1);
+                counts.into_iter().map(move |count| count >= enough)
+            })
+            .collect();
+        Self { cells, edge, dims, is_there }
+    }
+
+    fn coordinates(&self, cell: usize) -> [usize; 3] {
+        [cell % self.cells[0], cell / self.cells[0] % self.cells[1], cell / self.cells[0] / self.cells[1]]
+    }
+
+    /// Whether the object is in a cell; it is nowhere outside.
+    pub(super) fn is_at(&self, [x, y, z]: [i64; 3]) -> bool {
+        let inside = |n: i64, axis: usize| usize::try_from(n).ok().filter(|&n| n < self.cells[axis]);
+        let (Some(x), Some(y), Some(z)) = (inside(x, 0), inside(y, 1), inside(z, 2)) else { return false };
+        self.is_there[(z * self.cells[1] + y) * self.cells[0] + x]
+    }
+
+    /// The cells in which the object is.
+    pub(super) fn all_cells(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
+        (0..self.is_there.len()).filter(|&cell| self.is_there[cell]).map(|cell| self.coordinates(cell))
+    }
+
+    /// The middle of a cell, in index space.
+    pub(super) fn middle(&self, cell: [usize; 3]) -> DVec3 {
+        let along = |axis: usize| {
+            let first = cell[axis] * self.edge[axis];
+            let last = (first + self.edge[axis]).min(self.dims[axis]) - 1;
+            (first + last) as f64 / 2.0
+        };
+        DVec3::new(along(0), along(1), along(2))
+    }
+
+    /// Parts whose cells touch, by a corner at least.
+    fn parts(&self) -> Vec<Part> {
+        let mut is_left = self.is_there.clone();
+        let mut parts = Vec::new();
+        let mut waiting = Vec::new();
+        for start in 0..is_left.len() {
+            if !std::mem::take(&mut is_left[start]) {
+                continue;
+            }
+            let mut part = Part { cells: Vec::new(), low: [usize::MAX; 3], high: [0; 3] };
+            waiting.push(start);
+            while let Some(cell) = waiting.pop() {
+                let at = self.coordinates(cell);
+                part.cells.push(cell);
+                part.low = [0, 1, 2].map(|axis| part.low[axis].min(at[axis]));
+                part.high = [0, 1, 2].map(|axis| part.high[axis].max(at[axis]));
+                let near =
+                    |axis: usize| at[axis].saturating_sub(1)..=(at[axis] + 1).min(self.cells[axis] - 1);
+                for z in near(2) {
+                    for y in near(1) {
+                        for x in near(0) {
+                            let next = (z * self.cells[1] + y) * self.cells[0] + x;
+                            if std::mem::take(&mut is_left[next]) {
+                                waiting.push(next);
+                            }
+                        }
+                    }
+                }
+            }
+            parts.push(part);
+        }
+        parts
+    }
+
+    /// Whether a part is thin, and spread out over a face of the volume.
+    fn is_table(&self, part: &Part) -> bool {
+        let share = |axis: usize| (part.high[axis] + 1 - part.low[axis]) as f64 / self.cells[axis] as f64;
+        (0..3).any(|axis| {
+            let others = [(axis + 1) % 3, (axis + 2) % 3];
+            let is_at_face =
+                others.iter().any(|&other| part.low[other] == 0 || part.high[other] + 1 == self.cells[other])
+                    || part.low[axis] == 0
+                    || part.high[axis] + 1 == self.cells[axis];
+            share(axis) < TABLE.1 && others.iter().all(|&other| share(other) > TABLE.0) && is_at_face
+        })
+    }
+
+    fn without_accessories(mut self) -> Self {
+        let parts = self.parts();
+        let largest_of = |parts: &[&Part]| parts.iter().map(|part| part.cells.len()).max().unwrap_or(0);
+        let no_tables: Vec<&Part> = parts.iter().filter(|part| !self.is_table(part)).collect();
+        let all: Vec<&Part> = parts.iter().collect();
+        // What is left beside a table must be more than specks on it.
+        let is_object = largest_of(&no_tables) as f64 >= SPECK * largest_of(&all) as f64;
+        let kept = if is_object && !no_tables.is_empty() { no_tables } else { all };
+        let least = SPECK * largest_of(&kept) as f64;
+        let (large, small): (Vec<&Part>, Vec<&Part>) =
+            kept.into_iter().partition(|part| part.cells.len() as f64 >= least);
+        let low = [0, 1, 2].map(|axis| large.iter().map(|part| part.low[axis]).min().unwrap_or(0));
+        let high = [0, 1, 2].map(|axis| large.iter().map(|part| part.high[axis]).max().unwrap_or(0));
+        let longest = (0..3).map(|axis| high[axis] + 1 - low[axis]).max().unwrap_or(1);
+        let reach = (longest as f64 * CLOSE) as usize;
+        let is_close = |part: &&Part| {
+            (0..3).all(|axis| part.low[axis] + reach >= low[axis] && part.high[axis] <= high[axis] + reach)
+        };
+        let mut is_there = vec![false; self.is_there.len()];
+        for part in large.iter().copied().chain(small.into_iter().filter(is_close)) {
+            part.cells.iter().for_each(|&cell| is_there[cell] = true);
+        }
+        self.is_there = is_there;
+        self
+    }
+
+    /// The share of its faces that lie on the volume's box.
+    pub(super) fn blockness(&self) -> f64 {
+        let (mut faces, mut on_box) = (0usize, 0usize);
+        for cell in self.all_cells() {
+            for (axis, step) in (0..3).flat_map(|axis| [-1, 1].map(|step| (axis, step))) {
+                let mut next = cell.map(|n| n as i64);
+                next[axis] += step;
+                faces += usize::from(!self.is_at(next));
+                on_box += usize::from(next[axis] < 0 || next[axis] == self.cells[axis] as i64);
+            }
+        }
+        on_box as f64 / faces.max(1) as f64
+    }
+
+    /// First and last voxels of the object in every row of cells, in index space.
+    pub(super) fn outline(&self) -> Vec<DVec3> {
+        let [nx, ny, nz] = self.cells;
+        let mut ends = Vec::new();
+        for (z, y) in (0..nz).flat_map(|z| (0..ny).map(move |y| (z, y))) {
+            let row = &self.is_there[(z * ny + y) * nx..][..nx];
+            let first = row.iter().position(|&is| is);
+            let last = row.iter().rposition(|&is| is);
+            if let (Some(first), Some(last)) = (first, last) {
+                let middle = self.middle([first, y, z]);
+                let low = (first * self.edge[0]) as f64;
+                let high = (((last + 1) * self.edge[0]).min(self.dims[0]) - 1) as f64;
+                ends.extend([low, high].map(|x| DVec3::new(x, middle.y, middle.z)));
+            }
+        }
+        ends
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Samples;
+    use crate::model::{ControlPoint, TransferFunction};
+
+    /// Shows what is above 100.
+    fn settings() -> Settings {
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
+        Settings {
+            transfer: TransferFunction { points, ..TransferFunction::default() },
+            ..Settings::default()
+        }
+    }
+
+    fn object(dims: [usize; 3], is_bright: impl Fn([usize; 3]) -> bool) -> Object {
+        let value = |at: usize| {
+            let place = [at % dims[0], at / dims[0] % dims[1], at / dims[0] / dims[1]];
+            if is_bright(place) { 255 } else { 0 }
+        };
+        let voxels = (0..dims.iter().product()).map(value).collect();
+        let volume = Volume::with_spacing("t", dims, DVec3::ONE, Samples::U8(voxels)).unwrap();
+        Object::shown_by(&settings(), &volume)
+    }
+
+    /// The corners of what is framed.
+    fn corners(object: &Object) -> [DVec3; 2] {
+        let outline = object.outline();
+        let fold =
+            |start: DVec3, with: fn(DVec3, DVec3) -> DVec3| outline.iter().fold(start, |a, b| with(a, *b));
+        [fold(DVec3::INFINITY, DVec3::min), fold(DVec3::NEG_INFINITY, DVec3::max)]
+    }
+
+    fn is_in_block([x, y, z]: [usize; 3]) -> bool {
+        (10..30).contains(&x) && (12..30).contains(&y) && (14..30).contains(&z)
+    }
+
+    const BLOCK: [DVec3; 2] = [DVec3::new(10.0, 12.0, 14.0), DVec3::new(29.0, 29.0, 29.0)];
+
+    #[test]
+    fn specks_do_not_count() {
+        let specks = [[1, 1, 1], [38, 3, 38], [2, 38, 20]];
+        let object = object([40; 3], |place| is_in_block(place) || specks.contains(&place));
+        assert_eq!(corners(&object), BLOCK);
+    }
+
+    #[test]
+    fn crumbs_beside_the_object_are_not_cut_off() {
+        let object = object([40; 3], |place| is_in_block(place) || place == [20, 20, 12]);
+        assert_eq!(corners(&object), [DVec3::new(10.0, 12.0, 12.0), BLOCK[1]]);
+    }
+
+    #[test]
+    fn two_objects_are_two_objects() {
+        let object =
+            object([40; 3], |place| is_in_block(place) || place.iter().all(|&n| (2..8).contains(&n)));
+        assert_eq!(corners(&object)[0], DVec3::splat(2.0));
+    }
+
+    #[test]
+    fn tables_do_not_count_unless_there_is_nothing_else() {
+        let is_on_table = |[x, _, z]: [usize; 3]| z < 2 && (4..36).contains(&x);
+        assert_eq!(corners(&object([40; 3], |place| is_in_block(place) || is_on_table(place))), BLOCK);
+        let alone = corners(&object([40; 3], is_on_table));
+        assert_eq!(alone, [DVec3::new(4.0, 0.0, 0.0), DVec3::new(35.0, 39.0, 1.0)]);
+    }
+
+    #[test]
+    fn large_volumes_have_cells_of_several_voxels() {
+        let object = object([300, 20, 20], |[x, y, z]| (60..240).contains(&x) && y == 10 && z == 11);
+        assert_eq!(object.cells, [100, 20, 20]);
+        assert_eq!(corners(&object), [DVec3::new(60.0, 10.0, 11.0), DVec3::new(239.0, 10.0, 11.0)]);
+    }
+
+    #[test]
+    fn blocks_end_where_the_data_do() {
+        assert_eq!(object([16; 3], |_| true).blockness(), 1.0);
+        assert_eq!(object([40; 3], is_in_block).blockness(), 0.0);
+        // Half of the volume: of four faces' worth, all but the one in the middle are the box's.
+        let half = object([16; 3], |[x, _, _]| x < 8);
+        assert!((half.blockness() - 3.0 / 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_has_no_outline() {
+        assert!(object([16; 3], |_| false).outline().is_empty());
+    }
+}

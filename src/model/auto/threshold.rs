@@ -1,0 +1,85 @@
+//! Where in its values a volume's object begins.
+
+use super::isosurfaces::Isosurfaces;
+use crate::data::{Histogram, Volume};
+
+/// Where the object begins, between its surroundings (0) and Otsu's split (1): thin shells and legs,
+/// blurred by the scanner, do not reach the split.
+const TOWARDS_SPLIT: f64 = 0.65;
+
+/// The density at which the object begins.
+pub(super) fn object_threshold(volume: &Volume, histogram: &Histogram) -> f64 {
+    let start = above_surroundings(volume, histogram);
+    Isosurfaces::of(volume).unless_blocky(start)
+}
+
+/// Between what is around the object and the volume's two halves.
+fn above_surroundings(volume: &Volume, histogram: &Histogram) -> f64 {
+    let split = otsu(histogram);
+    let around = border_level(volume);
+    // An object that reaches the border on most sides has no margin to learn from; nor has one whose border is
+    // brighter than what splits the volume: that border is of the object.
+    if split <= around && around < histogram.percentile(0.9) {
+        return split;
+    }
+    let margin = if around < split { around } else { 0.0 };
+    // The split lies halfway to the object's bulk; its thin parts are dimmer, down to the margin's
+    // noise. Never so high that nothing is left.
+    let ceiling = histogram.percentile(0.995).max(0.02);
+    (margin + TOWARDS_SPLIT * (split - margin)).max(margin + 0.02).min(ceiling)
+}
+
+/// The density that splits the histogram into the two most compact classes (Otsu's method).
+fn otsu(histogram: &Histogram) -> f64 {
+    let bins = histogram.counts.len() as f64;
+    let (total, sum) = histogram
+        .counts
+        .iter()
+        .enumerate()
+        .fold((0.0, 0.0), |(n, s), (bin, &count)| (n + count as f64, s + bin as f64 * count as f64));
+    let (mut below, mut sum_below, mut best, mut best_bin) = (0.0, 0.0, -1.0, 0);
+    for (bin, &count) in histogram.counts.iter().enumerate() {
+        below += count as f64;
+        sum_below += bin as f64 * count as f64;
+        let above = total - below;
+        if below == 0.0 || above == 0.0 {
+            continue;
+        }
+        let difference = sum_below / below - (sum - sum_below) / above;
+        let between = below * above * difference * difference;
+        if between > best {
+            (best, best_bin) = (between, bin);
+        }
+    }
+    (best_bin as f64 + 1.0) / bins
+}
+
+/// What the volume's border looks like: of the six faces, the median of their 98th percentiles. One
+/// face that cuts through the object, or two, do not matter.
+fn border_level(volume: &Volume) -> f64 {
+    let [nx, ny, nz] = volume.dims();
+    let face = |u: usize, v: usize, at: &dyn Fn(usize, usize) -> [usize; 3]| {
+        // At most 128² voxels of a face tell enough.
+        let (du, dv) = (u.div_ceil(128), v.div_ceil(128));
+        let mut densities: Vec<f64> = (0..u)
+            .step_by(du)
+            .flat_map(|i| (0..v).step_by(dv).map(move |j| (i, j)))
+            .map(|(i, j)| {
+                let [x, y, z] = at(i, j);
+                volume.density_of(volume.value(x, y, z))
+            })
+            .collect();
+        densities.sort_by(f64::total_cmp);
+        densities[(densities.len() - 1) * 98 / 100]
+    };
+    let mut levels = [
+        face(ny, nz, &|i, j| [0, i, j]),
+        face(ny, nz, &|i, j| [nx - 1, i, j]),
+        face(nx, nz, &|i, j| [i, 0, j]),
+        face(nx, nz, &|i, j| [i, ny - 1, j]),
+        face(nx, ny, &|i, j| [i, j, 0]),
+        face(nx, ny, &|i, j| [i, j, nz - 1]),
+    ];
+    levels.sort_by(f64::total_cmp);
+    f64::midpoint(levels[2], levels[3])
+}
