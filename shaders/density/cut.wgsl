@@ -1,6 +1,7 @@
 // What is left of the volume after the crop box and the clip plane (src/math/region.rs): of every slab a
 // ray meets, the part that lies within.
 #import "sheets/sheet_frame.wgsl"
+#import "density/kernel.wgsl"
 
 // Whether anything is cut at all.
 override CUT: bool = false;
@@ -86,14 +87,19 @@ fn blurred_edge(distance: f32) -> f32 {
 // ends there, reconstructed with a B-spline stretched 2^level times. Data behind the face would only give it the
 // direction of their noise, and there are none beyond the grid.
 fn face_gradient(cut: Cut, p: vec3f, level: f32) -> vec3f {
-    let width = exp2(level);
-    let below = (p - cut.low) / width;
-    let above = (cut.high - p) / width;
-    let depth = (cut.plane.w - dot(cut.plane.xyz, p)) / width;
-    // Nearly everywhere no face is near.
-    if (all(min(below, above) >= vec3f(2.0)) && depth >= 2.0) {
+    if (!FACES && !CUT) {
         return vec3f(0.0);
     }
+    let width = exp2(level);
+    let nearest = min(p - cut.low, cut.high - p);
+    let behind = select(1e9, cut.plane.w - dot(cut.plane.xyz, p), CUT);
+    // Nearly everywhere no face is near.
+    if (min(min(nearest.x, nearest.y), min(nearest.z, behind)) >= 2.0 * width) {
+        return vec3f(0.0);
+    }
+    let below = (p - cut.low) / width;
+    let above = (cut.high - p) / width;
+    let depth = behind / width;
     let faces = vec3f(
         blurred_edge(below.x) - blurred_edge(above.x),
         blurred_edge(below.y) - blurred_edge(above.y),

@@ -95,6 +95,9 @@ fn density(p: vec3f, level: f32) -> f32 {
 
 // The share of the kernel at a point that lies within the grid, where it is stretched to pyramid level `level`.
 fn presence_in_grid(p: vec3f, level: f32) -> f32 {
+    if (!FACES) {
+        return 1.0;
+    }
     if (!STRETCH) {
         return presence(p, grid.dims, 1.0);
     }

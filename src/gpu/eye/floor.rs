@@ -5,7 +5,7 @@ use crate::gpu::light::packed::pack_light;
 use crate::gpu::light::raycast::RaycastVariant;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, LightCount, Variant};
+use crate::gpu::pipelines::variant::{Constants, Ends, LightCount, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
@@ -40,7 +40,10 @@ pub(crate) fn draw(
     let Gpu { context, shaders, volume, .. } = gpu;
     let frame = eye.frame();
     let lights = LightCount { all: lit.all().len() as u32, shadowed: lit.shadowed().len() as u32 };
-    let variant = FloorVariant::of(settings, lights).with_missing(volume.has_missing());
+    let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
+    let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
+    let ends = tables.lighting.ends(volume, dilation, 0.0);
+    let variant = FloorVariant::of(settings, lights).ending(ends);
     let pipeline = shaders.pipeline(&variant)?;
     let tiles = pass::tiles([frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
@@ -63,8 +66,6 @@ pub(crate) fn draw(
             view_of("floor_light", floor_light),
         ],
     );
-    let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
-    let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
     pass::dispatch(encoder, "Floor::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
@@ -83,9 +84,9 @@ impl FloorVariant {
         Self { rays: RaycastVariant::of(settings), lights }
     }
 
-    /// The floor under a volume in which voxels are missing, or are not.
-    fn with_missing(self, has_missing: bool) -> Self {
-        Self { rays: self.rays.with_missing(has_missing), ..self }
+    /// The floor under what ends there.
+    fn ending(self, ends: Ends) -> Self {
+        Self { rays: self.rays.ending(ends), ..self }
     }
 }
 

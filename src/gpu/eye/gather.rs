@@ -5,7 +5,7 @@ use crate::gpu::light::packed::{LightInput, light_bind_group, pack_light};
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{
-    Constants, LightCount, Reconstruction, ShadingVariant, Variant, classification_constant,
+    Constants, Ends, LightCount, Reconstruction, ShadingVariant, Variant, classification_constant,
     deposit_constant, flag, is_cut,
 };
 use crate::gpu::resources::pass;
@@ -144,7 +144,8 @@ impl EyePass {
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
         let gradients = self.gradients(gpu);
-        let variant = self.variant.with_gradients(gradients.is_some()).with_missing(gpu.volume.has_missing());
+        let ends = tables.ends(gpu.volume, self.dilation, self.frame.max_stretch_level());
+        let variant = self.variant.with_gradients(gradients.is_some()).ending(ends);
         let pipeline = shaders.pipeline(&variant)?;
         let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
         let runs = pass::runs(context, tiles);
@@ -245,9 +246,9 @@ impl GatherVariant {
         self
     }
 
-    /// The pass over a volume in which voxels are missing, or are not.
-    pub(crate) fn with_missing(mut self, has_missing: bool) -> Self {
-        self.reconstruction = self.reconstruction.with_missing(has_missing);
+    /// The pass over what ends there.
+    pub(crate) fn ending(mut self, ends: Ends) -> Self {
+        self.reconstruction = self.reconstruction.ending(ends);
         self
     }
 

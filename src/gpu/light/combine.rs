@@ -6,7 +6,7 @@ use super::packed::{LightInput, light_bind_group};
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant, flag};
+use crate::gpu::pipelines::variant::{Constants, Ends, ShadingVariant, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::Tables;
@@ -21,8 +21,7 @@ pub(crate) const BRICKS_PER_STEP: usize = 2048;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct CombineVariant {
     shading: ShadingVariant,
-    /// Voxels are missing.
-    has_missing: bool,
+    ends: Ends,
 }
 
 impl Variant for CombineVariant {
@@ -32,7 +31,7 @@ impl Variant for CombineVariant {
 
     fn constants(&self) -> Constants {
         let mut constants = self.shading.constants();
-        constants.push(flag("MISSING", self.has_missing));
+        constants.extend(self.ends.constants());
         constants
     }
 }
@@ -90,7 +89,7 @@ impl CombinedLight {
         let attenuation: Vec<_> =
             lights.iter().filter_map(|input| input.volume).map(|volume| &volume.view).collect();
         let Gpu { shaders, volume, .. } = gpu;
-        let pipeline = shaders.pipeline(&CombineVariant { shading, has_missing: volume.has_missing() })?;
+        let pipeline = shaders.pipeline(&CombineVariant { shading, ends: volume.ends_of_all() })?;
         let eye = gpu.uniform("Combine::eye", eye);
         let uniform = uniforms::Combine {
             dims: self.dims.map(|n| n as u32),

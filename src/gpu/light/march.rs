@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::gpu::pipelines::binding::{Named, buffer, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{
-    Constants, Reconstruction, Variant, classification_constant, deposit_constant, flag, is_cut,
+    Constants, Ends, Reconstruction, Variant, classification_constant, deposit_constant, flag, is_cut,
 };
 use crate::gpu::resources::pass;
 use crate::gpu::resources::ring::Ring;
@@ -113,9 +113,9 @@ impl MarchVariant {
         }
     }
 
-    /// The march through a volume in which voxels are missing, or are not.
-    pub(crate) fn with_missing(mut self, has_missing: bool) -> Self {
-        self.reconstruction = self.reconstruction.with_missing(has_missing);
+    /// The march through what ends there.
+    pub(crate) fn ending(mut self, ends: Ends) -> Self {
+        self.reconstruction = self.reconstruction.ending(ends);
         self
     }
 }
@@ -180,8 +180,11 @@ pub(crate) fn march(
     }
     // Slabs near a perspective light have narrower pixels than those behind.
     let is_stretched = view.frame.max_stretch_level_of(slabs.clone()) > 0.0;
-    let pipeline =
-        shaders.pipeline(&MarchVariant::of(settings, is_stretched).with_missing(volume.has_missing()))?;
+    let empty_space_skipping = sheets.reach != EVERYWHERE;
+    let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
+    let dilation = if empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
+    let ends = tables.lighting.ends(volume, dilation, view.frame.max_stretch_level_of(slabs.clone()));
+    let pipeline = shaders.pipeline(&MarchVariant::of(settings, is_stretched).ending(ends))?;
     let cut = settings.cuts.shading().region(&volume.scene);
     let count = tiles.len() as u32;
     let uniform = uniforms::March { tiles: count, ..march_uniform(light, &cut, view, sheets, slabs) };
@@ -191,9 +194,6 @@ pub(crate) fn march(
         sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances).to_vec();
     entries.push(buffer("tiles", &list));
     let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
-    let empty_space_skipping = sheets.reach != EVERYWHERE;
-    let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
-    let dilation = if empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::of(is_stretched));
     pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], single_workgroups(count));
     Ok(())

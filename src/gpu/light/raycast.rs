@@ -4,7 +4,9 @@ use super::packed::pack_light;
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Reconstruction, Variant, deposit_constant, flag, is_cut};
+use crate::gpu::pipelines::variant::{
+    Constants, Ends, Reconstruction, Variant, deposit_constant, flag, is_cut,
+};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
@@ -36,9 +38,9 @@ impl RaycastVariant {
         }
     }
 
-    /// Rays through a volume in which voxels are missing, or are not.
-    pub(crate) fn with_missing(mut self, has_missing: bool) -> Self {
-        self.reconstruction = self.reconstruction.with_missing(has_missing);
+    /// Rays through what ends there.
+    pub(crate) fn ending(mut self, ends: Ends) -> Self {
+        self.reconstruction = self.reconstruction.ending(ends);
         self
     }
 }
@@ -69,7 +71,9 @@ pub(crate) fn raycast(
         return Ok(());
     }
     let Gpu { shaders, volume, .. } = gpu;
-    let variant = RaycastVariant::of(settings).with_missing(volume.has_missing());
+    let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
+    let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
+    let variant = RaycastVariant::of(settings).ending(tables.lighting.ends(volume, dilation, 0.0));
     let pipeline = shaders.pipeline_into(&variant, target.texture.format())?;
     let uniform = uniforms::Raycast {
         light: pack_light(light, Some(target), &volume.scene, settings),
@@ -96,8 +100,6 @@ pub(crate) fn raycast(
             view_of("attenuation", &target.view),
         ],
     );
-    let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
-    let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
     pass::dispatch(
         encoder,

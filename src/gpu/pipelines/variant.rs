@@ -57,34 +57,50 @@ impl From<Kernel> for KernelVariant {
 pub(crate) struct Reconstruction {
     pub kernel: KernelVariant,
     pub quadrature: Quadrature,
-    /// Voxels are missing.
-    pub has_missing: bool,
+    pub ends: Ends,
+}
+
+/// Where what is shown of a volume ends with its data, as far as anything there is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Ends {
+    /// Away from all of that.
+    Nowhere,
+    /// At the faces of the grid.
+    AtFaces,
+    /// At the faces, and where voxels are missing.
+    AtMissing,
+}
+
+impl Ends {
+    /// `MISSING` and `FACES`.
+    pub(crate) fn constants(self) -> [(&'static str, f64); 2] {
+        [flag("MISSING", self == Self::AtMissing), flag("FACES", self != Self::Nowhere)]
+    }
 }
 
 impl Reconstruction {
-    /// With a kernel and its quadrature along the ray, of a volume whose voxels are all there.
+    /// With a kernel and its quadrature along the ray, of what ends away from the faces of a grid without missing voxels,
+    /// as most objects do.
     pub(crate) fn new(kernel: Kernel, quadrature: Quadrature) -> Self {
-        Self { kernel: kernel.into(), quadrature, has_missing: false }
+        Self { kernel: kernel.into(), quadrature, ends: Ends::Nowhere }
     }
 
-    /// Of a volume in which voxels are missing, or are not.
-    pub(crate) fn with_missing(self, has_missing: bool) -> Self {
-        Self { has_missing, ..self }
+    /// Of what ends there.
+    pub(crate) fn ending(self, ends: Ends) -> Self {
+        Self { ends, ..self }
     }
 
-    /// `KERNEL`, `SIGMA`, `QUADRATURE` and `MISSING`.
+    /// `KERNEL`, `SIGMA`, `QUADRATURE`, `MISSING` and `FACES`.
     pub(crate) fn constants(self) -> Constants {
         let (code, sigma) = match self.kernel {
             KernelVariant::BSpline => (0.0, 0.6),
             KernelVariant::Gaussian { sigma_bits } => (1.0, f64::from_bits(sigma_bits)),
             KernelVariant::Prefiltered => (2.0, 0.6),
         };
-        vec![
-            ("KERNEL", code),
-            ("SIGMA", sigma),
-            ("QUADRATURE", self.quadrature.offsets().len() as f64),
-            flag("MISSING", self.has_missing),
-        ]
+        let points = self.quadrature.offsets().len() as f64;
+        let mut constants = vec![("KERNEL", code), ("SIGMA", sigma), ("QUADRATURE", points)];
+        constants.extend(self.ends.constants());
+        constants
     }
 }
 

@@ -174,7 +174,7 @@ impl Scatterer {
         Ok(Self {
             frame: frame.clone(),
             variant: ScatterVariant {
-                reconstruction: Reconstruction::new(kernel, quadrature).with_missing(volume.has_missing()),
+                reconstruction: Reconstruction::new(kernel, quadrature).ending(volume.ends_of_all()),
                 order,
                 splat: what,
             },

@@ -23,6 +23,7 @@ use super::{Context, GpuError};
 use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
 use crate::gpu::pipelines::binding::{Named, Pipeline, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms::Grid;
+use crate::gpu::pipelines::variant::Ends;
 use crate::math::SceneSpace;
 
 /// Voxels before the data in the pyramid, which repeat its border: one texel of its coarsest level.
@@ -293,9 +294,9 @@ impl GpuVolume {
         }
     }
 
-    /// Whether voxels are missing.
-    pub(crate) fn has_missing(&self) -> bool {
-        self.presence.is_some()
+    /// Where what is shown ends with the data, if nothing is known of what is shown.
+    pub(crate) fn ends_of_all(&self) -> Ends {
+        if self.presence.is_some() { Ends::AtMissing } else { Ends::AtFaces }
     }
 
     /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.

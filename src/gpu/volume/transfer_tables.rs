@@ -5,6 +5,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::{GpuVolume, brick_dims};
+use crate::data::CELL_EDGE;
+use crate::gpu::pipelines::variant::Ends;
 use crate::gpu::{Context, GpuError};
 use crate::model::{BakedTransfer, Settings};
 use crate::plan::{BrickSet, CellDistances, CellSet, CellsAhead, TablesKey};
@@ -20,6 +22,8 @@ pub(crate) struct Table {
     pub occupied: Arc<BrickSet>,
     /// Distances to cells with any.
     distances: Arc<CellDistances>,
+    /// How many cells are at least between those and the cells at the faces of the grid.
+    clearance: u8,
 }
 
 impl Table {
@@ -45,7 +49,18 @@ impl Table {
             occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
         };
         let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
-        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances }
+        let clearance = distances.least_at_faces(volume.volume.dims().map(|n| (n - 1) / CELL_EDGE));
+        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances, clearance }
+    }
+
+    /// Where what it shows ends with the data, for samples that see `dilation` cells around theirs, with kernels stretched
+    /// up to a level of the pyramid.
+    pub(crate) fn ends(&self, volume: &GpuVolume, dilation: i32, level: f64) -> Ends {
+        let all = volume.ends_of_all();
+        // Kernels reach two of their widths to either side of a face, which lies half a voxel before the first cell.
+        let layers = level.exp2().ceil() as i32;
+        let is_away = i32::from(self.clearance) > layers - 1 + dilation;
+        if is_away && all == Ends::AtFaces { Ends::Nowhere } else { all }
     }
 
     /// Whether the lowest density has any extinction.
@@ -155,6 +170,12 @@ impl Tables {
         )?;
         let needed = RefCell::default();
         Ok((Self { eye, lighting, eye_distances, light_distances, shown, needed }, baked))
+    }
+
+    /// Where what either shows ends with the data, for samples of the eye and rays from them.
+    pub(crate) fn ends(&self, volume: &GpuVolume, dilation: i32, level: f64) -> Ends {
+        let is_away = |table: &Table| table.ends(volume, dilation, level) == Ends::Nowhere;
+        if is_away(&self.eye) && is_away(&self.lighting) { Ends::Nowhere } else { volume.ends_of_all() }
     }
 
     /// The cells of a light volume that a picture needs.

@@ -45,6 +45,24 @@ impl CellDistances {
         Self { dims, values: spread_through(&values, nx * ny) }
     }
 
+    /// The least of the distances at the faces of a grid whose last cells along x, y and z are these. The last face may lie
+    /// in the middle of a cell: the one before counts, too, and so do those beyond.
+    pub fn least_at_faces(&self, last: [usize; 3]) -> u8 {
+        let [nx, ny, _] = self.dims;
+        let is_at_face = |c: usize, axis: usize| c == 0 || c + 1 >= last[axis];
+        let least_in = |(z, plane): (usize, &[u8])| {
+            let whole = is_at_face(z, 2);
+            let rows = plane.chunks(nx).enumerate();
+            let least = rows.map(|(y, row)| {
+                let cells = row.iter().enumerate();
+                let at_faces = cells.filter(|(x, _)| whole || is_at_face(y, 1) || is_at_face(*x, 0));
+                at_faces.map(|(_, distance)| *distance).min().unwrap_or(FARTHEST)
+            });
+            least.min().unwrap_or(FARTHEST)
+        };
+        self.values.par_chunks(nx * ny).enumerate().map(least_in).min().unwrap_or(FARTHEST)
+    }
+
     /// Distances to the nearest of two sets of one grid.
     #[must_use]
     pub fn nearest(&self, other: &Self) -> Self {
@@ -147,6 +165,23 @@ mod tests {
             set.masks[x / 4 + 3 * (y / 4 + 2 * (z / 4))] |= 1 << (x % 4 + 4 * (y % 4) + 16 * (z % 4));
         }
         set
+    }
+
+    #[test]
+    fn faces_are_as_far_as_their_nearest_cell() {
+        // 21 voxels: cells 0 … 10 of 12.
+        let least = |cell: [usize; 3]| {
+            let mut set = CellSet { dims: [3; 3], masks: vec![0; 27] };
+            set.insert(cell);
+            CellDistances::of(&set).least_at_faces([10; 3])
+        };
+        assert_eq!(least([5, 5, 5]), 4);
+        assert_eq!(least([5, 2, 5]), 2);
+        assert_eq!((least([9, 5, 5]), least([5, 10, 5]), least([5, 5, 8])), (0, 0, 1));
+        assert_eq!(
+            CellDistances::of(&CellSet { dims: [3; 3], masks: vec![0; 27] }).least_at_faces([10; 3]),
+            FARTHEST
+        );
     }
 
     #[test]
