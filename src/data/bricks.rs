@@ -26,6 +26,8 @@ pub struct Bricks {
     pub ranges: Vec<[f32; 2]>,
     /// Bounds of the density reconstructed in each of their cells, by one unstretched kernel.
     pub cells: Vec<CellBounds>,
+    /// Where voxels are missing: for each brick its cells in which such a kernel reaches any that are there, a bit each.
+    present: Option<Vec<u64>>,
 }
 
 impl Bricks {
@@ -34,27 +36,35 @@ impl Bricks {
         let dims = volume.dims().map(|n| n.div_ceil(BRICK_EDGE));
         let ranges = ranges(volume, dims);
         let cells = cells::bounds(volume, dims, &ranges);
-        Self { dims, ranges, cells }
+        let present = volume.missing().map(|missing| missing.cells_with_voxels(dims));
+        Self { dims, ranges, cells, present }
+    }
+
+    /// The cells of a brick in which any voxel counts.
+    fn present(&self, brick: usize) -> u64 {
+        self.present.as_ref().map_or(u64::MAX, |present| present[brick])
     }
 
     /// For every brick whether a transfer function shows anything of it: `visible(min, max)`.
     pub fn occupancy(&self, visible: impl Fn(f32, f32) -> bool + Sync) -> Vec<bool> {
-        self.ranges.par_iter().map(|&[min, max]| visible(min, max)).collect()
+        let is_visible =
+            |(brick, &[min, max]): (usize, &[f32; 2])| self.present(brick) != 0 && visible(min, max);
+        self.ranges.par_iter().enumerate().map(is_visible).collect()
     }
 
     /// For every brick its cells in which a transfer function shows anything, a bit each.
     pub fn cell_masks(&self, visible: impl Fn(f32, f32) -> bool + Sync) -> Vec<u64> {
-        let mask = |(range, cells): (&[f32; 2], &CellBounds)| {
-            if !visible(range[0], range[1]) {
+        let mask = |(brick, (range, cells)): (usize, (&[f32; 2], &CellBounds))| {
+            if self.present(brick) == 0 || !visible(range[0], range[1]) {
                 return 0;
             }
             let bit = |(at, bounds): (usize, &[u8; 2])| {
                 let [min, max] = cells::restored(*bounds, *range);
                 u64::from(visible(min, max)) << at
             };
-            cells.iter().enumerate().map(bit).sum()
+            cells.iter().enumerate().map(bit).sum::<u64>() & self.present(brick)
         };
-        self.ranges.par_iter().zip(&self.cells).map(mask).collect()
+        self.ranges.par_iter().zip(&self.cells).enumerate().map(mask).collect()
     }
 }
 

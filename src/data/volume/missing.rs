@@ -45,6 +45,38 @@ impl Missing {
         self.bits[voxel / 64] >> (voxel % 64) & 1 == 1
     }
 
+    /// For each of so many bricks of 4³ cells of 2³ voxels those in which an unstretched kernel reaches a voxel that is
+    /// there: such a one is in the cell or in one beside it. A bit for each cell, x fastest.
+    pub(in crate::data) fn cells_with_voxels(&self, bricks: [usize; 3]) -> Vec<u64> {
+        let [width, height, depth] = bricks.map(|n| n * 4);
+        let [nx, ny, nz] = self.dims;
+        let holds = |cell: usize| {
+            let low = [cell % width, cell / width % height, cell / (width * height)].map(|c| 2 * c);
+            let place = |corner: usize| [0, 1, 2].map(|axis| low[axis] + (corner >> axis & 1));
+            let is_there =
+                |[x, y, z]: [usize; 3]| x < nx && y < ny && z < nz && !self.contains(x + nx * (y + ny * z));
+            (0..8).any(|corner| is_there(place(corner)))
+        };
+        let mut cells: Vec<bool> = (0..width * height * depth).into_par_iter().map(holds).collect();
+        for (stride, count) in [(1, width), (width, height), (width * height, depth)] {
+            let beside = |at: usize| {
+                let place = at / stride % count;
+                cells[at] || place > 0 && cells[at - stride] || place + 1 < count && cells[at + stride]
+            };
+            cells = (0..cells.len()).into_par_iter().map(beside).collect();
+        }
+        let mask = |brick: usize| {
+            let first = [brick % bricks[0], brick / bricks[0] % bricks[1], brick / (bricks[0] * bricks[1])];
+            let bit = |cell: usize| {
+                let [x, y, z] = [cell % 4, cell / 4 % 4, cell / 16];
+                let at = 4 * first[0] + x + width * (4 * first[1] + y + height * (4 * first[2] + z));
+                u64::from(cells[at]) << cell
+            };
+            (0..64).map(bit).sum()
+        };
+        (0..bricks.iter().product()).into_par_iter().map(mask).collect()
+    }
+
     /// Voxels of slice z that hold nothing: their places in the slice, x fastest, and the values that stand in for them.
     pub(super) fn in_slice(&self, z: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let [nx, ny, _] = self.dims;
@@ -170,6 +202,18 @@ mod tests {
         assert!((0..16).all(|z| missing.in_slice(z).all(|(_, value)| value == 3.0)));
         assert_eq!(Missing::find(dims, |_| Some(1.0)), None);
     }
+    #[test]
+    fn cells_count_that_a_kernel_finds_something_from() {
+        // The last voxels along x are there: 13 … 15 of 20, and so are cells 5 … 8.
+        let missing =
+            Missing::find([20, 8, 8], |voxel| (13..16).contains(&(voxel % 20)).then_some(1.0)).unwrap();
+        let masks = missing.cells_with_voxels([3, 1, 1]);
+        let row = |mask: u64| (0..4).map(|x| mask >> x & 1 == 1).collect::<Vec<_>>();
+        assert_eq!(row(masks[0]), [false; 4]);
+        assert_eq!(row(masks[1]), [false, true, true, true]);
+        assert_eq!(row(masks[2]), [true, false, false, false]);
+    }
+
     #[test]
     fn padding_is_no_value() {
         let volume = |padding: Option<f64>| {
