@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{ValueRange, VolumeError};
+use super::{Hints, ValueRange, VolumeError};
 use crate::math::SceneSpace;
 
 /// The number types that a voxel can have.
@@ -158,6 +158,7 @@ pub struct Volume {
     non_finite_voxels: usize,
     unit_mm: Option<f64>,
     is_anatomical: bool,
+    hints: Hints,
     content_id: u64,
 }
 
@@ -207,6 +208,7 @@ impl Volume {
             non_finite_voxels,
             unit_mm: None,
             is_anatomical: false,
+            hints: Hints::default(),
             content_id,
         })
     }
@@ -234,6 +236,17 @@ impl Volume {
         self.is_anatomical
     }
 
+    /// States what the file says of the values.
+    #[must_use]
+    pub fn with_hints(self, hints: Hints) -> Self {
+        Self { hints, ..self }
+    }
+
+    /// What the file says of the values.
+    pub fn hints(&self) -> &Hints {
+        &self.hints
+    }
+
     /// States what else is known of the volume whose blocks this one's voxels are.
     #[must_use]
     pub(super) fn standing_for(self, whole: &Self) -> Self {
@@ -241,6 +254,7 @@ impl Volume {
             file_dims: whole.file_dims,
             unit_mm: whole.unit_mm,
             is_anatomical: whole.is_anatomical,
+            hints: whole.hints.clone(),
             ..self
         }
     }

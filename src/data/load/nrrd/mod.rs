@@ -6,6 +6,7 @@
 mod detached;
 mod geometry;
 mod header;
+mod hints;
 mod layout;
 mod space;
 #[cfg(test)]
@@ -62,7 +63,7 @@ pub(super) fn load(
     let name = header.get("content").filter(|content| !content.is_empty());
     let name = name.map_or_else(|| stem(path), |content| plain(content, 120));
     Volume::new(name, extent.dims, geometry.world_from_index, samples)
-        .map(|volume| volume.with_anatomy(geometry.is_anatomical))
+        .map(|volume| volume.with_anatomy(geometry.is_anatomical).with_hints(header.hints()))
         .map_err(|error| attempt.bad_input("data", error.to_string(), "check the header against the data"))
 }
 
