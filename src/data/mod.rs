@@ -8,6 +8,7 @@ mod cells;
 mod dataset;
 mod hints;
 mod histogram;
+mod kind;
 pub mod load;
 mod open;
 mod reduce;
@@ -24,6 +25,7 @@ pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANC
 pub use dataset::Dataset;
 pub use hints::{Hints, Label, Labels, MAX_LABEL_NAME, MAX_LABELS, Meaning, Modality};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
+pub use kind::{DataKind, KindFound, KindName};
 pub use open::open;
 pub use reduce::reduced_dims;
 pub use small_file::read_small;

@@ -1,8 +1,10 @@
 //! A scalar volume on a regular grid, with its place in the world and its values in data units.
 
+use std::sync::OnceLock;
+
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{Hints, ValueRange, VolumeError};
+use super::{Hints, KindFound, ValueRange, VolumeError};
 use crate::math::SceneSpace;
 
 /// The number types that a voxel can have.
@@ -159,6 +161,8 @@ pub struct Volume {
     unit_mm: Option<f64>,
     is_anatomical: bool,
     hints: Hints,
+    /// Found when it is first asked for.
+    kind: OnceLock<KindFound>,
     content_id: u64,
 }
 
@@ -209,6 +213,7 @@ impl Volume {
             unit_mm: None,
             is_anatomical: false,
             hints: Hints::default(),
+            kind: OnceLock::new(),
             content_id,
         })
     }
@@ -239,12 +244,17 @@ impl Volume {
     /// States what the file says of the values.
     #[must_use]
     pub fn with_hints(self, hints: Hints) -> Self {
-        Self { hints, ..self }
+        Self { hints, kind: OnceLock::new(), ..self }
     }
 
     /// What the file says of the values.
     pub fn hints(&self) -> &Hints {
         &self.hints
+    }
+
+    /// What kind of data it holds. The first to ask waits until that is found: about a tenth of a second.
+    pub fn kind(&self) -> &KindFound {
+        self.kind.get_or_init(|| KindFound::of(self))
     }
 
     /// States what else is known of the volume whose blocks this one's voxels are.
@@ -255,6 +265,7 @@ impl Volume {
             unit_mm: whole.unit_mm,
             is_anatomical: whole.is_anatomical,
             hints: whole.hints.clone(),
+            kind: OnceLock::new(),
             ..self
         }
     }
