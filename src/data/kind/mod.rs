@@ -57,6 +57,11 @@ impl KindName {
     pub const ALL: [Self; 6] =
         [Self::Scalar, Self::DarkOnBright, Self::HounsfieldCt, Self::Signed, Self::Mask, Self::LabelMap];
 
+    /// What a volume can be treated as: as it is, and as each of them.
+    pub fn choices() -> impl Iterator<Item = Option<Self>> {
+        std::iter::once(None).chain(Self::ALL.map(Some))
+    }
+
     /// What machines and the command line call it.
     pub const fn key(self) -> &'static str {
         match self {
