@@ -112,6 +112,7 @@ impl App {
             settings: Settings::default(),
             defaults: Settings::default(),
             volume: None,
+            treated: Treated::default(),
             viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, storage.as_deref())?,
