@@ -11,12 +11,10 @@ mod histogram;
 mod kind;
 pub mod load;
 mod open;
-mod reduce;
 mod small_file;
 pub mod synthetic;
 mod value_range;
 mod volume;
-mod volume_error;
 
 pub(crate) use attempt::address_bytes_left;
 pub use attempt::{plain, single_line, without_controls};
@@ -27,8 +25,6 @@ pub use hints::{Hints, Label, Labels, MAX_LABEL_NAME, MAX_LABELS, Meaning, Modal
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use kind::{DataKind, KindFound, KindName};
 pub use open::open;
-pub use reduce::reduced_dims;
 pub use small_file::read_small;
 pub use value_range::ValueRange;
-pub use volume::{Samples, Volume, VoxelType};
-pub use volume_error::VolumeError;
+pub use volume::{Missing, Samples, Volume, VolumeError, VoxelType, reduced_dims};

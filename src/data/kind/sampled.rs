@@ -29,7 +29,7 @@ impl<'a> Sampled<'a> {
     pub(super) fn of(volume: &'a Volume) -> Self {
         let [nx, ny, nz] = volume.dims();
         let step = (volume.voxel_count() as f64 / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
-        let padding = volume.hints().padding;
+        let padding = volume.padding_value().or(volume.hints().padding);
         let samples = volume.samples();
         let mut values: Vec<f64> = (0..nz)
             .step_by(step)
