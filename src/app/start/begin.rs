@@ -12,6 +12,7 @@ use crate::app::shell::keep_balanced::KeepBalanced;
 use crate::app::shell::messages::Messages;
 use crate::app::shell::session::Session;
 use crate::app::shell::status_file::StatusFile;
+use crate::app::shell::treat_as::Treated;
 use crate::app::transfer_editor::TransferEditor;
 use crate::app::viewport::Viewport;
 use crate::app::viewport::compare::Compare;

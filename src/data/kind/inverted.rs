@@ -18,7 +18,7 @@ const MOST_OF_OBJECT: f64 = 0.05;
 pub(super) fn dark_on_bright(sampled: &Sampled<'_>) -> Option<KindFound> {
     let (low, high) = (sampled.quantile(0.005), sampled.quantile(0.995));
     let split = sampled.split();
-    if !(high > low) || sampled.share(f64::NEG_INFINITY, split) > 0.5 {
+    if high <= low || sampled.share(f64::NEG_INFINITY, split) > 0.5 {
         return None;
     }
     let is_bright = |face: &Vec<f64>| {

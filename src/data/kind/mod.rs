@@ -9,7 +9,7 @@ mod sampled;
 #[cfg(test)]
 mod tests;
 
-use self::sampled::Sampled;
+use self::sampled::{Sampled, quantile};
 use super::{Meaning, Modality, Volume};
 
 /// What kind of data a volume holds.
@@ -194,6 +194,12 @@ fn signed(sampled: &Sampled<'_>) -> Option<KindFound> {
     if below >= 0.0 || above <= 0.0 || balance < LEAST_BALANCE {
         return None;
     }
+    // Around deviations there is none: what is far below zero all around is the dark margin of a scan.
+    let is_all_strong =
+        |face: &Vec<f64>| quantile(face, 0.95) <= below / 2.0 || quantile(face, 0.05) >= above / 2.0;
+    if sampled.faces().iter().filter(|face| is_all_strong(face)).count() >= STRONG_FACES {
+        return None;
+    }
     let coherence = sampled.coherence_beyond(below / 2.0).min(sampled.coherence_beyond(above / 2.0));
     (coherence >= LEAST_COHERENCE).then(|| {
         let why = format!(
@@ -207,6 +213,9 @@ fn signed(sampled: &Sampled<'_>) -> Option<KindFound> {
 /// How far a signed field reaches to its weaker side, as a share of the stronger, at least. Six of six signed fields
 /// have 0.49 and more, noise below zero beside a signal above it seldom 0.3.
 const LEAST_BALANCE: f64 = 0.35;
+
+/// So many of the six faces are not around a signed field if all of their values are strong.
+const STRONG_FACES: usize = 5;
 
 /// How many neighbours of strong values are half as strong, at least. In lobes 0.9 and more; in white noise 0.1.
 const LEAST_COHERENCE: f64 = 0.5;

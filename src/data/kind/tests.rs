@@ -164,6 +164,8 @@ fn scalars() -> Vec<Vec<f64>> {
                 if p.length() < 0.9 { (80.0 * edge(p) + 5.0 * bell(at, 1).abs()).round() } else { -32768.0 }
             },
         ),
+        // A dense thing in air whose value is as far below zero.
+        values(|p, at| if p.length() < 0.6 { 1200.0 } else { -1000.0 } + 5.0 * bell(at, 3)),
         vec![7.0; N * N * N],
     ]
 }

@@ -97,6 +97,11 @@ fn is_computed(volume: &Volume, start: f64) -> bool {
     is_smooth(start..f64::INFINITY) && is_smooth(start / 4.0..start)
 }
 
+/// How rough a volume is everywhere: √3 in white noise, nearly nothing in smooth fields.
+pub(super) fn roughness(volume: &Volume) -> f64 {
+    Texture::of(volume, f64::NEG_INFINITY..f64::INFINITY).roughness
+}
+
 /// Voxels that are looked at: of larger volumes, one in so many along each axis.
 const LOOKED_AT: f64 = (1u64 << 20) as f64;
 

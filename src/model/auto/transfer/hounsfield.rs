@@ -3,7 +3,7 @@
 use super::super::domain::Domain;
 use super::super::palette::Palette;
 use super::{Found, Stop, quantile, some_values, through};
-use crate::data::{Histogram, Volume};
+use crate::data::Volume;
 
 /// Hounsfield units at which bone and contrast agent begin: spongy bone and enhanced blood are above 130, organs below
 /// 80 (100 with agent in them).
@@ -13,7 +13,7 @@ const BONE: f64 = 150.0;
 const LEAST_BONE: f64 = 0.0005;
 
 /// Shows bone; nothing where there is none.
-pub(super) fn find(volume: &Volume, _histogram: &Histogram, water: f64) -> Option<Found> {
+pub(super) fn find(volume: &Volume, water: f64) -> Option<Found> {
     let (mut all, start) = (0usize, water + BONE);
     let dense = some_values(volume, |value| {
         all += 1;

@@ -48,7 +48,8 @@ fn numbers(volume: &Volume) -> Vec<i64> {
             continue;
         }
         last = value;
-        if value >= HALF && value.is_finite() && found.len() < MAX_POINTS - 1 {
+        let is_number = value.is_finite() && Some(value) != volume.padding_value();
+        if value >= HALF && is_number && found.len() < MAX_POINTS - 1 {
             found.insert(value.round() as i64);
         }
     }

@@ -6,6 +6,8 @@ mod labels;
 mod mask;
 mod scalar;
 mod signed;
+#[cfg(test)]
+mod tests;
 
 use super::domain::Domain;
 use super::palette::Palette;
@@ -27,7 +29,7 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Fo
         DataKind::LabelMap { .. } => Found { transfer: labels::transfer(volume), domain: Domain::Unknown },
         DataKind::Signed => signed::find(volume).unwrap_or_else(|| scalar::find(volume, histogram)),
         DataKind::HounsfieldCt { water } => {
-            hounsfield::find(volume, histogram, water).unwrap_or_else(|| scalar::find(volume, histogram))
+            hounsfield::find(volume, water).unwrap_or_else(|| scalar::find(volume, histogram))
         }
         DataKind::DarkOnBright => dark::find(volume, histogram),
         DataKind::Scalar => scalar::find(volume, histogram),
@@ -55,13 +57,13 @@ fn of_points(points: Vec<ControlPoint>) -> TransferFunction {
     function
 }
 
-/// Finite values of a volume in order: of all voxels, or of one in so many.
+/// Values of a volume in order, where there is something: of all voxels, or of one in so many.
 fn some_values(volume: &Volume, keep: impl FnMut(f64) -> Option<f64>) -> Vec<f64> {
     // Quantiles of two million are good to a thousandth.
     let step = volume.voxel_count().div_ceil(1 << 21).max(1);
     let samples = volume.samples();
-    let found =
-        (0..samples.len()).step_by(step).map(|voxel| samples.value(voxel)).filter(|value| value.is_finite());
+    let is_there = |voxel: &usize| volume.missing().is_none_or(|missing| !missing.contains(*voxel));
+    let found = (0..samples.len()).step_by(step).filter(is_there).map(|voxel| samples.value(voxel));
     let mut values: Vec<f64> = found.filter_map(keep).collect();
     values.sort_unstable_by(f64::total_cmp);
     values

@@ -1,6 +1,6 @@
 //! Deviations to both sides of zero: both are shown where they are strong, and zero is not.
 
-use super::super::domain::Domain;
+use super::super::domain::{Domain, roughness};
 use super::super::palette::Palette;
 use super::{Found, Stop, of_points, quantile, some_values, through};
 use crate::data::Volume;
@@ -13,13 +13,18 @@ const ENERGY: f64 = 0.5;
 const DEVIATIONS: f64 = 2.5;
 const DEVIATION_PER_MEDIAN: f64 = 1.4826;
 
+/// Roughness up to which a field has no noise: layers of rock have 0.05, statistical maps 0.44 and more.
+const SMOOTH: f64 = 0.2;
+
 /// Share of the values that is shown at least.
 const LEAST_SHOWN: f64 = 0.04;
 
 /// Shows both sides; nothing where all values are zero.
 pub(super) fn find(volume: &Volume) -> Option<Found> {
     let magnitudes = some_values(volume, |value| (value != 0.0).then_some(value.abs()));
-    let threshold = threshold(&magnitudes);
+    // Fields without noise have none to hide.
+    let has_noise = roughness(volume) > SMOOTH;
+    let threshold = threshold(&magnitudes, has_noise);
     if threshold <= 0.0 {
         return None;
     }
@@ -43,7 +48,7 @@ pub(super) fn find(volume: &Volume) -> Option<Found> {
 }
 
 /// The magnitude from which values are strong, of magnitudes in order.
-fn threshold(magnitudes: &[f64]) -> f64 {
+fn threshold(magnitudes: &[f64], has_noise: bool) -> f64 {
     let total: f64 = magnitudes.iter().map(|value| value * value).sum();
     // From the strongest down until half of the energy is there.
     let mut sum = 0.0;
@@ -51,6 +56,10 @@ fn threshold(magnitudes: &[f64]) -> f64 {
         sum += value * value;
         sum >= ENERGY * total
     });
+    let of_energy = of_energy.copied().unwrap_or(0.0);
+    if !has_noise {
+        return of_energy;
+    }
     let of_noise = DEVIATIONS * DEVIATION_PER_MEDIAN * quantile(magnitudes, 0.5);
-    of_energy.copied().unwrap_or(0.0).max(of_noise).min(quantile(magnitudes, 1.0 - LEAST_SHOWN))
+    of_energy.max(of_noise).min(quantile(magnitudes, 1.0 - LEAST_SHOWN))
 }

@@ -92,6 +92,17 @@ fn hostile_keys_do_no_harm() {
 }
 
 #[test]
+fn padding_holds_nothing() {
+    let load = |line: &str| load_attached(&format!("{HEADER}{line}\n"), &VOXELS).unwrap();
+    let volume = load("PaddingValue:=1");
+    assert_eq!((volume.padding_value(), volume.value_range().low), (Some(1.0), 2.0));
+    assert_eq!(volume.missing().map(|missing| missing.count()), Some(1));
+    let header = format!("{HEADER}PaddingValue:=5\n");
+    let alone = load_attached(&header, &[5; 8]).unwrap();
+    assert_eq!((alone.padding_value(), alone.hints().padding), (None, Some(5.0)), "nothing else is there");
+}
+
+#[test]
 fn hints_stay_when_voxels_are_averaged() {
     let volume = load_attached(&format!("{HEADER}modality:=MR\nsample units: ms\n"), &VOXELS).unwrap();
     let hints = volume.hints().clone();
