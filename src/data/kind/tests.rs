@@ -112,7 +112,7 @@ fn hounsfield() -> Vec<Vec<f64>> {
     vec![
         values(chest),
         // What the scanner does not reach.
-        values(|p, at| if p.x.hypot(p.y) > 0.95 { -3024.0 } else { chest(p, at) }),
+        values(|p, at| if p.truncate().length() > 0.95 { -3024.0 } else { chest(p, at) }),
         values(|p, at| {
             let base = if p.length() > 0.7 {
                 -1000.0
@@ -128,7 +128,7 @@ fn hounsfield() -> Vec<Vec<f64>> {
 
 fn dark_on_bright() -> Vec<Vec<f64>> {
     vec![
-        values(|p, at| if (p.x - 0.3 * (3.0 * p.z).sin()).hypot(p.y) < 0.2 { 30.0 } else { 230.0 } + 12.0 * bell(at, 2)),
+        values(|p, at| if (p.truncate() - glam::DVec2::X * 0.3 * (3.0 * p.z).sin()).length() < 0.2 { 30.0 } else { 230.0 } + 12.0 * bell(at, 2)),
         values(|p, _| 1000.0 - 900.0 * bump(p, DVec3::ZERO, 0.3)),
         values(|p, _| f64::from(u8::from(p.length() > 0.5))),
     ]

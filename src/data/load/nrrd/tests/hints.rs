@@ -1,7 +1,7 @@
 //! What headers say of the values.
 
 use super::{HEADER, VOXELS, load_attached};
-use crate::data::{Hints, MAX_LABEL_NAME, MAX_LABELS, Meaning, Modality};
+use crate::data::{Hints, MAX_LABEL_NAME, MAX_LABELS, Meaning, Missing, Modality};
 
 /// What is made of a header with these lines.
 fn hints_of(lines: &[&str]) -> Hints {
@@ -96,7 +96,7 @@ fn padding_holds_nothing() {
     let load = |line: &str| load_attached(&format!("{HEADER}{line}\n"), &VOXELS).unwrap();
     let volume = load("PaddingValue:=1");
     assert_eq!((volume.padding_value(), volume.value_range().low), (Some(1.0), 2.0));
-    assert_eq!(volume.missing().map(|missing| missing.count()), Some(1));
+    assert_eq!(volume.missing().map(Missing::count), Some(1));
     let header = format!("{HEADER}PaddingValue:=5\n");
     let alone = load_attached(&header, &[5; 8]).unwrap();
     assert_eq!((alone.padding_value(), alone.hints().padding), (None, Some(5.0)), "nothing else is there");
