@@ -40,6 +40,7 @@ use self::shell::opening::PendingLook;
 use self::shell::picture::PictureInputs;
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
+use self::shell::treat_as::Treated;
 use self::start::carried::Legacy;
 use self::transfer_editor::TransferEditor;
 use self::viewport::canvas::Canvas;
@@ -77,6 +78,7 @@ pub struct App {
     /// The first look at the open volume: what reset buttons put back.
     defaults: Settings,
     volume: Option<VolumeFacts>,
+    treated: Treated,
     viewport: Viewport,
     /// Fills the window's background.
     window: WindowPainter,
@@ -251,6 +253,7 @@ impl App {
         }
         let panel = egui::Panel::right("side").resizable(false).exact_size(theme::SIDE_WIDTH);
         let panel = panel.frame(theme::panel(ui));
+        let treated_as = self.treated.shown(&self.settings);
         panel.show_collapsible(ui, &mut self.side_open, |ui| {
             panels::show(
                 ui,
@@ -258,6 +261,7 @@ impl App {
                     settings: &mut self.settings,
                     defaults: &self.defaults,
                     volume: self.volume.as_ref(),
+                    treated_as,
                     selected_light: &mut self.selected_light,
                     compare: &mut self.compare,
                     facts,

@@ -3,16 +3,19 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::CliError;
 use super::outputs::print_line;
 use super::scene::LoadArgs;
 use crate::data::load::LoadControl;
-use crate::data::{Dataset, ValueRange, open};
+use crate::data::{DataKind, Dataset, Hints, ValueRange, open};
 
 /// Percentiles that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
+
+/// Labels that are listed for people; machines get all.
+const LISTED_LABELS: usize = 12;
 
 /// Arguments of `info`.
 #[derive(Debug, Args)]
@@ -45,6 +48,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
         "range": [low, high],
         "non_finite_voxels": volume.non_finite_voxels(),
+        "kind": kind(&volume.kind().kind),
+        "kind_why": volume.kind().why,
+        "hints": hints(volume.hints()),
         "percentiles": percentiles,
         "cpu_bytes": voxels * volume.samples().voxel_type().bytes() as u64,
         "gpu_bytes_with_one_light": gpu_bytes,
@@ -60,9 +66,66 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  values       {low} … {high}"))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
     print_line(&format!("  percentiles  {}", listed.join(", ")))?;
+    print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().why))?;
+    for line in hint_lines(volume.hints()) {
+        print_line(&line)?;
+    }
     if volume.non_finite_voxels() > 0 {
         print_line(&format!("  not finite   {} voxels", volume.non_finite_voxels()))?;
     }
     print_line(&format!("  memory       {} MiB on the GPU with one light", gpu_bytes >> 20))?;
     Ok(())
+}
+
+/// A kind of data, for machines.
+fn kind(kind: &DataKind) -> Value {
+    let name = kind.name().key();
+    match kind {
+        DataKind::LabelMap { count } => json!({ "name": name, "labels": count }),
+        DataKind::HounsfieldCt { water } => json!({ "name": name, "water": water }),
+        DataKind::Mask | DataKind::Signed | DataKind::DarkOnBright | DataKind::Scalar => {
+            json!({ "name": name })
+        }
+    }
+}
+
+/// What the file says of the values, for machines.
+fn hints(hints: &Hints) -> Value {
+    let labels: Vec<Value> = hints
+        .labels
+        .iter()
+        .map(|(number, label)| json!({ "number": number, "name": label.name, "color": label.color }))
+        .collect();
+    json!({
+        "modality": hints.modality.key(),
+        "meaning": hints.meaning.key(),
+        "unit": hints.unit(),
+        "is_rescaled": hints.is_rescaled,
+        "padding": hints.padding,
+        "acquisition": hints.acquisition(),
+        "labels": labels,
+    })
+}
+
+/// What the file says of the values, for people.
+fn hint_lines(hints: &Hints) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut add = |name: &str, text: Option<&str>| {
+        if let Some(text) = text {
+            lines.push(format!("  {name:<12} {text}"));
+        }
+    };
+    add("modality", hints.modality.key());
+    add("meaning", hints.meaning.key());
+    add("unit", hints.unit());
+    add("rescaled", hints.is_rescaled.then_some("yes"));
+    add("padding", hints.padding.map(|value| value.to_string()).as_deref());
+    add("acquisition", hints.acquisition());
+    for (number, label) in hints.labels.iter().take(LISTED_LABELS) {
+        add("label", Some(&format!("{number}: {}", label.name)));
+    }
+    if hints.labels.len() > LISTED_LABELS {
+        add("label", Some(&format!("and {} more", hints.labels.len() - LISTED_LABELS)));
+    }
+    lines
 }

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
-use crate::data::{Dataset, Volume, VoxelType, open, read_small};
+use crate::data::{Dataset, KindName, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance_quickly, fitted};
 use crate::model::{Engine, MAX_EDGE, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto};
@@ -162,6 +162,36 @@ impl From<QualityArg> for Quality {
     }
 }
 
+/// A kind of data.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum KindArg {
+    /// More is more of something
+    Scalar,
+    /// An object that is darker than what is around it
+    DarkOnBright,
+    /// Hounsfield units
+    Ct,
+    /// Deviations to both sides of zero
+    Signed,
+    /// Something or nothing
+    Mask,
+    /// Numbers of what is there
+    Labels,
+}
+
+impl From<KindArg> for KindName {
+    fn from(kind: KindArg) -> Self {
+        match kind {
+            KindArg::Scalar => Self::Scalar,
+            KindArg::DarkOnBright => Self::DarkOnBright,
+            KindArg::Ct => Self::HounsfieldCt,
+            KindArg::Signed => Self::Signed,
+            KindArg::Mask => Self::Mask,
+            KindArg::Labels => Self::LabelMap,
+        }
+    }
+}
+
 /// The look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
@@ -171,6 +201,9 @@ pub(super) struct LookArgs {
     /// Session to restore: a JSON file, or a picture that was exported
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
+    /// What kind of data the volume is shown as, whatever it seems to be
+    #[arg(long = "as", value_name = "KIND", value_enum)]
+    treat_as: Option<KindArg>,
     /// How truly light is computed; single settings and --shadows are laid over it
     #[arg(long, value_enum)]
     quality: Option<QualityArg>,
@@ -245,7 +278,8 @@ impl LookArgs {
     /// The automatic look, with preset, session and single settings laid over it.
     /// All of them are checked here, before anything slow begins.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
-        let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
+        let mut settings =
+            auto::first_settings_as(loaded.volume(), loaded.histogram(), self.treat_as.map(KindName::from));
         let mut balanced = false;
         let overlays = [("preset", &self.preset), ("session", &self.session)];
         for (what, path) in overlays {

@@ -79,3 +79,31 @@ fn voxels_are_averaged_and_the_look_stays() {
     choose(&mut harness, "None", "32×32×32");
     assert!(harness.query_by_label("Averaged from").is_none());
 }
+
+#[test]
+fn volumes_are_treated_as_other_data_in_one_step() {
+    let options = Options { source: Some(SCENE.into()), ..Options::default() };
+    let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
+    click(&mut harness, "Data");
+    harness.get_by_label("Scalar field");
+    let before = harness.state().settings().clone();
+    let treat = |harness: &mut Harness<'_, App>, kind: &str| {
+        click(harness, "Treat as");
+        harness.run_steps(4);
+        // The list is over all else, and shown last.
+        harness.get_all_by_label(kind).last().expect("it is in the list").click();
+        harness.run_steps(10);
+        wait_until_idle(harness);
+    };
+    treat(&mut harness, "Mask");
+    let mask = harness.state().settings().clone();
+    assert_ne!(mask.transfer, before.transfer);
+    assert_eq!(mask.shadows.balance, before.shadows.balance);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(10);
+    assert_eq!(*harness.state().settings(), before, "one step back");
+    treat(&mut harness, "Labels");
+    treat(&mut harness, "Automatic");
+    assert_eq!(harness.state().settings().transfer, before.transfer);
+    assert_eq!(harness.state().errors(), [""; 0]);
+}

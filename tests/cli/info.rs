@@ -24,3 +24,30 @@ fn info_says_what_is_in_a_volume() {
     let text = folder.succeed("info builtin:chair:16");
     assert!(text.contains("16 × 16 × 16") && text.contains("uint8"), "{text}");
 }
+
+#[test]
+fn info_says_what_kind_of_data_it_is_and_what_the_file_says_of_it() {
+    let folder = Folder::new();
+    let header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nsample units: HU\n\
+                  modality:=CT\nPaddingValue:=7\nSegment0_Name:=a \u{1b}b\nSegment0_LabelValue:=3\n\n";
+    let file = [header.as_bytes(), &[0, 3, 3, 0, 3, 3, 0, 7]].concat();
+    std::fs::write(folder.path("s.nrrd"), file).expect("a file");
+    let facts: Value = serde_json::from_str(&folder.succeed("info s.nrrd --json")).expect("valid JSON");
+    assert_eq!(facts["kind"], serde_json::json!({ "name": "labels", "labels": 2 }));
+    assert!(facts["kind_why"].as_str().is_some_and(|why| why.contains("the file says")));
+    let hints = &facts["hints"];
+    assert_eq!(
+        (&hints["modality"], &hints["meaning"], &hints["unit"]),
+        (&"ct".into(), &"labels".into(), &"HU".into())
+    );
+    assert_eq!(hints["padding"], 7.0);
+    assert_eq!(hints["labels"][0]["name"], "a ·b");
+    let text = folder.succeed("info s.nrrd");
+    for line in ["kind         labels: ", "modality     ct", "label        3: a ·b", "padding      7"] {
+        assert!(text.contains(line), "{line:?} is not in {text}");
+    }
+    let ball: Value =
+        serde_json::from_str(&folder.succeed("info builtin:sphere:24 --json")).expect("valid JSON");
+    assert_eq!(ball["kind"]["name"], "scalar");
+    assert_eq!(ball["hints"]["modality"], Value::Null);
+}

@@ -186,3 +186,21 @@ fn looks_stand_side_by_side_with_their_distances() {
     assert!(lines[1].starts_with("splat") && lines[1].contains("RMSE   0.00"), "{text}");
     assert!(lines[2].starts_with("off") && !lines[2].contains("RMSE   0.00"), "{text}");
 }
+
+#[test]
+fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
+    let folder = Folder::new();
+    let settings = |kind: &str| {
+        folder.succeed(&format!(
+            "render builtin:sphere:24 -o {kind}.png --size 32x24 --report {kind}.json --as {kind}"
+        ));
+        folder.json(&format!("{kind}.json"))["settings"]["transfer"].clone()
+    };
+    let points = |function: &Value| function["points"].as_array().map_or(0, Vec::len);
+    let (scalar, mask, labels) = (settings("scalar"), settings("mask"), settings("labels"));
+    assert!(scalar != mask && mask != labels);
+    assert!(points(&labels) > points(&mask), "a colour for every number");
+    folder.succeed("render builtin:sphere:24 -o own.png --size 32x24 --report own.json");
+    assert_eq!(folder.json("own.json")["settings"]["transfer"], scalar, "it is one");
+    folder.fail("render builtin:sphere:24 -o no.png --as something", 2);
+}

@@ -13,9 +13,11 @@ mod manifest;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use chiaroscuro::data::Samples;
 use chiaroscuro::data::load::{LoadErrorKind, RawFormat};
 use chiaroscuro::data::synthetic::{NAMES, builtin};
+use chiaroscuro::data::{Histogram, KindName, Samples};
+
+use chiaroscuro::model::auto;
 
 use checks::{assert_good_first_looks, files, load_all, open};
 use harness::Trial;
@@ -45,6 +47,7 @@ fn main() -> ExitCode {
         real("nrrd_volumes_load_as_the_manifest_says", nrrd_volumes_load_as_the_manifest_says),
         real("odd_nrrd_files_load_or_say_why_not", odd_nrrd_files_load_or_say_why_not),
         real("one_volume_is_the_same_in_every_form", one_volume_is_the_same_in_every_form),
+        real("kinds_of_data_are_recognised", kinds_of_data_are_recognised),
         always("built_in_volumes_have_good_first_looks", built_in_volumes_have_good_first_looks),
         always("wrong_facts_and_looks_are_noticed", checks::wrong_facts_and_looks_are_noticed),
         always("the_manifest_is_understood", manifest::the_manifest_is_understood),
@@ -102,6 +105,38 @@ fn one_volume_is_the_same_in_every_form(folder: &Path) {
         assert_eq!(first.dims(), second.dims(), "{a} and {b}");
         assert!(same(first.samples(), second.samples()), "{a} and {b} have other voxels");
     }
+}
+
+/// Volumes of each kind, by the names of their files; all others are scalar.
+const KINDS: [(KindName, &[&str]); 4] = [
+    (KindName::LabelMap, &["aal_labels", "ctchest_seg", "platynereis_labels", "torso_labels"]),
+    (KindName::Signed, &["cn9_homo", "f_orbital", "narps_zmap", "seismic_ex2", "spmMotor", "spmMotor_nan"]),
+    (KindName::HounsfieldCt, &["ctchest4", "cranium_256x256x108_int16"]),
+    (KindName::DarkOnBright, &["x_vessel_inverted"]),
+];
+
+fn kinds_of_data_are_recognised(folder: &Path) {
+    let mut paths = files(&folder.join("first"), &["nrrd"]);
+    paths.extend(files(&folder.join("raw"), &["raw"]));
+    let mut wrong = Vec::new();
+    for path in paths {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let expected = KINDS
+            .iter()
+            .find(|(_, names)| names.contains(&name.as_str()))
+            .map_or(KindName::Scalar, |(kind, _)| *kind);
+        let volume = open(&path, RawFormat::default()).expect("it loads");
+        let found = volume.kind();
+        println!("{name}: {:?}, {}", found.kind, found.why);
+        if found.kind.name() != expected {
+            wrong.push(format!("{name} is {expected:?}, {:?} was found: {}", found.kind, found.why));
+        }
+        let settings = auto::first_settings(&volume, &Histogram::of(&volume));
+        if expected == KindName::LabelMap && auto::labels_lost(&settings, &volume) > 0 {
+            wrong.push(format!("{name} has labels that are not shown"));
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
 fn same(a: &Samples, b: &Samples) -> bool {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
 use crate::app::text;
+use crate::data::KindName;
 use crate::model::{COLOR_MAPS, Light, PRESETS, Preset, Rig, StandardView};
 
 /// Something the user asked for.
@@ -83,6 +84,8 @@ pub(crate) enum Command {
     Dimmer,
     /// The automatic transfer function.
     AutomaticTransfer,
+    /// A first look at data of this kind, or of the volume's own.
+    TreatAs(Option<KindName>),
     /// One of the library.
     UsePreset(Preset),
     /// Other colours for the visible values: the index of a colour map, and whether it is reversed.
@@ -227,6 +230,7 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::Quit,
     ];
     all.extend([1, 2, 4].map(Command::Average));
+    all.extend(KindName::choices().map(Command::TreatAs));
     all.extend(StandardView::ALL.map(Command::LookFrom));
     all.extend(Rig::ALL.map(Command::UseRig));
     all.extend(PRESETS.map(Command::UsePreset));
@@ -249,6 +253,7 @@ impl Command {
                 let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
                 return text::commands::use_colors(name, *back).into();
             }
+            Self::TreatAs(kind) => return text::commands::treat_as(*kind).into(),
             Self::Average(block) => return text::commands::average(*block).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,

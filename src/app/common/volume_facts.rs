@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::worker::loader::Reading;
-use crate::data::{Dataset, Histogram, ValueRange, VoxelType};
+use crate::data::{DataKind, Dataset, Histogram, ValueRange, VoxelType};
 use crate::math::SceneSpace;
 
 /// Facts about a volume; all of them fixed.
@@ -34,6 +34,8 @@ pub(crate) struct VolumeFacts {
     pub bytes: u64,
     /// How the grid lies in scene space.
     pub scene: SceneSpace,
+    /// What kind of data it holds.
+    pub kind: DataKind,
     /// Whether +x, +y and +z are a body's right, front and head.
     pub is_anatomical: bool,
     /// How often each value occurs.
@@ -60,6 +62,7 @@ impl VolumeFacts {
             non_finite_voxels: volume.non_finite_voxels(),
             bytes: (volume.voxel_count() * voxel_type.bytes()) as u64,
             scene: volume.scene(),
+            kind: volume.kind().kind,
             is_anatomical: volume.is_anatomical(),
             histogram: Arc::clone(dataset.histogram()),
         }

@@ -7,7 +7,7 @@ use super::Panels;
 use super::controls::{choice, row};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::data::{ValueRange, plain};
+use crate::data::{KindName, ValueRange, plain};
 use crate::model::{Length, Settings};
 
 /// Characters of a path that are laid out, which is then cut to the width that there is.
@@ -20,6 +20,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         return;
     };
     facts(ui, volume);
+    treatment(ui, panels.treated_as, panels.commands);
     averaging(ui, volume, panels.commands);
     opacity_unit(ui, panels.settings, panels.defaults, volume);
 }
@@ -31,6 +32,7 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
         (text::data::SOURCE, plain(&volume.source.to_string_lossy(), LONGEST_PATH)),
         (text::data::DIMENSIONS, text::data::dimensions(volume.dims)),
         (text::data::VOXEL_TYPE, volume.voxel_type.to_owned()),
+        (text::data::KIND, text::data::kind(volume.kind)),
         (text::data::SPACING, text::data::spacing(&volume.spacing_mm.map(short))),
         (text::data::VALUES, text::data::values(&short(low), &short(high))),
         (text::data::MEMORY, text::data::memory(volume.bytes as f64 / f64::from(1 << 20))),
@@ -44,6 +46,26 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     for (name, fact) in rows {
         row(ui, Named { name, tip: "" }, |ui| ui.add(egui::Label::new(fact).truncate()));
     }
+}
+
+/// The first look, for another kind of data.
+fn treatment(ui: &mut Ui, treated_as: Option<KindName>, commands: &mut Vec<Command>) {
+    let named = text::data::TREAT_AS;
+    row(ui, named, |ui| {
+        let shown = text::data::treatment(treated_as).name;
+        let combo = egui::ComboBox::from_id_salt("treat as").selected_text(shown).width(120.0);
+        ui.name_inputs(named.name, |ui| {
+            combo.show_ui(ui, |ui| {
+                for kind in KindName::choices() {
+                    let option = text::data::treatment(kind);
+                    let label = ui.selectable_label(kind == treated_as, option.name);
+                    if label.on_hover_text(option.tip).clicked() {
+                        commands.push(Command::TreatAs(kind));
+                    }
+                }
+            })
+        });
+    });
 }
 
 /// Fewer voxels, for quicker pictures: the volume is read again.

@@ -18,6 +18,7 @@ use super::common::volume_facts::VolumeFacts;
 use super::text;
 use super::viewport::Facts;
 use super::viewport::compare::Compare;
+use crate::data::KindName;
 use crate::model::Settings;
 
 pub(super) use lights::add_light;
@@ -30,6 +31,8 @@ pub(super) struct Panels<'a> {
     pub defaults: &'a Settings,
     /// The open volume.
     pub volume: Option<&'a VolumeFacts>,
+    /// The kind of data that it is treated as, if not its own.
+    pub treated_as: Option<KindName>,
     /// The light whose handle is marked.
     pub selected_light: &'a mut usize,
     /// Two looks in one picture.

@@ -18,7 +18,7 @@ use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{COLOR_MAPS, Camera, auto};
+use crate::model::{COLOR_MAPS, Camera};
 
 impl App {
     /// Does what the user asked for.
@@ -57,11 +57,8 @@ impl App {
                     self.selected_light = index;
                 }
             }
-            Command::AutomaticTransfer => {
-                if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) {
-                    self.settings.transfer = auto::transfer(dataset.volume(), &facts.histogram);
-                }
-            }
+            Command::AutomaticTransfer => self.use_automatic_transfer(),
+            Command::TreatAs(kind) => self.treat_as(kind),
             Command::UsePreset(preset) => {
                 if let Some(volume) = &self.volume {
                     match preset.apply(&self.settings, volume.range) {

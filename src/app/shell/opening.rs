@@ -340,6 +340,7 @@ impl App {
             self.settings.sanitise();
         }
         self.volume = Some(VolumeFacts::of(source, reading, &dataset));
+        self.treat_as_it_is();
         self.viewport.set_scene(renderer, dataset);
         self.history = History::default();
         self.selected_light = 0;

@@ -12,6 +12,7 @@ use crate::app::shell::keep_balanced::KeepBalanced;
 use crate::app::shell::messages::Messages;
 use crate::app::shell::session::Session;
 use crate::app::shell::status_file::StatusFile;
+use crate::app::shell::treat_as::Treated;
 use crate::app::transfer_editor::TransferEditor;
 use crate::app::viewport::Viewport;
 use crate::app::viewport::compare::Compare;
@@ -112,6 +113,7 @@ impl App {
             settings: Settings::default(),
             defaults: Settings::default(),
             volume: None,
+            treated: Treated::default(),
             viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, storage.as_deref())?,

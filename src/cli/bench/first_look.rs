@@ -7,6 +7,7 @@ use super::report::round;
 use super::{Bench, MOST_SIZE};
 use crate::cli::CliError;
 use crate::cli::cpu_time::process_cpu_ms;
+use crate::data::DataKind;
 use crate::gpu::{RenderOptions, dark_share, mean_luminance, seen_share, shadowed_share};
 use crate::model::{ShadowAlgorithm, auto};
 
@@ -39,6 +40,9 @@ impl Bench<'_> {
             "dark_share": round(dark_share(&with)),
             "shadowed_share": round(shadowed_share(&with, &without)),
             "blockness": round(auto::blockness(&settings, volume)),
+            "kind": volume.kind().kind.name().key(),
+            "labels_lost": matches!(volume.kind().kind, DataKind::LabelMap { .. })
+                .then(|| auto::labels_lost(&settings, volume)),
             // World space is right-anterior-superior.
             "from_the_front": volume.is_anatomical().then_some(towards_eye.y > 0.0),
         }));
@@ -59,7 +63,7 @@ pub(super) fn lines(cases: &[Value]) -> Vec<String> {
                 None => "–",
             };
             format!(
-                "{:<24} {:>6} {:>10} {:>6} {:>9} {:>10} {:>10} {:>9}",
+                "{:<24} {:>6} {:>10} {:>6} {:>9} {:>10} {:>10} {:>14} {:>6} {:>9}",
                 case["volume"].as_str().unwrap_or_default().chars().take(24).collect::<String>(),
                 number("seen_share"),
                 number("mean_luminance"),
@@ -67,6 +71,8 @@ pub(super) fn lines(cases: &[Value]) -> Vec<String> {
                 number("shadowed_share"),
                 number("blockness"),
                 from,
+                case["kind"].as_str().unwrap_or_default(),
+                case["labels_lost"].as_u64().map_or("–".to_owned(), |lost| lost.to_string()),
                 case["found_cpu_ms"].as_f64().map_or("–".to_owned(), |ms| format!("{ms:.0}")),
             )
         })
@@ -74,7 +80,7 @@ pub(super) fn lines(cases: &[Value]) -> Vec<String> {
     if !lines.is_empty() {
         lines.insert(
             0,
-            "first look                 seen  luminance   dark  shadowed  blockness       from  found ms"
+            "first look                 seen  luminance   dark  shadowed  blockness       from           kind   lost  found ms"
                 .to_owned(),
         );
     }

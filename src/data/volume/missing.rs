@@ -1,7 +1,7 @@
 //! Voxels that hold nothing: their values are not finite, or what the file declares as padding. There is no material;
 //! but the field beside them needs densities, which are the means of those nearby.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
@@ -109,6 +109,7 @@ impl Volume {
         self.content_id = self.content_id.rotate_left(9) ^ padding_value.to_bits();
         self.padding_value = Some(padding_value);
         self.value_range = value_range;
+        self.kind = OnceLock::new();
         Ok(self.with_missing())
     }
 

@@ -10,12 +10,12 @@ pub use missing::Missing;
 pub use reduce::reduced_dims;
 pub use samples::{Samples, VoxelType};
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use self::samples::with_samples;
-use super::ValueRange;
+use super::{Hints, KindFound, ValueRange};
 use crate::math::SceneSpace;
 
 /// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range.
@@ -32,6 +32,9 @@ pub struct Volume {
     padding_value: Option<f64>,
     unit_mm: Option<f64>,
     is_anatomical: bool,
+    hints: Hints,
+    /// Found when it is first asked for.
+    kind: OnceLock<KindFound>,
     content_id: u64,
 }
 
@@ -83,6 +86,8 @@ impl Volume {
             padding_value: None,
             unit_mm: None,
             is_anatomical: false,
+            hints: Hints::default(),
+            kind: OnceLock::new(),
             content_id,
         };
         Ok(if non_finite_voxels > 0 { volume.with_missing() } else { volume })
@@ -111,6 +116,22 @@ impl Volume {
         self.is_anatomical
     }
 
+    /// States what the file says of the values.
+    #[must_use]
+    pub fn with_hints(self, hints: Hints) -> Self {
+        Self { hints, kind: OnceLock::new(), ..self }
+    }
+
+    /// What the file says of the values.
+    pub fn hints(&self) -> &Hints {
+        &self.hints
+    }
+
+    /// What kind of data it holds. The first to ask waits until that is found: about a tenth of a second.
+    pub fn kind(&self) -> &KindFound {
+        self.kind.get_or_init(|| KindFound::of(self))
+    }
+
     /// States what else is known of the volume whose blocks this one's voxels are.
     #[must_use]
     pub(super) fn standing_for(self, whole: &Self) -> Self {
@@ -118,6 +139,8 @@ impl Volume {
             file_dims: whole.file_dims,
             unit_mm: whole.unit_mm,
             is_anatomical: whole.is_anatomical,
+            hints: whole.hints.clone(),
+            kind: OnceLock::new(),
             ..self
         }
     }

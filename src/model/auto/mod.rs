@@ -4,33 +4,65 @@
 //! What is around the object is recognised by the volume's own border: most scans have a margin.
 //! The opacity ramp starts above it, at the value that best splits the volume in two (Otsu 1979).
 
+mod domain;
 mod frame;
 mod isosurfaces;
 mod object;
+mod palette;
 mod threshold;
+mod transfer;
 mod view;
 
+use self::domain::Domain;
 use self::object::Object;
-use self::threshold::object_threshold;
-use super::{ControlPoint, Interpolation, Length, Quality, Rig, Settings, Shadows, TransferFunction};
-use crate::data::{Histogram, Volume};
+use super::{Classification, Length, Quality, Rig, Settings, Shading, Shadows, TransferFunction};
+use crate::data::{DataKind, Histogram, KindName, Volume};
 
 /// Settings for a volume that nobody has touched yet.
 pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
+    first_settings_as(volume, histogram, None)
+}
+
+/// Settings for a volume that nobody has touched yet, as if it held data of that kind; of its own where none is named.
+pub fn first_settings_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> Settings {
+    let kind = kind_of(volume, treated_as);
+    let found = transfer::find(volume, histogram, kind);
     let mut settings = Settings {
-        transfer: transfer(volume, histogram),
+        transfer: found.transfer,
         opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
+        shading: shading(found.domain),
         // A look that nobody has made by hand stays as bright as without shadows.
         shadows: Shadows { keep_balanced: true, ..Shadows::default() },
         ..Settings::default()
     };
     Quality::Standard.apply(&mut settings);
+    if let DataKind::LabelMap { .. } = kind {
+        // Between two labels there is none of the numbers between them.
+        settings.sampling.classification = Classification::Pre;
+    }
     let object = Object::shown_by(&settings, volume);
     view::choose(&mut settings.camera, volume, &object);
     frame::frame(&mut settings, volume, &object);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
     settings
+}
+
+/// The kind of that name, or what the volume's own is.
+fn kind_of(volume: &Volume, treated_as: Option<KindName>) -> DataKind {
+    let own = volume.kind().kind;
+    match treated_as {
+        Some(name) if name != own.name() => DataKind::of_name(name, volume),
+        _ => own,
+    }
+}
+
+/// What surfaces are like: metal shines.
+fn shading(domain: Domain) -> Shading {
+    match domain {
+        Domain::Metal => Shading { specular: 0.5, shininess: 48.0, ..Shading::default() },
+        _ => Shading::default(),
+    }
 }
 
 /// The share of what settings show of a volume's surface that is not where material ends, but where the data do.
@@ -46,37 +78,17 @@ fn voxels_of_file(volume: &Volume) -> f64 {
 
 /// A transfer function that shows the object and hides what is around it.
 pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
-    let start = object_threshold(volume, histogram);
-    let above = |fraction: f64| percentile_above(histogram, start, fraction);
-    // The bulk of the object lies below `bulk`; its brightest part is worth a colour of its own.
-    let bulk = above(0.6).max(start + 0.04);
-    let bright = above(0.97).max(bulk + 0.04);
-    // (density, sRGB colour, opacity per unit): warm dark skin, tan flesh, ivory bone. The first
-    // step rises quickly, so that surfaces are crisp and shadows fall on something.
-    let stops = [
-        (start, [0.42, 0.20, 0.14], 0.0),
-        (start + 0.35 * (bulk - start), [0.66, 0.36, 0.24], 0.3),
-        (bulk, [0.87, 0.62, 0.42], 0.65),
-        (bright, [0.96, 0.88, 0.72], 0.88),
-        (1.0f64.max(bright + 0.01), [1.0, 0.97, 0.92], 0.96),
-    ];
-    let points = stops
-        .map(|(density, color, opacity)| ControlPoint::new(volume.value_of(density), color, opacity))
-        .to_vec();
-    TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() }
+    transfer_as(volume, histogram, None)
 }
 
-/// The density below which a share of the voxels above `start` lies.
-fn percentile_above(histogram: &Histogram, start: f64, fraction: f64) -> f64 {
-    let first = ((start * histogram.counts.len() as f64) as usize).min(histogram.counts.len() - 1);
-    let counts: Vec<u64> = histogram
-        .counts
-        .iter()
-        .enumerate()
-        .map(|(bin, &count)| if bin < first { 0 } else { count })
-        .collect();
-    let total = counts.iter().sum();
-    Histogram { counts, total }.percentile(fraction)
+/// A transfer function as if the volume held data of that kind; of its own where none is named.
+pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> TransferFunction {
+    transfer::find(volume, histogram, kind_of(volume, treated_as)).transfer
+}
+
+/// The labels of a label map that settings do not show.
+pub fn labels_lost(settings: &Settings, volume: &Volume) -> usize {
+    transfer::lost_labels(&settings.transfer, volume)
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ pub(super) fn object_threshold(volume: &Volume, histogram: &Histogram) -> f64 {
 /// Between what is around the object and the volume's two halves.
 fn above_surroundings(volume: &Volume, histogram: &Histogram) -> f64 {
     let split = otsu(histogram);
-    let around = border_level(volume);
+    let around = border_level(volume, |density| density);
     // An object that reaches the border on most sides has no margin to learn from; nor has one whose border is
     // brighter than what splits the volume: that border is of the object.
     if split <= around && around < histogram.percentile(0.9) {
@@ -30,7 +30,7 @@ fn above_surroundings(volume: &Volume, histogram: &Histogram) -> f64 {
 }
 
 /// The density that splits the histogram into the two most compact classes (Otsu's method).
-fn otsu(histogram: &Histogram) -> f64 {
+pub(super) fn otsu(histogram: &Histogram) -> f64 {
     let bins = histogram.counts.len() as f64;
     let (total, sum) = histogram
         .counts
@@ -54,9 +54,9 @@ fn otsu(histogram: &Histogram) -> f64 {
     (best_bin as f64 + 1.0) / bins
 }
 
-/// What the volume's border looks like: of the six faces, the median of their 98th percentiles. One
+/// What the volume's border looks like, in what `level` makes of densities: of the six faces, the median of their 98th percentiles. One
 /// face that cuts through the object, or two, do not matter.
-fn border_level(volume: &Volume) -> f64 {
+pub(super) fn border_level(volume: &Volume, level: impl Fn(f64) -> f64) -> f64 {
     let [nx, ny, nz] = volume.dims();
     let face = |u: usize, v: usize, at: &dyn Fn(usize, usize) -> [usize; 3]| {
         // At most 128² voxels of a face tell enough.
@@ -66,7 +66,7 @@ fn border_level(volume: &Volume) -> f64 {
             .flat_map(|i| (0..v).step_by(dv).map(move |j| (i, j)))
             .map(|(i, j)| {
                 let [x, y, z] = at(i, j);
-                volume.density_of(volume.value(x, y, z))
+                level(volume.density_of(volume.value(x, y, z)))
             })
             .collect();
         densities.sort_by(f64::total_cmp);

@@ -1,6 +1,7 @@
 //! The section of data: what the volume is.
 
 use crate::app::text::{Named, named};
+use crate::data::{DataKind, KindName};
 
 /// In place of the section while no volume is open.
 pub(crate) const NOTHING_OPEN: &str = "No volume is open";
@@ -11,6 +12,7 @@ pub(crate) const DIMENSIONS: &str = "Voxels";
 /// The voxels of the file, of which blocks were averaged.
 pub(crate) const AVERAGED: &str = "Averaged from";
 pub(crate) const VOXEL_TYPE: &str = "Type";
+pub(crate) const KIND: &str = "Kind";
 pub(crate) const SPACING: &str = "Spacing";
 pub(crate) const VALUES: &str = "Values";
 pub(crate) const MEMORY: &str = "Memory";
@@ -24,6 +26,39 @@ pub(crate) const AVERAGING: Named = named(
 pub(crate) const ALL_VOXELS: Named = named("None", "All voxels of the file");
 pub(crate) const EIGHTHS: Named = named("2 × 2 × 2", "An eighth of the voxels");
 pub(crate) const SIXTY_FOURTHS: Named = named("4 × 4 × 4", "A sixty-fourth of the voxels");
+
+pub(crate) const TREAT_AS: Named = named(
+    "Treat as",
+    "Makes the first look anew, for data of another kind: transfer function, view and lights. It can be undone",
+);
+
+/// What a volume can be treated as.
+pub(crate) fn treatment(kind: Option<KindName>) -> Named {
+    match kind {
+        None => named("Automatic", "As what the file says, or else the values"),
+        Some(KindName::Scalar) => named("Scalar", "More is more of something: what is bright is shown"),
+        Some(KindName::DarkOnBright) => named("Dark on bright", "What is darker than all around it is shown"),
+        Some(KindName::HounsfieldCt) => named("CT", "Hounsfield units: bone and contrast agent are shown"),
+        Some(KindName::Signed) => {
+            named("Signed", "Strong values on both sides of zero are shown, in two colours")
+        }
+        Some(KindName::Mask) => named("Mask", "Something or nothing: a surface halfway between"),
+        Some(KindName::LabelMap) => named("Labels", "Every number is shown, in a colour of its own"),
+    }
+}
+
+/// What kind of data a volume holds.
+pub(crate) fn kind(kind: DataKind) -> String {
+    match kind {
+        DataKind::Mask => "Mask".to_owned(),
+        DataKind::LabelMap { count: 1 } => "Label map, 1 label".to_owned(),
+        DataKind::LabelMap { count } => format!("Label map, {count} labels"),
+        DataKind::Signed => "Signed field".to_owned(),
+        DataKind::HounsfieldCt { .. } => "CT, Hounsfield units".to_owned(),
+        DataKind::DarkOnBright => "Dark object on bright".to_owned(),
+        DataKind::Scalar => "Scalar field".to_owned(),
+    }
+}
 
 pub(crate) const OPACITY_UNIT: Named = named(
     "Opacity unit",

@@ -1,5 +1,8 @@
 //! The names of commands, for menus, buttons and the list of keys, and the window that finds them.
 
+use crate::app::text::data;
+use crate::data::KindName;
+
 pub(crate) const OPEN_DIALOG: &str = "Open…";
 pub(crate) const OPEN_PATH: &str = "Open path…";
 /// The name of a command, and of the menu of what can be opened.
@@ -63,6 +66,11 @@ pub(crate) fn average(block: usize) -> String {
         1 => "Voxels: all of the file".to_owned(),
         _ => format!("Voxels: means of {block} × {block} × {block}"),
     }
+}
+
+/// To treat the volume as data of a kind, or as it is.
+pub(crate) fn treat_as(kind: Option<KindName>) -> String {
+    format!("Treat as: {}", data::treatment(kind).name)
 }
 
 /// To look from a side.

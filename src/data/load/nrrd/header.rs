@@ -14,6 +14,8 @@ const LONGEST_HEADER_BYTES: u64 = 1 << 20;
 pub(super) struct Header {
     /// By name in lower case without spaces: that makes `data file` and `datafile` one field.
     fields: BTreeMap<String, String>,
+    /// Keys with their values, as they are written; the first of several.
+    keys: BTreeMap<String, String>,
     /// Where the data begin in this file; `None` when the file ended before an empty line.
     data_start: Option<u64>,
 }
@@ -23,7 +25,7 @@ impl Header {
     pub(super) fn read(attempt: Attempt<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
         let mut reader = reader.take(LONGEST_HEADER_BYTES);
         let mut line = Vec::new();
-        let mut fields = BTreeMap::new();
+        let (mut fields, mut keys) = (BTreeMap::new(), BTreeMap::new());
         let mut data_start = None;
         for number in 1.. {
             line.clear();
@@ -45,6 +47,8 @@ impl Header {
             } else if text.is_empty() {
                 data_start = Some(LONGEST_HEADER_BYTES - reader.limit());
                 break;
+            } else if let Some((key, value)) = key_and_value(text) {
+                keys.entry(key).or_insert(value);
             } else if !text.starts_with('#') {
                 let is_list = add_field(attempt, &mut fields, text, number)?;
                 if is_list {
@@ -56,12 +60,17 @@ impl Header {
         if fields.is_empty() {
             return Err(attempt.bad_input("header", "it has no fields", "check that it is an NRRD file"));
         }
-        Ok(Self { fields, data_start })
+        Ok(Self { fields, keys, data_start })
     }
 
     /// The value of a field, if the header has it.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
         self.fields.get(&key(name)).map(String::as_str)
+    }
+
+    /// The value of a key, if the header has it; in any case of letters.
+    pub(super) fn get_key(&self, name: &str) -> Option<&str> {
+        self.keys.get(&name.to_lowercase()).map(String::as_str)
     }
 
     /// The value of a field that must be there; `help` says what it should be.
@@ -97,6 +106,13 @@ fn check_magic(attempt: Attempt<'_>, line: &str) -> Result<(), LoadError> {
     }
 }
 
+/// The key of a line, in lower case, and its value: `key:=value`. Comments and fields have none.
+fn key_and_value(line: &str) -> Option<(String, String)> {
+    let (key, value) =
+        line.split_once(":=").filter(|(key, _)| !key.contains(':') && !key.starts_with('#'))?;
+    Some((key.trim().to_lowercase(), value.trim().to_owned()))
+}
+
 /// Adds the field of one line. True when it announces a list of data files.
 fn add_field(
     attempt: Attempt<'_>,
@@ -111,9 +127,6 @@ fn add_field(
             "check that an empty line separates header and data",
         ));
     };
-    if value.starts_with('=') {
-        return Ok(false);
-    }
     let (key, value) = (key(name), value.trim());
     let is_list = key == "datafile" && value.split_whitespace().next() == Some("LIST");
     let earlier = fields.insert(key, value.to_owned());

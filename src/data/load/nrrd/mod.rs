@@ -6,6 +6,7 @@
 mod detached;
 mod geometry;
 mod header;
+mod hints;
 mod layout;
 mod space;
 #[cfg(test)]
@@ -18,7 +19,7 @@ use super::samples::{Layout, read_binary, read_gzip, read_text};
 use super::{Endian, LoadControl, LoadError, LoadOptions};
 use crate::data::attempt::Extent;
 use crate::data::attempt::{Attempt, plain};
-use crate::data::{Samples, Volume, VoxelType};
+use crate::data::{Samples, ValueRange, Volume, VoxelType};
 use geometry::Geometry;
 use header::Header;
 use layout::{Encoding, Storage};
@@ -62,7 +63,14 @@ pub(super) fn load(
     let name = header.get("content").filter(|content| !content.is_empty());
     let name = name.map_or_else(|| stem(path), |content| plain(content, 120));
     Volume::new(name, extent.dims, geometry.world_from_index, samples)
-        .map(|volume| volume.with_anatomy(geometry.is_anatomical))
+        .map(|volume| volume.with_anatomy(geometry.is_anatomical).with_hints(header.hints()))
+        .and_then(|volume| match volume.hints().padding {
+            // A volume of padding alone is shown as it is.
+            Some(padding) if volume.value_range() != ValueRange::new(padding, padding) => {
+                volume.with_padding(padding)
+            }
+            _ => Ok(volume),
+        })
         .map_err(|error| attempt.bad_input("data", error.to_string(), "check the header against the data"))
 }
 

@@ -2,6 +2,7 @@
 
 mod detached;
 mod grid;
+mod hints;
 
 use std::fs;
 use std::io::Write as _;

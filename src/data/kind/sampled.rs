@@ -1,0 +1,252 @@
+//! The values of a volume in order, of every voxel or of one in so many; and what neighbours have to do with each other.
+
+use rayon::prelude::*;
+
+use crate::data::{Samples, Volume};
+
+/// Voxels that are looked at: of larger volumes, one in so many along each axis.
+const LOOKED_AT: f64 = (1u64 << 21) as f64;
+
+/// At most so many voxels along an edge of a face are looked at.
+const FACE_EDGE: usize = 128;
+
+/// A spike has at least this share of the voxels, and is apart from the others by this share of their range: edges of
+/// objects fill the gap between a background that was measured and what is in it.
+const SPIKE_SHARE: f64 = 0.01;
+const SPIKE_GAP: f64 = 0.05;
+
+/// Values of voxels, in order.
+pub(super) struct Sampled<'a> {
+    volume: &'a Volume,
+    /// Finite, ascending, without what the file says is padding.
+    pub(super) values: Vec<f64>,
+    step: usize,
+    /// The lowest and the highest value, where [`Self::without_spikes`] has found them to be none.
+    spikes: [Option<f64>; 2],
+}
+
+impl<'a> Sampled<'a> {
+    pub(super) fn of(volume: &'a Volume) -> Self {
+        let [nx, ny, nz] = volume.dims();
+        let step = (volume.voxel_count() as f64 / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
+        let padding = volume.padding_value().or(volume.hints().padding);
+        let samples = volume.samples();
+        let mut values: Vec<f64> = (0..nz)
+            .step_by(step)
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .flat_map_iter(|z| {
+                let rows = (0..ny).step_by(step).map(move |y| (z * ny + y) * nx);
+                let voxels = rows.flat_map(move |row| (row..row + nx).step_by(step));
+                voxels.map(|voxel| samples.value(voxel))
+            })
+            .filter(|value| value.is_finite() && Some(*value) != padding)
+            .collect();
+        values.par_sort_unstable_by(f64::total_cmp);
+        Self { volume, values, step, spikes: [None; 2] }
+    }
+
+    /// The value below which a share of the voxels lies.
+    pub(super) fn quantile(&self, share: f64) -> f64 {
+        quantile(&self.values, share)
+    }
+
+    /// The share of the voxels with values from `low` to below `high`.
+    pub(super) fn share(&self, low: f64, high: f64) -> f64 {
+        let below = |value: f64| self.values.partition_point(|&other| other < value);
+        (below(high) - below(low)) as f64 / self.values.len().max(1) as f64
+    }
+
+    /// The share of the voxels that have a value.
+    pub(super) fn share_of(&self, value: f64) -> f64 {
+        let count = self.values.iter().filter(|&&other| other == value).count();
+        count as f64 / self.values.len().max(1) as f64
+    }
+
+    /// Of the values that are not zero, those below and above which a share lies; nothing where all are zero.
+    pub(super) fn nonzero_quantiles(&self, share: f64) -> Option<(f64, f64)> {
+        let below = self.values.partition_point(|&value| value < 0.0);
+        let above = self.values.len() - self.values.partition_point(|&value| value <= 0.0);
+        let count = below + above;
+        if count == 0 {
+            return None;
+        }
+        let at = |index: usize| {
+            // Zeros, which are between the two, are left out.
+            let zeros = self.values.len() - count;
+            self.values[if index < below { index } else { index + zeros }]
+        };
+        let index = (share * count as f64) as usize;
+        Some((at(index.min(count - 1)), at(count - 1 - index.min(count - 1))))
+    }
+
+    /// Of the neighbours of voxels whose values are beyond one (seen from zero), the share beyond half of it.
+    pub(super) fn coherence_beyond(&self, value: f64) -> f64 {
+        let is_beyond = |one: f64, value: f64| if value < 0.0 { one <= value } else { one >= value };
+        let [strong, alike] = self.pairs(
+            |[strong, alike]: &mut [f64; 2], one, other| {
+                for (one, other) in [(one, other), (other, one)] {
+                    if is_beyond(one, value) && Some(one) != self.spikes[0] && Some(one) != self.spikes[1] {
+                        *strong += 1.0;
+                        *alike += f64::from(u8::from(is_beyond(other, value / 2.0)));
+                    }
+                }
+            },
+            |a, b| [a[0] + b[0], a[1] + b[1]],
+        );
+        if strong > 0.0 { alike / strong } else { 0.0 }
+    }
+
+    /// The same without a lowest or highest value that many voxels have and that is far from all others: such values
+    /// stand for what was not measured.
+    pub(super) fn without_spikes(mut self) -> Self {
+        if let Some(spike) = self.spike(|values, at| values[at]) {
+            let count = self.values.partition_point(|&value| value <= spike);
+            self.values.drain(..count);
+            self.spikes[0] = Some(spike);
+        }
+        if let Some(spike) = self.spike(|values, at| values[values.len() - 1 - at]) {
+            let count = self.values.partition_point(|&value| value < spike);
+            self.values.truncate(count);
+            self.spikes[1] = Some(spike);
+        }
+        self
+    }
+
+    /// The first of values that come one after another, if it is a spike.
+    fn spike(&self, at: impl Fn(&[f64], usize) -> f64) -> Option<f64> {
+        let all = self.values.len();
+        let first = (all > 0).then(|| at(&self.values, 0))?;
+        let count = (0..all).take_while(|&index| at(&self.values, index) == first).count();
+        if count == all || (count as f64) < SPIKE_SHARE * all as f64 {
+            return None;
+        }
+        // Of what is left.
+        let rest = (all - count) as f64;
+        let next = at(&self.values, count);
+        let other_end = at(&self.values, all - 1 - (0.001 * rest) as usize);
+        ((next - first).abs() >= SPIKE_GAP * (other_end - next).abs()).then_some(first)
+    }
+
+    /// Different values in order, if there are at most so many.
+    pub(super) fn distinct(&self, most: usize) -> Option<Vec<f64>> {
+        let mut distinct: Vec<f64> = Vec::new();
+        for &value in &self.values {
+            // Of 0 and −0 there is one.
+            if distinct.last() != Some(&value) {
+                if distinct.len() == most {
+                    return None;
+                }
+                distinct.push(value);
+            }
+        }
+        Some(distinct)
+    }
+
+    /// For every pair of neighbours along an axis, of those voxels that are looked at, what `count` adds.
+    pub(super) fn pairs<T: Send + Default>(
+        &self,
+        count: impl Fn(&mut T, f64, f64) + Sync,
+        sum: impl Fn(T, T) -> T + Sync + Send,
+    ) -> T {
+        let [nx, ny, nz] = self.volume.dims();
+        let samples = self.volume.samples();
+        (0..nz)
+            .step_by(self.step)
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .fold(T::default, |mut total, z| {
+                for y in (0..ny).step_by(self.step) {
+                    for x in (0..nx).step_by(self.step) {
+                        let at = (z * ny + y) * nx + x;
+                        let here = samples.value(at);
+                        let mut pair = |is_there: bool, step: usize| {
+                            if is_there {
+                                count(&mut total, here, samples.value(at + step));
+                            }
+                        };
+                        pair(x + 1 < nx, 1);
+                        pair(y + 1 < ny, nx);
+                        pair(z + 1 < nz, nx * ny);
+                    }
+                }
+                total
+            })
+            .reduce(T::default, sum)
+    }
+
+    /// The finite values of each of the six faces, in order; some of them where there are many.
+    pub(super) fn faces(&self) -> [Vec<f64>; 6] {
+        let dims = self.volume.dims();
+        std::array::from_fn(|face| {
+            let (axis, is_last) = (face / 2, face % 2 == 1);
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let step = |axis: usize| dims[axis].div_ceil(FACE_EDGE);
+            let mut values: Vec<f64> = (0..dims[u])
+                .step_by(step(u))
+                .flat_map(|i| (0..dims[v]).step_by(step(v)).map(move |j| (i, j)))
+                .map(|(i, j)| {
+                    let mut at = [0; 3];
+                    (at[axis], at[u], at[v]) = (if is_last { dims[axis] - 1 } else { 0 }, i, j);
+                    self.volume.value(at[0], at[1], at[2])
+                })
+                .filter(|value| value.is_finite())
+                .collect();
+            values.sort_unstable_by(f64::total_cmp);
+            values
+        })
+    }
+
+    /// The value that best splits all of them in two (Otsu 1979), in bins between the outermost thousandths.
+    pub(super) fn split(&self) -> f64 {
+        const BINS: usize = 256;
+        let (low, high) = (self.quantile(0.001), self.quantile(0.999));
+        let value = |bin: usize| low + (high - low) * bin as f64 / BINS as f64;
+        let total = self.values.len() as f64;
+        let counts: Vec<f64> = (0..BINS).map(|bin| total * self.share(value(bin), value(bin + 1))).collect();
+        let all: f64 = counts.iter().sum();
+        let sum: f64 = counts.iter().enumerate().map(|(bin, count)| bin as f64 * count).sum();
+        let (mut below, mut sum_below, mut best, mut best_bin) = (0.0, 0.0, -1.0, 0);
+        for (bin, count) in counts.iter().enumerate() {
+            below += count;
+            sum_below += bin as f64 * count;
+            let above = all - below;
+            if below > 0.0 && above > 0.0 {
+                let difference = sum_below / below - (sum - sum_below) / above;
+                let between = below * above * difference * difference;
+                if between > best {
+                    (best, best_bin) = (between, bin + 1);
+                }
+            }
+        }
+        value(best_bin)
+    }
+}
+
+/// The value below which a share of ordered values lies; NaN where there are none.
+pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
+    let at = (share * values.len() as f64) as usize;
+    values.get(at.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+}
+
+/// Different values of all voxels in order, if there are at most so many.
+pub(super) fn distinct_of_all(samples: &Samples, most: usize) -> Option<Vec<f64>> {
+    let mut distinct: Vec<f64> = Vec::new();
+    let mut last = f64::NAN;
+    for voxel in 0..samples.len() {
+        // Of 0 and −0 there is one.
+        let value = samples.value(voxel) + 0.0;
+        // Neighbours are mostly equal.
+        if value == last || !value.is_finite() {
+            continue;
+        }
+        last = value;
+        if let Err(at) = distinct.binary_search_by(|other| other.total_cmp(&value)) {
+            if distinct.len() == most {
+                return None;
+            }
+            distinct.insert(at, value);
+        }
+    }
+    Some(distinct)
+}

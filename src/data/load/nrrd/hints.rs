@@ -1,0 +1,79 @@
+//! What an NRRD header says of its values: the fields `sample units`, `content`, `old min` and `old max`, and those
+//! keys that programs write beside them: what 3D Slicer says of segments, and DICOM attributes by their tags.
+
+use super::header::Header;
+use crate::data::{Hints, MAX_LABELS, Meaning, Modality};
+
+/// Keys of the modality, best first.
+const MODALITY: [&str; 3] = ["modality", "DICOM_0008_0060", "DICOM.Modality"];
+
+/// Keys of the values of voxels that were not measured.
+const PADDING: [&str; 4] = ["padding value", "PaddingValue", "PixelPaddingValue", "DICOM_0028_0120"];
+
+/// Keys of descriptions of how the data were acquired: by hand, of the series, of the protocol.
+const ACQUISITION: [&str; 4] = ["acquisition", "SeriesDescription", "DICOM_0008_103E", "DICOM_0018_1030"];
+
+/// The key in which DICOM names the unit of rescaled values.
+const RESCALE_TYPE: &str = "DICOM_0028_1054";
+
+/// Keys by which Slicer marks segmentations; older versions write the second.
+const SEGMENTATION: [&str; 4] = [
+    "Segmentation_ContainedRepresentationNames",
+    "containedRepresentationNames",
+    "Segmentation_MasterRepresentation",
+    "Segmentation_SourceRepresentation",
+];
+
+impl Header {
+    /// What the header says of the values.
+    pub(super) fn hints(&self) -> Hints {
+        let mut hints = Hints::default();
+        let first = |keys: &[&str]| keys.iter().find_map(|key| self.get_key(key)).unwrap_or_default();
+        let content = self.get("content").unwrap_or_default();
+        hints.modality = match Modality::of_code(first(&MODALITY)) {
+            Modality::Unknown => Modality::of_description(content),
+            known => known,
+        };
+        hints.is_rescaled = self.get("old min").or_else(|| self.get("old max")).is_some();
+        self.add_segments(&mut hints);
+        let is_segmentation = hints.modality == Modality::Segmentation
+            || SEGMENTATION.iter().any(|key| self.get_key(key).is_some());
+        if is_segmentation || !hints.labels.is_empty() {
+            hints.meaning = Meaning::Labels;
+        }
+        for unit in [self.get("sample units"), self.get_key(RESCALE_TYPE)].into_iter().flatten() {
+            hints.set_unit(unit.trim_matches(['"', ' ']));
+        }
+        if let Ok(padding) = first(&PADDING).trim().parse() {
+            hints.set_padding(padding);
+        }
+        hints.set_acquisition(first(&ACQUISITION));
+        hints
+    }
+
+    /// Segments of Slicer: `Segment0_LabelValue:=1`, `Segment0_Name:=…`, `Segment0_Color:=0.5 0.7 0.5`. Those of other
+    /// layers than the first are of voxels that are not read.
+    fn add_segments(&self, hints: &mut Hints) {
+        for index in 0..MAX_LABELS {
+            let part = |part: &str| self.get_key(&format!("Segment{index}_{part}"));
+            let (value, name) = (part("LabelValue"), part("Name"));
+            if value.is_none() && name.is_none() && part("ID").is_none() {
+                break;
+            }
+            if part("Layer").is_some_and(|layer| layer.trim() != "0") {
+                continue;
+            }
+            // Before there were layers, the number was that of the segment.
+            let number = value.map_or_else(|| Some(index as i64 + 1), |value| value.trim().parse().ok());
+            if let Some(number) = number {
+                hints.labels.insert(number, name.unwrap_or_default(), part("Color").and_then(color));
+            }
+        }
+    }
+}
+
+/// Three numbers of sRGB.
+fn color(text: &str) -> Option<[f32; 3]> {
+    let parts: Option<Vec<f32>> = text.split_whitespace().map(|part| part.parse().ok()).collect();
+    parts?.try_into().ok()
+}

@@ -1,0 +1,96 @@
+//! Colours that tell labels apart: each is as far as can be from all before it (Glasbey, van der Heijden, Toh & Gray
+//! 2007), in Oklab, and all are nearly equally light.
+
+use std::sync::OnceLock;
+
+use super::srgb_from_lch;
+use crate::model::{lab_from_lch, linear_from_oklab, oklab_from_linear};
+
+/// Different colours; they repeat for numbers beyond. More could not be told apart anyway.
+const COUNT: usize = 256;
+
+/// Lightness of all, and how far some are from it, so that there are more of them: less than shading makes.
+const LIGHTNESS: f64 = 0.76;
+const SPREAD: f64 = 0.07;
+
+/// Strongest colours; what a display cannot show is left out.
+const MOST_CHROMA: f64 = 0.17;
+
+/// The colour of a label by its number: always the same for the same number.
+pub(in crate::model::auto) fn category(number: i64) -> [f32; 3] {
+    static COLORS: OnceLock<Vec<[f32; 3]>> = OnceLock::new();
+    let colors = COLORS.get_or_init(|| farthest_first().into_iter().map(srgb_from_lch).collect());
+    // Zero is what is around: labels begin with one.
+    let index = (number - 1).rem_euclid(COUNT as i64) as usize;
+    colors.get(index).copied().unwrap_or([0.8; 3])
+}
+
+/// Colours, as lightness, chroma and hue, each as far as can be from all before.
+fn farthest_first() -> Vec<[f64; 3]> {
+    // Two hundred hues, eight chromas and five lightnesses are finer than any two of the colours lie apart.
+    let candidates: Vec<[f64; 3]> = (0..5)
+        .flat_map(|l| (0..8).flat_map(move |c| (0..200).map(move |h| (l, c, h))))
+        .map(|(l, c, h)| {
+            let lightness = LIGHTNESS + SPREAD * (f64::from(l) / 2.0 - 1.0);
+            [lightness, MOST_CHROMA * f64::from(c) / 7.0, 1.8 * f64::from(h)]
+        })
+        .filter(|&lch| is_shown(lch))
+        .collect();
+    let labs: Vec<[f64; 3]> = candidates.iter().map(|&lch| lab_from_lch(lch)).collect();
+    let mut nearest = vec![f64::INFINITY; labs.len()];
+    // The first is a light blue, which is not mistaken for a light or for flesh.
+    let first =
+        candidates.iter().map(|lch| (lch[2] - 245.0).abs() - 100.0 * lch[1] + (lch[0] - LIGHTNESS).abs());
+    let mut at = first.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(at, _)| at);
+    let mut chosen = Vec::new();
+    while chosen.len() < COUNT.min(labs.len()) {
+        chosen.push(candidates[at]);
+        for (distance, lab) in nearest.iter_mut().zip(&labs) {
+            let apart = (0..3).map(|i| (lab[i] - labs[at][i]).powi(2)).sum::<f64>();
+            *distance = distance.min(apart);
+        }
+        let farthest = nearest.iter().enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b));
+        at = farthest.map_or(0, |(at, _)| at);
+    }
+    chosen
+}
+
+/// Whether a display can show a colour.
+fn is_shown(lch: [f64; 3]) -> bool {
+    let lab = lab_from_lch(lch);
+    let back = oklab_from_linear(linear_from_oklab(lab));
+    lab.iter().zip(back).all(|(a, b)| (a - b).abs() < 1e-3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+        let (a, b) = (lab_from_lch(a), lab_from_lch(b));
+        (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn labels_are_told_apart_and_equally_light() {
+        let colors = farthest_first();
+        assert_eq!(colors.len(), COUNT);
+        for (count, least) in [(8, 0.13), (16, 0.08), (40, 0.045), (COUNT, 0.015)] {
+            let nearest = (0..count)
+                .flat_map(|a| (0..a).map(move |b| (a, b)))
+                .map(|(a, b)| apart(colors[a], colors[b]))
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest > least, "{count} colours: {nearest}");
+        }
+        assert!(colors.iter().all(|lch| (lch[0] - LIGHTNESS).abs() < SPREAD + 1e-9));
+    }
+
+    #[test]
+    fn numbers_have_their_colors() {
+        assert_eq!(category(5), category(5));
+        assert_ne!(category(1), category(2));
+        for number in [i64::MIN + 1, -1, 0, 1 << 40, i64::MAX] {
+            assert!(category(number).iter().all(|c| (0.0..=1.0).contains(c)));
+        }
+    }
+}

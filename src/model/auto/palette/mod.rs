@@ -1,0 +1,156 @@
+//! Colours by what is shown. All are about equally light, so that light and shadow carry the shape, and colour says what
+//! it is.
+
+mod categories;
+
+pub(super) use self::categories::category;
+
+use super::domain::Domain;
+use crate::model::{lab_from_lch, linear_from_oklab, srgb_from_linear};
+
+/// A colour in Oklab: lightness, chroma, hue in degrees.
+type Lch = [f64; 3];
+
+/// Colours from where an object begins to its brightest parts.
+pub(super) struct Palette(&'static [Lch]);
+
+/// The lightest and darkest that palettes may be: between them shading is told from colour (white paper lies at 0.97,
+/// terracotta at 0.55).
+#[cfg(test)]
+const LIGHTNESS: std::ops::RangeInclusive<f64> = 0.6..=0.96;
+
+/// What nobody knows anything of: sand to ivory, the warmth of a photograph of plaster.
+const UNKNOWN: Palette = Palette(&[[0.68, 0.052, 62.0], [0.79, 0.044, 74.0], [0.92, 0.026, 88.0]]);
+
+/// Muscle to fat.
+const SOFT_TISSUE: Palette = Palette(&[[0.66, 0.088, 38.0], [0.76, 0.07, 54.0], [0.88, 0.045, 76.0]]);
+
+/// Ivory.
+const BONE: Palette = Palette(&[[0.74, 0.06, 66.0], [0.84, 0.045, 82.0], [0.94, 0.022, 92.0]]);
+
+/// Warm grey to ivory.
+const MAGNETIC_RESONANCE: Palette = Palette(&[[0.69, 0.026, 52.0], [0.8, 0.022, 70.0], [0.93, 0.016, 88.0]]);
+
+/// Steel, hardly blue.
+const METAL: Palette = Palette(&[[0.68, 0.01, 255.0], [0.78, 0.008, 250.0], [0.9, 0.005, 245.0]]);
+
+/// The green of the most common dye.
+const FLUORESCENCE: Palette = Palette(&[[0.66, 0.13, 150.0], [0.78, 0.125, 148.0], [0.92, 0.075, 140.0]]);
+
+/// Cool white.
+const MOLECULE: Palette = Palette(&[[0.74, 0.04, 248.0], [0.84, 0.028, 240.0], [0.95, 0.01, 230.0]]);
+
+/// Blue over green to yellow, in even steps of hue and lightness.
+const SIMULATION: Palette = Palette(&[
+    [0.66, 0.105, 256.0],
+    [0.71, 0.09, 222.0],
+    [0.76, 0.095, 182.0],
+    [0.81, 0.11, 144.0],
+    [0.86, 0.13, 110.0],
+    [0.9, 0.125, 94.0],
+]);
+
+/// Blue, and red as light and as colourful; pale near zero, which is not shown.
+const NEGATIVE: Palette = Palette(&[[0.8, 0.05, 250.0], [0.71, 0.12, 252.0], [0.64, 0.155, 256.0]]);
+const POSITIVE: Palette = Palette(&[[0.8, 0.05, 40.0], [0.71, 0.125, 32.0], [0.64, 0.17, 28.0]]);
+
+/// A light neutral for what has no values.
+pub(super) const PLAIN: [f64; 3] = [0.86, 0.02, 80.0];
+
+impl Palette {
+    pub(super) fn of(domain: Domain) -> &'static Self {
+        match domain {
+            Domain::Unknown => &UNKNOWN,
+            Domain::SoftTissue => &SOFT_TISSUE,
+            Domain::Bone => &BONE,
+            Domain::MagneticResonance => &MAGNETIC_RESONANCE,
+            Domain::Metal => &METAL,
+            Domain::Fluorescence => &FLUORESCENCE,
+            Domain::Molecule => &MOLECULE,
+            Domain::Simulation => &SIMULATION,
+        }
+    }
+
+    /// For what is below zero, and for what is above: from zero outwards.
+    pub(super) fn diverging(is_negative: bool) -> &'static Self {
+        if is_negative { &NEGATIVE } else { &POSITIVE }
+    }
+
+    /// The sRGB colour at a place from 0 to 1, mixed in Oklab along lightness, chroma and hue.
+    pub(super) fn at(&self, place: f64) -> [f32; 3] {
+        srgb_from_lch(self.lch_at(place))
+    }
+
+    fn lch_at(&self, place: f64) -> Lch {
+        let last = self.0.len() - 1;
+        let place = place.clamp(0.0, 1.0) * last as f64;
+        let low = (place as usize).min(last.saturating_sub(1));
+        let t = place - low as f64;
+        std::array::from_fn(|i| self.0[low][i] + (self.0[(low + 1).min(last)][i] - self.0[low][i]) * t)
+    }
+}
+
+/// A colour as control points have it; what no display can show is cut.
+pub(super) fn srgb_from_lch(lch: Lch) -> [f32; 3] {
+    linear_from_oklab(lab_from_lch(lch)).map(|c| srgb_from_linear(c).clamp(0.0, 1.0) as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{lch_from_lab, linear_from_srgb, oklab_from_linear};
+
+    fn shown(srgb: [f32; 3]) -> Lch {
+        lch_from_lab(oklab_from_linear(srgb.map(|c| linear_from_srgb(f64::from(c)))))
+    }
+
+    #[test]
+    fn palettes_are_about_equally_light() {
+        let palettes = Domain::ALL.map(Palette::of).into_iter().chain([&NEGATIVE, &POSITIVE]);
+        for palette in palettes {
+            let mut sum = 0.0;
+            for step in 0..=50 {
+                let place = f64::from(step) / 50.0;
+                let (wanted, found) = (palette.lch_at(place), shown(palette.at(place)));
+                assert!(LIGHTNESS.contains(&found[0]), "{found:?}");
+                // A display can show it: nothing was cut.
+                assert!(
+                    (wanted[0] - found[0]).abs() < 0.01 && (wanted[1] - found[1]).abs() < 0.01,
+                    "{wanted:?} {found:?}"
+                );
+                sum += found[0] / 51.0;
+            }
+            assert!((0.68..=0.86).contains(&sum), "a mean of {sum}");
+            let ends = [0.0, 1.0].map(|place| palette.lch_at(place)[0]);
+            assert!((ends[0] - ends[1]).abs() < 0.3, "{ends:?}");
+        }
+        assert!(LIGHTNESS.contains(&PLAIN[0]));
+    }
+
+    #[test]
+    fn both_sides_of_zero_are_equally_light() {
+        for step in 0..=20 {
+            let [below, above] =
+                [true, false].map(|side| Palette::diverging(side).lch_at(f64::from(step) / 20.0));
+            assert!((below[0] - above[0]).abs() < 1e-9 && (below[1] - above[1]).abs() < 0.02);
+        }
+    }
+
+    #[test]
+    fn sequences_are_even() {
+        // Equal steps of the value are nearly equal steps of the colour.
+        let steps: Vec<f64> = (0..50)
+            .map(|step| {
+                let lab = |step: i32| lab_from_lch(SIMULATION.lch_at(f64::from(step) / 50.0));
+                let (a, b) = (lab(step), lab(step + 1));
+                (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+            })
+            .collect();
+        let (least, most) = steps.iter().fold((f64::INFINITY, 0.0f64), |(a, b), &s| (a.min(s), b.max(s)));
+        assert!(most < 2.0 * least, "{least} to {most}");
+        // Lighter all the way.
+        assert!((0..50).all(
+            |s| SIMULATION.lch_at(f64::from(s) / 50.0)[0] < SIMULATION.lch_at(f64::from(s + 1) / 50.0)[0]
+        ));
+    }
+}

@@ -1,0 +1,29 @@
+//! Something or nothing: a surface halfway between the two.
+
+use super::super::palette::{PLAIN, srgb_from_lch};
+use super::super::threshold::otsu;
+use super::of_points;
+use crate::data::{DataKind, Histogram, Volume};
+use crate::model::{ControlPoint, TransferFunction};
+
+/// How far from halfway the surface begins and is opaque, as a share of the way: a surface, not a haze; and not so
+/// sharp that voxels show.
+const WIDTH: f64 = 0.1;
+
+/// Shows one of the two.
+pub(super) fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
+    let range = volume.value_range();
+    let half = match volume.kind().kind {
+        DataKind::Mask => range.at(0.5),
+        // Treated as one: whatever splits it best.
+        _ => volume.value_of(otsu(histogram)),
+    };
+    let width = WIDTH * range.span();
+    let color = srgb_from_lch(PLAIN);
+    let point = |value, opacity| ControlPoint::new(value, color, opacity);
+    of_points(vec![
+        point(half - width, 0.0),
+        point(half + width, 0.9),
+        point(range.high.max(half + 2.0 * width), 0.95),
+    ])
+}

@@ -1,0 +1,76 @@
+//! Transfer functions by the kind of data.
+
+mod dark;
+mod hounsfield;
+mod labels;
+mod mask;
+mod scalar;
+mod signed;
+#[cfg(test)]
+mod tests;
+
+use super::domain::Domain;
+use super::palette::Palette;
+use crate::data::{DataKind, Histogram, Volume};
+use crate::model::{ControlPoint, Interpolation, Mixing, TransferFunction};
+
+pub(super) use self::labels::lost_labels;
+
+/// What is shown of a volume, and what it is.
+pub(super) struct Found {
+    pub(super) transfer: TransferFunction,
+    pub(super) domain: Domain,
+}
+
+/// A transfer function for data of a kind.
+pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Found {
+    match kind {
+        DataKind::Mask => Found { transfer: mask::transfer(volume, histogram), domain: Domain::Unknown },
+        DataKind::LabelMap { .. } => Found { transfer: labels::transfer(volume), domain: Domain::Unknown },
+        DataKind::Signed => signed::find(volume).unwrap_or_else(|| scalar::find(volume, histogram)),
+        DataKind::HounsfieldCt { water } => {
+            hounsfield::find(volume, water).unwrap_or_else(|| scalar::find(volume, histogram))
+        }
+        DataKind::DarkOnBright => dark::find(volume, histogram),
+        DataKind::Scalar => scalar::find(volume, histogram),
+    }
+}
+
+/// A point before its value and its colour are known: how far along the scale, along the palette, and how opaque.
+struct Stop {
+    value: f64,
+    place: f64,
+    opacity: f64,
+}
+
+/// A transfer function through stops in any order; colours mix as they are seen.
+fn through(stops: impl IntoIterator<Item = Stop>, palette: &Palette) -> TransferFunction {
+    let points =
+        stops.into_iter().map(|stop| ControlPoint::new(stop.value, palette.at(stop.place), stop.opacity));
+    of_points(points.collect())
+}
+
+fn of_points(points: Vec<ControlPoint>) -> TransferFunction {
+    let mut function =
+        TransferFunction { points, interpolation: Interpolation::Opacity, mixing: Mixing::Seen };
+    function.sort();
+    function
+}
+
+/// Values of a volume in order, where there is something: of all voxels, or of one in so many.
+fn some_values(volume: &Volume, keep: impl FnMut(f64) -> Option<f64>) -> Vec<f64> {
+    // Quantiles of two million are good to a thousandth.
+    let step = volume.voxel_count().div_ceil(1 << 21).max(1);
+    let samples = volume.samples();
+    let is_there = |voxel: &usize| volume.missing().is_none_or(|missing| !missing.contains(*voxel));
+    let found = (0..samples.len()).step_by(step).filter(is_there).map(|voxel| samples.value(voxel));
+    let mut values: Vec<f64> = found.filter_map(keep).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    values
+}
+
+/// The value below which a share of ordered values lies; 0 where there are none.
+fn quantile(values: &[f64], share: f64) -> f64 {
+    let at = (share * values.len() as f64) as usize;
+    values.get(at.min(values.len().saturating_sub(1))).copied().unwrap_or(0.0)
+}

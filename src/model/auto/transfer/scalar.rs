@@ -1,0 +1,54 @@
+//! More is more of something: the object begins above what is around it.
+
+use super::super::domain::Domain;
+use super::super::palette::Palette;
+use super::super::threshold::object_threshold;
+use super::{Found, Stop, through};
+use crate::data::{Histogram, Volume};
+use crate::model::TransferFunction;
+
+/// The density at which the object begins.
+pub(in crate::model::auto) fn start_of_object(volume: &Volume, histogram: &Histogram) -> f64 {
+    object_threshold(volume, histogram)
+}
+
+/// Shows the object and hides what is around it.
+pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
+    let start = start_of_object(volume, histogram);
+    let domain = Domain::of(volume, start);
+    Found { transfer: rising(volume, histogram, start, Palette::of(domain)), domain }
+}
+
+/// Rises from a density on.
+fn rising(volume: &Volume, histogram: &Histogram, start: f64, palette: &Palette) -> TransferFunction {
+    let above = |fraction: f64| percentile_above(histogram, start, fraction);
+    // The bulk of the object lies below `bulk`; its brightest part is worth a colour of its own.
+    let bulk = above(0.6).max(start + 0.04);
+    let bright = above(0.97).max(bulk + 0.04);
+    // (density, place in the palette, opacity per unit). The first step rises quickly, so that surfaces are crisp and
+    // shadows fall on something.
+    let stops = [
+        (start, 0.0, 0.0),
+        (start + 0.35 * (bulk - start), 0.2, 0.3),
+        (bulk, 0.5, 0.65),
+        (bright, 0.85, 0.88),
+        (1.0f64.max(bright + 0.01), 1.0, 0.96),
+    ];
+    through(
+        stops.map(|(density, place, opacity)| Stop { value: volume.value_of(density), place, opacity }),
+        palette,
+    )
+}
+
+/// The density below which a share of the voxels above `start` lies.
+fn percentile_above(histogram: &Histogram, start: f64, fraction: f64) -> f64 {
+    let first = ((start * histogram.counts.len() as f64) as usize).min(histogram.counts.len() - 1);
+    let counts: Vec<u64> = histogram
+        .counts
+        .iter()
+        .enumerate()
+        .map(|(bin, &count)| if bin < first { 0 } else { count })
+        .collect();
+    let total = counts.iter().sum();
+    Histogram { counts, total }.percentile(fraction)
+}

@@ -1,0 +1,65 @@
+//! Deviations to both sides of zero: both are shown where they are strong, and zero is not.
+
+use super::super::domain::{Domain, roughness};
+use super::super::palette::Palette;
+use super::{Found, Stop, of_points, quantile, some_values, through};
+use crate::data::Volume;
+
+/// Share of all energy (squares) that strong values have.
+const ENERGY: f64 = 0.5;
+
+/// Strong values are beyond so many deviations of noise, of which the median of the magnitudes is a measure that
+/// strong values hardly change: 1.4826 medians are a deviation of normal noise.
+const DEVIATIONS: f64 = 2.5;
+const DEVIATION_PER_MEDIAN: f64 = 1.4826;
+
+/// Roughness up to which a field has no noise: layers of rock have 0.05, statistical maps 0.44 and more.
+const SMOOTH: f64 = 0.2;
+
+/// Share of the values that is shown at least.
+const LEAST_SHOWN: f64 = 0.04;
+
+/// Shows both sides; nothing where all values are zero.
+pub(super) fn find(volume: &Volume) -> Option<Found> {
+    let magnitudes = some_values(volume, |value| (value != 0.0).then_some(value.abs()));
+    // Fields without noise have none to hide.
+    let has_noise = roughness(volume) > SMOOTH;
+    let threshold = threshold(&magnitudes, has_noise);
+    if threshold <= 0.0 {
+        return None;
+    }
+    let strong = &magnitudes[magnitudes.partition_point(|&value| value < threshold)..];
+    // As of other objects: the bulk of what is strong, and its peaks.
+    let bulk = quantile(strong, 0.6).max(threshold * 1.15);
+    let peak = quantile(strong, 0.97).max(bulk * 1.15);
+    let mut points = Vec::new();
+    for is_negative in [true, false] {
+        let sign = if is_negative { -1.0 } else { 1.0 };
+        let stops = [
+            (threshold, 0.0, 0.0),
+            (threshold + 0.35 * (bulk - threshold), 0.35, 0.4),
+            (bulk, 0.65, 0.75),
+            (peak, 1.0, 0.94),
+        ];
+        let side = stops.map(|(magnitude, place, opacity)| Stop { value: sign * magnitude, place, opacity });
+        points.extend(through(side, Palette::diverging(is_negative)).points);
+    }
+    Some(Found { transfer: of_points(points), domain: Domain::Simulation })
+}
+
+/// The magnitude from which values are strong, of magnitudes in order.
+fn threshold(magnitudes: &[f64], has_noise: bool) -> f64 {
+    let total: f64 = magnitudes.iter().map(|value| value * value).sum();
+    // From the strongest down until half of the energy is there.
+    let mut sum = 0.0;
+    let of_energy = magnitudes.iter().rev().find(|&value| {
+        sum += value * value;
+        sum >= ENERGY * total
+    });
+    let of_energy = of_energy.copied().unwrap_or(0.0);
+    if !has_noise {
+        return of_energy;
+    }
+    let of_noise = DEVIATIONS * DEVIATION_PER_MEDIAN * quantile(magnitudes, 0.5);
+    of_energy.max(of_noise).min(quantile(magnitudes, 1.0 - LEAST_SHOWN))
+}

@@ -1,0 +1,186 @@
+//! What transfer functions show of made-up data of each kind.
+
+use glam::DVec3;
+
+use super::find;
+use crate::data::{DataKind, Hints, Histogram, KindName, Meaning, Modality, Samples, Volume};
+use crate::model::auto::domain::Domain;
+use crate::model::auto::{first_settings_as, labels_lost, transfer_as};
+use crate::model::{Easing, MAX_POINTS, Settings, TransferFunction};
+
+const N: usize = 32;
+
+/// Values by the place relative to the middle, in units of half the edge.
+fn volume(value: impl Fn(DVec3) -> f64) -> Volume {
+    let middle = (N - 1) as f64 / 2.0;
+    let place =
+        |at: usize| DVec3::from([at % N, at / N % N, at / N / N].map(|c| (c as f64 - middle) / middle));
+    let values = (0..N * N * N).map(|at| value(place(at)) as f32).collect();
+    Volume::with_spacing("t", [N; 3], DVec3::ONE, Samples::F32(values)).unwrap()
+}
+
+fn shown(volume: &Volume, kind: KindName) -> TransferFunction {
+    let function = transfer_as(volume, &Histogram::of(volume), Some(kind));
+    let values: Vec<f64> = function.points.iter().map(|point| point.value).collect();
+    assert!(values.is_sorted(), "{values:?}");
+    assert!(
+        function.points.iter().all(|point| point.value.is_finite() && (0.0..=1.0).contains(&point.opacity))
+    );
+    function
+}
+
+fn bump(p: DVec3, at: DVec3) -> f64 {
+    (-(p - at).length_squared() / 0.08).exp()
+}
+
+#[test]
+fn signed_fields_show_both_sides_and_not_zero() {
+    let lobes = volume(|p| 3.0 * (bump(p, DVec3::X * 0.4) - bump(p, DVec3::X * -0.4)));
+    let function = shown(&lobes, KindName::Signed);
+    for value in [0.0, 0.1, -0.1] {
+        assert_eq!(function.opacity_at(value), 0.0, "{value}");
+    }
+    for value in [2.5, -2.5, 3.0, -3.0] {
+        assert!(function.opacity_at(value) > 0.5, "{value}");
+        // Red is above, blue below.
+        let [red, _, blue] = function.at(value).0;
+        assert_eq!(red > blue, value > 0.0, "{value}");
+    }
+    for value in [0.5, 1.0, 2.0, 2.9] {
+        assert!((function.opacity_at(value) - function.opacity_at(-value)).abs() < 1e-9, "{value}");
+    }
+    // Scaled, it is scaled.
+    let larger = volume(|p| 3000.0 * (bump(p, DVec3::X * 0.4) - bump(p, DVec3::X * -0.4)));
+    for (a, b) in function.points.iter().zip(shown(&larger, KindName::Signed).points) {
+        assert!((a.value * 1000.0 / b.value - 1.0).abs() < 1e-3, "{} {}", a.value, b.value);
+    }
+}
+
+#[test]
+fn noise_around_zero_is_not_shown() {
+    // Even noise of deviation 0.58 with a strong spot: nothing of the noise is strong.
+    let noise = |p: DVec3| ((p.dot(DVec3::new(127.1, 311.7, 74.7))).sin() * 43758.5453).fract();
+    let spot = volume(|p| noise(p) + 8.0 * bump(p, DVec3::ZERO) - 8.0 * bump(p, DVec3::X * 0.7));
+    let function = shown(&spot, KindName::Signed);
+    assert_eq!(function.opacity_at(1.0), 0.0);
+    assert!(function.opacity_at(7.0) > 0.5 && function.opacity_at(-7.0) > 0.5);
+}
+
+#[test]
+fn hounsfield_units_show_bone_and_not_flesh() {
+    let head = |offset: f64| {
+        volume(move |p| {
+            offset
+                + if p.length() > 0.8 {
+                    -1000.0
+                } else if p.length() > 0.65 {
+                    900.0
+                } else {
+                    40.0
+                }
+        })
+    };
+    for water in [0.0, 1024.0] {
+        let function = shown(&head(water), KindName::HounsfieldCt);
+        for hidden in [-1000.0, -100.0, 40.0, 100.0] {
+            assert_eq!(function.opacity_at(water + hidden), 0.0, "{hidden}");
+        }
+        for bone in [500.0, 900.0, 3000.0] {
+            assert!(function.opacity_at(water + bone) > 0.5, "{bone}");
+        }
+    }
+    // Without any bone, what there is is shown.
+    let soft = volume(|p| if p.length() > 0.7 { -1000.0 } else { 40.0 });
+    assert!(shown(&soft, KindName::HounsfieldCt).opacity_at(40.0) > 0.3);
+}
+
+#[test]
+fn what_is_dark_is_shown_on_bright() {
+    let dark = volume(|p| 1000.0 - 800.0 * bump(p, DVec3::ZERO) + 10.0 * (40.0 * p.x).sin());
+    let function = shown(&dark, KindName::DarkOnBright);
+    assert_eq!(function.opacity_at(990.0), 0.0);
+    assert!(function.opacity_at(250.0) > 0.6 && function.opacity_at(200.0) >= function.opacity_at(500.0));
+}
+
+#[test]
+fn masks_have_their_surface_halfway() {
+    for (low, high) in [(0.0, 255.0), (-1.0, 1.0), (0.0, 1e-6)] {
+        let mask = volume(|p| if p.length() < 0.6 { high } else { low });
+        let function = shown(&mask, KindName::Mask);
+        let span = high - low;
+        assert_eq!(function.opacity_at(low + 0.35 * span), 0.0);
+        assert!(function.opacity_at(low + 0.65 * span) > 0.8 && function.opacity_at(high) > 0.8);
+    }
+}
+
+#[test]
+fn every_label_is_shown_alike_in_a_color_of_its_own() {
+    let regions = |p: DVec3| if p.length() > 0.9 { 0.0 } else { 1.0 + ((p.x + 1.0) * 5.0).floor() * 37.0 };
+    let mut hints = Hints::default();
+    hints.labels.insert(38, "named", Some([0.1, 0.2, 0.3]));
+    let labels = volume(regions).with_hints(hints);
+    let function = shown(&labels, KindName::LabelMap);
+    assert_eq!(function.opacity_at(0.0), 0.0);
+    let numbers: Vec<f64> = (0..10).map(|i| f64::from(i) * 37.0 + 1.0).collect();
+    for (index, &number) in numbers.iter().enumerate() {
+        assert_eq!(function.opacity_at(number), function.opacity_at(numbers[0]));
+        assert!(function.opacity_at(number) > 0.8);
+        assert!(numbers[..index].iter().all(|&other| function.at(other).0 != function.at(number).0));
+    }
+    let [red, ..] = function.at(38.0).0;
+    assert!((red - crate::model::linear_from_srgb(f64::from(0.1f32))).abs() < 1e-9, "the file's own colour");
+    let settings = Settings { transfer: function, ..Settings::default() };
+    assert_eq!(labels_lost(&settings, &labels), 0);
+    let ramp = Settings { transfer: shown(&labels, KindName::Scalar), ..Settings::default() };
+    assert!(labels_lost(&ramp, &labels) > 0, "what it is for");
+}
+
+#[test]
+fn functions_have_no_more_points_than_they_may() {
+    let many = volume(|p| ((p + 1.0) * 16.0).floor().dot(DVec3::new(1.0, 40.0, 1600.0)).max(0.0));
+    let function = shown(&many, KindName::LabelMap);
+    assert!(
+        function.points.len() <= MAX_POINTS
+            && function.points.iter().all(|point| point.easing == Easing::Step)
+    );
+}
+
+#[test]
+fn every_volume_can_be_treated_as_every_kind() {
+    let flat = volume(|_| 7.0);
+    let negative = volume(|p| -5.0 - p.length());
+    let odd = volume(|p| if p.x > 0.9 { 1e30 } else { 0.0 });
+    for volume in [flat, negative, odd] {
+        for kind in KindName::choices() {
+            let settings = first_settings_as(&volume, &Histogram::of(&volume), kind);
+            let mut sane = settings.clone();
+            sane.sanitise();
+            assert_eq!(sane, settings, "{kind:?}");
+            assert!(
+                settings.transfer.points.windows(2).all(|pair| pair[0].value <= pair[1].value),
+                "{kind:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn colors_are_those_of_the_field() {
+    let rough =
+        |p: DVec3| if p.length() < 0.6 { 100.0 + 20.0 * ((p.x * 91.0).sin() * 47.0).fract() } else { 0.0 };
+    let domain = |volume: &Volume| find(volume, &Histogram::of(volume), DataKind::Scalar).domain;
+    let with = |say: &dyn Fn(&mut Hints)| {
+        let mut hints = Hints::default();
+        say(&mut hints);
+        domain(&volume(rough).with_hints(hints))
+    };
+    assert_eq!(with(&|_| {}), Domain::Unknown);
+    assert_eq!(with(&|hints| hints.modality = Modality::Mr), Domain::MagneticResonance);
+    assert_eq!(with(&|hints| hints.modality = Modality::Ct), Domain::Metal);
+    assert_eq!(with(&|hints| hints.modality = Modality::LightMicroscopy), Domain::Fluorescence);
+    assert_eq!(with(&|hints| hints.meaning = Meaning::PositiveDensity), Domain::Molecule);
+    assert_eq!(domain(&volume(rough).with_anatomy(true)), Domain::MagneticResonance);
+    assert_eq!(domain(&volume(|p| 200.0 * (-p.length_squared() * 3.0).exp())), Domain::Simulation);
+    let shell = |p: DVec3| if (0.5..0.7).contains(&p.length()) { 100.0 } else { 0.0 };
+    assert_eq!(domain(&volume(shell)), Domain::Unknown);
+}
