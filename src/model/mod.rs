@@ -30,6 +30,7 @@ pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
 pub use self::stored::made_by::{MADE_BY, made_by, tells_maker};
+pub use self::stored::path_text::{decode_path, encode_path};
 pub use self::stored::place::VolumePlace;
 pub use self::stored::preset::{apply_json, apply_path, assign, load_json, to_json};
 pub use self::stored::preset_error::PresetError;

@@ -41,7 +41,7 @@ struct Due {
     look: Option<Look>,
     picture: Option<Arc<ColorImage>>,
     /// Files that were opened, the latest last.
-    opened: Vec<String>,
+    opened: Vec<PathBuf>,
     closed: bool,
 }
 
@@ -221,7 +221,7 @@ impl Keeper {
     }
 
     /// A file was opened.
-    pub(super) fn opened(&self, source: &str) {
+    pub(super) fn opened(&self, source: &Path) {
         self.change(|due| due.opened.push(source.to_owned()));
     }
 

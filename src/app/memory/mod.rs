@@ -38,7 +38,7 @@ type Kept = (Settings, u64);
 /// Files in the folder that the system gives us; without one, nothing is remembered.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
-    recent: Vec<String>,
+    recent: Vec<PathBuf>,
     /// Runs that have ended, the latest first.
     earlier: Vec<EarlierRun>,
     /// There was no run before.
@@ -95,17 +95,16 @@ impl Memory {
     }
 
     /// What was opened, the latest first.
-    pub(crate) fn recent(&self) -> &[String] {
+    pub(crate) fn recent(&self) -> &[PathBuf] {
         &self.recent
     }
 
     /// Takes note of a file that was opened. Built-in volumes have a menu of their own.
-    pub(crate) fn opened(&mut self, source: &str) {
-        if source.starts_with("builtin:") {
+    pub(crate) fn opened(&mut self, source: &Path) {
+        if source.to_str().is_some_and(|name| name.starts_with("builtin:")) {
             return;
         }
-        let whole =
-            std::path::absolute(source).map_or_else(|_| source.to_owned(), |path| path.display().to_string());
+        let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
         recent::put_first(&mut self.recent, &whole);
         if let Some(keeper) = &self.keeper {
             keeper.opened(&whole);

@@ -1,5 +1,7 @@
 //! The menu bar.
 
+use std::path::PathBuf;
+
 use eframe::egui::{self, Button, ThemePreference};
 
 use crate::app::common::commands::{Command, VIEW_SLOTS};
@@ -26,7 +28,7 @@ pub(crate) struct Menu<'a> {
     /// What is on screen.
     pub shown: Shown,
     /// Files that were opened, the latest first.
-    pub recent: &'a [String],
+    pub recent: &'a [PathBuf],
     /// Whether the next volume is shown as this one.
     pub keeps_look: bool,
     /// Runs that have ended, the latest first.
@@ -90,10 +92,11 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
         ui.menu_button(text::menu::OPEN_RECENT, |ui| {
             for path in menu.recent {
-                let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy());
-                let name = plain(name.as_deref().unwrap_or(path), MAX_NAME);
-                if ui.button(name).on_hover_text(plain(path, LONGEST_PATH)).clicked() {
-                    menu.commands.push(Command::Open(path.into()));
+                let whole = path.to_string_lossy();
+                let name = path.file_name().map(|name| name.to_string_lossy());
+                let name = plain(name.as_ref().unwrap_or(&whole), MAX_NAME);
+                if ui.button(name).on_hover_text(plain(&whole, LONGEST_PATH)).clicked() {
+                    menu.commands.push(Command::Open(path.clone()));
                 }
             }
         });

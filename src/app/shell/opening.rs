@@ -148,7 +148,7 @@ impl App {
     /// Whether a record may open a file that is not beside it: the program's own may, and others what the user has
     /// opened before.
     fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
-        let is_known = || self.memory.recent().iter().any(|known| Path::new(known) == volume);
+        let is_known = || self.memory.recent().iter().any(|known| known == volume);
         self.trusts_paths || self.memory.is_own(record) || is_known()
     }
 
@@ -318,10 +318,7 @@ impl App {
             }
             self.session = Some(session);
         }
-        // The list is of texts.
-        if let Some(source) = source.to_str() {
-            self.memory.opened(source);
-        }
+        self.memory.opened(&source);
         match self.pending.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {
