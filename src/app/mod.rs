@@ -18,6 +18,7 @@ mod worker;
 #[cfg(feature = "cli")]
 pub(crate) use self::memory::end_in_a_hurry;
 pub use self::start::error::AppError;
+pub use self::start::no_adapter::show_on_desktop;
 pub use self::start::options::{Adjustment, Options};
 pub use self::start::run::{run, storage_folder, wgpu_setup};
 
