@@ -267,7 +267,7 @@ impl App {
                 },
             );
         });
-        self.help.ui(ui.ctx(), facts);
+        self.help.ui(ui.ctx(), facts, self.settings.camera.up);
     }
 
     /// The picture.
@@ -321,7 +321,7 @@ impl eframe::App for App {
             commands.push(Command::Open(path));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
-        self.palette.ui(&ctx, &mut commands);
+        self.palette.ui(&ctx, self.settings.camera.up, &mut commands);
         self.surroundings(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);
         commands::from_keys(&ctx, &mut commands);

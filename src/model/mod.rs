@@ -6,6 +6,7 @@
 pub mod auto;
 mod exchange;
 mod image_spec;
+mod object_turn;
 mod rig;
 mod settings;
 mod stored;
@@ -21,6 +22,7 @@ pub use self::settings::quality::Quality;
 pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
 };
+pub use self::settings::scene_axis::SceneAxis;
 pub use self::settings::shadows::{
     Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,
     Shadows,
@@ -40,6 +42,7 @@ pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear};
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
+pub use object_turn::{ObjectTurn, RoomTurn};
 pub use rig::Rig;
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, Sides, ToneMap};
 pub use transfer::{

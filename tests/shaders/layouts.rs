@@ -221,6 +221,8 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 shading,
                 shading_cut,
                 plane,
+                up,
+                height,
                 color,
                 opacity,
                 radius,

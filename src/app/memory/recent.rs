@@ -32,7 +32,7 @@ pub(super) fn read(folder: &Path) -> (Vec<PathBuf>, Option<String>) {
 }
 
 /// An entry as it is written.
-fn text_of(path: &Path) -> String {
+pub(super) fn text_of(path: &Path) -> String {
     match encode_path(path) {
         Some(bytes) => format!("{IN_BYTES}{bytes}"),
         None => path.display().to_string(),
@@ -40,7 +40,7 @@ fn text_of(path: &Path) -> String {
 }
 
 /// What an entry stands for.
-fn path_of(text: &str) -> PathBuf {
+pub(super) fn path_of(text: &str) -> PathBuf {
     text.strip_prefix(IN_BYTES).and_then(decode_path).unwrap_or_else(|| text.into())
 }
 

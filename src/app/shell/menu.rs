@@ -10,7 +10,7 @@ use crate::app::memory::EarlierRun;
 use crate::app::text;
 use crate::app::windows::recovery;
 use crate::data::{plain, synthetic};
-use crate::model::{MAX_LIGHTS, MAX_NAME, Projection, Rig, Settings, StandardView};
+use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, StandardView};
 
 /// Characters of a path under the pointer: the longest that there are.
 const LONGEST_PATH: usize = 4096;
@@ -137,10 +137,13 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::ResetView, true);
     item(ui, menu, Command::FrameAll, true);
+    item(ui, menu, Command::TurnObject(ObjectTurn::Over), true);
+    item(ui, menu, Command::TurnRound, true);
     ui.menu_button(text::menu::LOOK_FROM, |ui| {
         for view in StandardView::ALL {
             let command = Command::LookFrom(view);
-            let button = Button::new(view.name()).shortcut_text(command.shortcut_text(ui.ctx()));
+            let button = Button::new(view.name(menu.settings.camera.up))
+                .shortcut_text(command.shortcut_text(ui.ctx()));
             if ui.add(button).clicked() {
                 menu.commands.push(command);
             }

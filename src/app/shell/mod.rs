@@ -10,3 +10,4 @@ pub(super) mod picture;
 pub(super) mod session;
 pub(super) mod status;
 pub(super) mod status_file;
+mod upright;

@@ -88,6 +88,49 @@ fn files_whose_names_are_no_text_are_remembered() {
     assert_eq!(serde_json::from_slice::<Vec<String>>(&text).unwrap().len(), names.len());
 }
 
+#[test]
+fn files_stand_as_those_of_their_folder_did() {
+    let folder = tempfile::tempdir().unwrap();
+    let (a, b, other) = (Path::new("/data/a.nrrd"), Path::new("/data/b.raw"), Path::new("/data/more/a.nrrd"));
+    let mut memory = remember(folder.path());
+    assert_eq!(memory.up_of(a), SceneAxis::PlusZ);
+    memory.stood(a, SceneAxis::PlusX);
+    memory.stood(a, SceneAxis::MinusY);
+    memory.stood(Path::new("builtin:chair"), SceneAxis::PlusX);
+    assert_eq!(
+        [a, b, other].map(|file| memory.up_of(file)),
+        [SceneAxis::MinusY, SceneAxis::MinusY, SceneAxis::PlusZ]
+    );
+    // Another window has begun before, and does not know of these.
+    let mut second = remember(folder.path());
+    drop(memory);
+    second.stood(other, SceneAxis::PlusY);
+    drop(second);
+    let mut memory = remember(folder.path());
+    assert_eq!((memory.up_of(b), memory.up_of(other)), (SceneAxis::MinusY, SceneAxis::PlusY));
+    assert_eq!(memory.up_of(Path::new("builtin:chair")), SceneAxis::PlusZ);
+    memory.stood(b, SceneAxis::PlusZ);
+    drop(memory);
+    let mut memory = remember(folder.path());
+    assert_eq!(memory.up_of(a), SceneAxis::PlusZ, "what was chosen last");
+    // There may be many folders; the oldest goes.
+    for at in 0..2 * standing::MOST {
+        memory.stood(Path::new(&format!("/{at}/a.nrrd")), SceneAxis::PlusX);
+    }
+    assert_eq!(memory.standing.len(), standing::MOST);
+    drop(memory);
+    let memory = remember(folder.path());
+    assert_eq!(memory.standing.len(), standing::MOST);
+    assert_eq!(
+        (memory.up_of(other), memory.up_of(Path::new("/199/b.raw"))),
+        (SceneAxis::PlusZ, SceneAxis::PlusX)
+    );
+    drop(memory);
+    fs::write(folder.path().join("standing.json"), "[{}]").unwrap();
+    let mut memory = remember(folder.path());
+    assert!(memory.standing.is_empty() && memory.take_notices().len() == 1, "put aside, and said");
+}
+
 /// A change is on the disk soon, though nothing happens after it: no frame, no further change.
 #[test]
 fn the_last_change_is_kept_within_two_seconds() {
