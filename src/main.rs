@@ -34,7 +34,10 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
     };
     app::run(options).map_err(|err| match Context::headless() {
         // Without an adapter no window opens, and the window system's own words do not say so.
-        Err(no_adapter) => CliError::Gpu(no_adapter),
+        Err(no_adapter) => {
+            app::show_on_desktop(&no_adapter.to_string());
+            CliError::Gpu(no_adapter)
+        }
         Ok(_) => CliError::Window(err.to_string()),
     })
 }

@@ -16,6 +16,9 @@ struct Floor {
     shading_cut: Cut,
     // In index space: the floor is where dot(plane.xyz, p) = plane.w, and above it is more.
     plane: vec4f,
+    // In scene space: the floor looks there, and that far from the middle it lies.
+    up: vec3f,
+    height: f32,
     // Linear.
     color: vec3f,
     opacity: f32,
@@ -66,10 +69,10 @@ struct Fallen {
 fn fallen(light: Light, p: vec3f, place: vec3f, shadowed: bool) -> Fallen {
     let towards = to_light(light, place);
     let hood = hood_share(light, towards.direction);
-    let bare = light.color * max(towards.direction.z, 0.0);
+    let bare = light.color * max(dot(floor_disc.up, towards.direction), 0.0);
     let s = floor_disc.shading;
     var left = 0.0;
-    if (shadowed && towards.direction.z > 0.0 && hood > 0.0) {
+    if (shadowed && dot(floor_disc.up, towards.direction) > 0.0 && hood > 0.0) {
         let direction = to_index(floor_disc.space, towards.direction);
         let cut = floor_disc.shading_cut;
         let scale = light.extinction_scale;
@@ -95,7 +98,7 @@ fn main(
     let depth = (floor_disc.plane.w - dot(floor_disc.plane.xyz, ray.origin)) / min(speed, -1e-9);
     let p = ray.origin + ray.direction * depth;
     let place = place_of(floor_disc.space, p);
-    let t = clamp((floor_disc.radius - length(place.xy)) / floor_disc.fade, 0.0, 1.0);
+    let t = clamp((floor_disc.radius - distance(place, floor_disc.up * floor_disc.height)) / floor_disc.fade, 0.0, 1.0);
     // From above, and in front of a perspective eye.
     let is_seen = speed < 0.0 && 1.0 + depth * floor_disc.frame.inverse_distance > 1e-3;
     let presence = select(0.0, floor_disc.opacity * t * t * (3.0 - 2.0 * t), is_seen);

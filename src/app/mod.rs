@@ -18,6 +18,7 @@ mod worker;
 #[cfg(feature = "cli")]
 pub(crate) use self::memory::end_in_a_hurry;
 pub use self::start::error::AppError;
+pub use self::start::no_adapter::show_on_desktop;
 pub use self::start::options::{Adjustment, Options};
 pub use self::start::run::{run, storage_folder, wgpu_setup};
 
@@ -270,7 +271,7 @@ impl App {
                 },
             );
         });
-        self.help.ui(ui.ctx(), facts);
+        self.help.ui(ui.ctx(), facts, self.settings.camera.up);
     }
 
     /// The picture.
@@ -324,7 +325,7 @@ impl eframe::App for App {
             commands.push(Command::Open(path));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
-        self.palette.ui(&ctx, &mut commands);
+        self.palette.ui(&ctx, self.settings.camera.up, &mut commands);
         self.surroundings(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);
         commands::from_keys(&ctx, &mut commands);

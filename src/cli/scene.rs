@@ -10,7 +10,10 @@ use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, KindName, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, Renderer, balance_quickly, fitted};
-use crate::model::{Engine, MAX_EDGE, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto};
+use crate::model::auto::Wishes;
+use crate::model::{
+    Engine, MAX_EDGE, ObjectTurn, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto,
+};
 
 /// How a volume is read.
 #[derive(Debug, Clone, Args)]
@@ -275,11 +278,34 @@ impl LookArgs {
         Ok(checked(downsampled_to_fit(source, whole, context)?))
     }
 
+    /// The automatic look, of a volume that stands as a single setting says: lights and floor are where they belong
+    /// then.
+    fn first_settings(&self, loaded: &Dataset) -> Settings {
+        let of_up = |assignment: &String| {
+            let (path, value) = assignment.split_once('=').filter(|(path, _)| path.trim() == "camera.up")?;
+            // What cannot be understood is said when it is its turn.
+            assign(&Settings::default(), path.trim(), value.trim())
+                .ok()
+                .map(|(settings, _)| settings.camera.up)
+        };
+        let (volume, histogram) = (loaded.volume(), loaded.histogram());
+        let treated_as = self.treat_as.map(KindName::from);
+        let Some(up) = self.set.iter().rev().find_map(of_up) else {
+            return auto::first_settings_with(volume, histogram, Wishes { treated_as, ..Wishes::default() });
+        };
+        let mut settings = auto::first_settings_with(volume, histogram, Wishes { treated_as, up });
+        if settings.camera.up != up {
+            // Against what the file says.
+            settings.turn_object(ObjectTurn::Upright(up));
+            auto::frame(&mut settings, volume);
+        }
+        settings
+    }
+
     /// The automatic look, with preset, session and single settings laid over it.
     /// All of them are checked here, before anything slow begins.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
-        let mut settings =
-            auto::first_settings_as(loaded.volume(), loaded.histogram(), self.treat_as.map(KindName::from));
+        let mut settings = self.first_settings(loaded);
         let mut balanced = false;
         let overlays = [("preset", &self.preset), ("session", &self.session)];
         for (what, path) in overlays {

@@ -23,7 +23,8 @@ pub(crate) use context::check_room_for_drivers;
 pub use context::error::GpuError;
 pub use context::{Context, device_descriptor};
 pub use frame::first_look::{
-    balance, balance_quickly, dark_share, first_look, mean_luminance, seen_share, shadowed_share,
+    balance, balance_quickly, dark_share, first_look, first_look_upright, mean_luminance, seen_share,
+    shadowed_share,
 };
 pub use frame::fit::fitted;
 pub use frame::job::Job;

@@ -6,6 +6,7 @@
 pub mod auto;
 mod exchange;
 mod image_spec;
+mod object_turn;
 mod rig;
 mod settings;
 mod stored;
@@ -21,6 +22,7 @@ pub use self::settings::quality::Quality;
 pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
 };
+pub use self::settings::scene_axis::SceneAxis;
 pub use self::settings::shadows::{
     Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,
     Shadows,
@@ -30,6 +32,7 @@ pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
 pub use self::stored::made_by::{MADE_BY, made_by, tells_maker};
+pub use self::stored::path_text::{decode_path, encode_path};
 pub use self::stored::place::VolumePlace;
 pub use self::stored::preset::{apply_json, apply_path, assign, load_json, to_json};
 pub use self::stored::preset_error::PresetError;
@@ -39,6 +42,7 @@ pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear};
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
+pub use object_turn::{ObjectTurn, RoomTurn};
 pub use rig::Rig;
 pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, Sides, ToneMap};
 pub use transfer::{

@@ -90,10 +90,11 @@ impl Rig {
                 Light { color: [0.8, 0.88, 1.0], ..named("Rim right", at([0.85, 0.2, -0.6]), 0.8) },
                 Light { intensity: 0.1, ..fill },
             ],
-            // Down in the scene, whatever the view; a little towards the viewer, so that fronts are not black.
+            // Straight down, whatever the view; a little towards the viewer, so that fronts are not black.
             Self::FromAbove => {
-                let towards = view.z_axis.reject_from(DVec3::Z).normalize_or(DVec3::ZERO);
-                let place = (DVec3::Z + 0.35 * towards).normalize_or(DVec3::Z) * DISTANCE;
+                let up = camera.up.direction();
+                let towards = view.z_axis.reject_from(up).normalize_or(DVec3::ZERO);
+                let place = (up + 0.35 * towards).normalize_or(up) * DISTANCE;
                 vec![named("Sun", place.into(), 1.1), Light { intensity: 0.15, ..fill }]
             }
             Self::Headlight => {
@@ -106,6 +107,15 @@ impl Rig {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_sun_is_above_whatever_is_up() {
+        for up in crate::model::SceneAxis::ALL {
+            let sun = Rig::FromAbove.lights(&Camera { up, ..Camera::default() })[0].position;
+            // 0.35 towards the viewer for 1 upwards.
+            assert!(DVec3::from(sun).normalize().dot(up.direction()) > 0.94, "{up:?}");
+        }
+    }
 
     #[test]
     fn rigs_follow_the_camera_they_were_made_for() {

@@ -15,7 +15,8 @@ impl Settings {
             Some(index) => {
                 if let Some(lamp) = turned.lights.get_mut(index) {
                     let world = DVec3::from(lamp.in_scene(&self.camera).position);
-                    let turn = DQuat::from_rotation_z(std::f64::consts::TAU * share);
+                    let turn =
+                        DQuat::from_axis_angle(self.camera.up.direction(), std::f64::consts::TAU * share);
                     lamp.set_scene_position(turn * world, &self.camera);
                 }
             }

@@ -41,14 +41,16 @@ impl Reference<'_> {
         lamps: &[(SceneLight, Option<ShadowRays<'_>>)],
     ) -> [f64; 4] {
         let (floor, shading) = (&self.settings.floor, &self.settings.shading);
+        let up = self.settings.camera.up.direction();
+        let towards = direction.dot(up);
         // An orthographic eye is nowhere: its rays begin behind everything.
-        let along = (floor.height - eye.z) / direction.z;
+        let along = (floor.height - eye.dot(up)) / towards;
         let is_in_front = along > 0.0 || self.settings.camera.projection == Projection::Orthographic;
-        if direction.z >= 0.0 || !is_in_front {
+        if towards >= 0.0 || !is_in_front {
             return [0.0; 4];
         }
         let place = eye + direction * along;
-        let presence = floor.presence(place.truncate().length());
+        let presence = floor.presence(place.reject_from(up).length());
         let index = self.scene.index_from_scene.transform_point3(place);
         let (mut fallen, mut bare) = ([0.0; 3], [0.0; 3]);
         for (light, rays) in lamps {
@@ -60,7 +62,8 @@ impl Reference<'_> {
             let hood = cone.share(-cone.axis.dot(to_light));
             let arriving = rays.as_ref().map_or(hood, |rays| self.cured(rays.attenuation(index)));
             for channel in 0..3 {
-                let rgb = linear_from_srgb(light.color[channel]) * light.intensity * to_light.z.max(0.0);
+                let rgb =
+                    linear_from_srgb(light.color[channel]) * light.intensity * to_light.dot(up).max(0.0);
                 fallen[channel] += rgb * arriving;
                 bare[channel] += rgb * hood;
             }

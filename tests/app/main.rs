@@ -8,6 +8,7 @@ mod harness;
 mod keep_balanced;
 mod lights;
 mod names;
+mod orientation;
 mod panels;
 mod snapshots;
 mod thresholds;

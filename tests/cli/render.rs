@@ -204,3 +204,19 @@ fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
     assert_eq!(folder.json("own.json")["settings"]["transfer"], scalar, "it is one");
     folder.fail("render builtin:sphere:24 -o no.png --as something", 2);
 }
+
+/// The report has the settings: a volume that is stood up is lit and framed as it stands.
+#[test]
+fn a_single_setting_stands_the_object_up() {
+    let folder = Folder::new();
+    let render = "render builtin:chair:24 -o p.png --size 32x24 --report r.json";
+    folder.succeed(render);
+    let upright = folder.json("r.json")["settings"].clone();
+    folder.succeed(&format!("{render} --set camera.up=minus_z"));
+    let on_its_head = folder.json("r.json")["settings"].clone();
+    let height =
+        |settings: &serde_json::Value| settings["lights"][0]["position"][2].as_f64().expect("a number");
+    assert!(height(&upright) > 0.0 && height(&on_its_head) < 0.0, "the light comes from above");
+    assert_ne!(upright["floor"]["height"], on_its_head["floor"]["height"]);
+    assert!(folder.fail(&format!("{render} --set camera.up=sideways"), 2).contains("camera.up"));
+}

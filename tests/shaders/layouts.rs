@@ -222,6 +222,8 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 shading,
                 shading_cut,
                 plane,
+                up,
+                height,
                 color,
                 opacity,
                 radius,

@@ -1,13 +1,11 @@
 //! What menus, keys and buttons ask for. Collected during a frame, carried out at its end.
 
-use std::borrow::Cow;
 use std::path::PathBuf;
 
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
-use crate::app::text;
 use crate::data::KindName;
-use crate::model::{COLOR_MAPS, Light, PRESETS, Preset, Rig, StandardView};
+use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, StandardView};
 
 /// Something the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +44,10 @@ pub(crate) enum Command {
     FrameAll,
     /// From a side.
     LookFrom(StandardView),
+    /// Stand the object up, or lay it down.
+    TurnObject(ObjectTurn),
+    /// From the next side: the object turns by a quarter about the vertical.
+    TurnRound,
     /// Perspective or orthographic.
     ToggleProjection,
     /// Keep the view under a digit.
@@ -133,7 +135,7 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
 }
 
 /// A command with its key, as help shows it.
-pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 39] = [
+pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 41] = [
     control(Key::O, Command::OpenDialog),
     control(Key::L, Command::OpenPath),
     control(Key::S, Command::SaveSettings),
@@ -154,6 +156,8 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 39] = [
     plain(Key::Num8, Command::LookFrom(StandardView::MinusZ)),
     plain(Key::Num9, Command::LookFrom(StandardView::Isometric)),
     plain(Key::Num5, Command::ToggleProjection),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::T), Command::TurnRound),
+    plain(Key::T, Command::TurnObject(ObjectTurn::Over)),
     plain(Key::F11, Command::ToggleFullScreen),
     plain(Key::Comma, Command::PreviousLight),
     plain(Key::Period, Command::NextLight),
@@ -197,6 +201,8 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::Redo,
         Command::ResetView,
         Command::FrameAll,
+        Command::TurnObject(ObjectTurn::Over),
+        Command::TurnRound,
         Command::ToggleProjection,
         Command::ToggleFullScreen,
         Command::ToggleOverlay,
@@ -232,105 +238,13 @@ pub(crate) fn listed() -> Vec<Command> {
     all.extend([1, 2, 4].map(Command::Average));
     all.extend(KindName::choices().map(Command::TreatAs));
     all.extend(StandardView::ALL.map(Command::LookFrom));
+    all.extend(SceneAxis::ALL.map(|axis| Command::TurnObject(ObjectTurn::Upright(axis))));
     all.extend(Rig::ALL.map(Command::UseRig));
     all.extend(PRESETS.map(Command::UsePreset));
     all.extend((0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| Command::UseColors(at, back))));
     all.extend(VIEW_SLOTS.map(Command::StoreView));
     all.extend(VIEW_SLOTS.map(Command::RecallView));
     all
-}
-
-impl Command {
-    /// What help calls it.
-    pub(crate) fn label(&self) -> Cow<'static, str> {
-        let label = match self {
-            Self::LookFrom(view) => return text::commands::look_from(view.name()).into(),
-            Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
-            Self::UsePreset(preset) => {
-                return text::commands::use_preset(preset.domain(), &preset.title()).into();
-            }
-            Self::UseColors(at, back) => {
-                let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
-                return text::commands::use_colors(name, *back).into();
-            }
-            Self::TreatAs(kind) => return text::commands::treat_as(*kind).into(),
-            Self::Average(block) => return text::commands::average(*block).into(),
-            Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
-            Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
-            Self::InvertTransfer => text::commands::INVERT_TRANSFER,
-            Self::StoreView(slot) => return text::commands::store_view(*slot).into(),
-            Self::RecallView(slot) => return text::commands::recall_view(*slot).into(),
-            Self::FrameAll => text::commands::FRAME_ALL,
-            Self::ToggleProjection => text::commands::TOGGLE_PROJECTION,
-            Self::ToggleFullScreen => text::commands::TOGGLE_FULL_SCREEN,
-            Self::ToggleOverlay => text::commands::TOGGLE_OVERLAY,
-            Self::ToggleProbe => text::commands::TOGGLE_PROBE,
-            Self::ToggleCrop => text::commands::TOGGLE_CROP,
-            Self::TogglePlane => text::commands::TOGGLE_PLANE,
-            Self::FacePlane => text::commands::FACE_PLANE,
-            Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
-            Self::ShowPalette => text::commands::SHOW_PALETTE,
-            Self::UseLights(_) => text::commands::USE_LIGHTS,
-            Self::TryLights => text::commands::TRY_LIGHTS,
-            Self::TryPresets => text::commands::TRY_PRESETS,
-            Self::NextLight => text::commands::NEXT_LIGHT,
-            Self::PreviousLight => text::commands::PREVIOUS_LIGHT,
-            Self::Solo => text::commands::SOLO,
-            Self::Mute => text::commands::MUTE,
-            Self::Brighter => text::commands::BRIGHTER,
-            Self::Dimmer => text::commands::DIMMER,
-            Self::OpenDialog => text::commands::OPEN_DIALOG,
-            Self::OpenPath => text::commands::OPEN_PATH,
-            Self::Open(_) => text::commands::OPEN_BUILT_IN,
-            Self::CancelOpening => text::commands::CANCEL_OPENING,
-            Self::GoOn => text::commands::GO_ON,
-            Self::SaveSettings => text::commands::SAVE_SETTINGS,
-            Self::LoadSettings => text::commands::LOAD_SETTINGS,
-            Self::Export => text::commands::EXPORT,
-            Self::CopyPicture => text::commands::COPY_PICTURE,
-            Self::KeepLook => text::commands::KEEP_LOOK,
-            Self::Quit => text::commands::QUIT,
-            Self::Undo => text::commands::UNDO,
-            Self::Redo => text::commands::REDO,
-            Self::ResetView => text::commands::RESET_VIEW,
-            Self::AddLight => text::commands::ADD_LIGHT,
-            Self::AutomaticTransfer => text::commands::AUTOMATIC_TRANSFER,
-            Self::Balance => text::commands::BALANCE,
-            Self::ToggleSide => text::commands::TOGGLE_SIDE,
-            Self::ToggleHandles => text::commands::TOGGLE_HANDLES,
-            Self::ToggleCompare => text::commands::TOGGLE_COMPARE,
-            Self::ShowSlices => text::commands::SHOW_SLICES,
-            Self::ShowLightVolume => text::commands::SHOW_LIGHT_VOLUME,
-            Self::CompareWithFile => text::commands::COMPARE_WITH_FILE,
-            Self::ShowHelp => text::help::KEYS_AND_MOUSE,
-            Self::ShowAbout => text::help::ABOUT,
-        };
-        label.into()
-    }
-
-    /// The command's key, for menus.
-    pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
-        match self {
-            Self::StoreView(slot) => return text::commands::store_view_keys(*slot),
-            Self::RecallView(slot) => return text::commands::recall_view_keys(*slot),
-            _ => {}
-        }
-        let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
-        found.map_or_else(String::new, |(shortcut, _)| key_text(ctx, shortcut))
-    }
-}
-
-/// A key as it is printed on the keyboard.
-pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
-    let named = ctx.format_shortcut(&shortcut);
-    let signs = [
-        (Key::OpenBracket, "["),
-        (Key::CloseBracket, "]"),
-        (Key::Comma, ","),
-        (Key::Period, "."),
-        (Key::Questionmark, "?"),
-    ];
-    signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
 }
 
 /// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited.

@@ -9,6 +9,7 @@ use eframe::egui::{self, ColorImage};
 
 #[cfg(feature = "cli")]
 use super::earlier;
+use super::standing::{self, Standing};
 use super::{recent, thumbnail};
 use crate::export::write_atomically;
 use crate::model::{Record, Settings, VolumeRecord};
@@ -41,13 +42,15 @@ struct Due {
     look: Option<Look>,
     picture: Option<Arc<ColorImage>>,
     /// Files that were opened, the latest last.
-    opened: Vec<String>,
+    opened: Vec<PathBuf>,
+    /// How things stand that were turned, the latest last.
+    stood: Vec<Standing>,
     closed: bool,
 }
 
 impl Due {
     fn is_empty(&self) -> bool {
-        self.look.is_none() && self.picture.is_none() && self.opened.is_empty()
+        self.look.is_none() && self.picture.is_none() && self.opened.is_empty() && self.stood.is_empty()
     }
 }
 
@@ -87,7 +90,7 @@ fn locked_soon<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
 impl Shared {
     /// Writes what is due. What could not be written is due again, unless there is something newer.
     fn write(&self, due: Due) {
-        let Due { look, picture, opened, closed: _ } = due;
+        let Due { look, picture, opened, stood, closed: _ } = due;
         if let Some(look) = look {
             let failed =
                 write_atomically(&self.look, look.text().as_bytes()).err().map(|err| err.to_string());
@@ -110,6 +113,11 @@ impl Shared {
             && let Err(err) = recent::add(&self.folder, &opened)
         {
             log::warn!("files that were opened were not noted: {err}");
+        }
+        if !stood.is_empty()
+            && let Err(err) = standing::add(&self.folder, stood)
+        {
+            log::warn!("which way up the object stood was not noted: {err}");
         }
     }
 
@@ -221,8 +229,13 @@ impl Keeper {
     }
 
     /// A file was opened.
-    pub(super) fn opened(&self, source: &str) {
+    pub(super) fn opened(&self, source: &Path) {
         self.change(|due| due.opened.push(source.to_owned()));
+    }
+
+    /// The object was turned.
+    pub(super) fn stood(&self, standing: Standing) {
+        self.change(|due| due.stood.push(standing));
     }
 
     /// Why the look could not be kept; none if it was.

@@ -6,6 +6,7 @@ mod damaged;
 mod earlier;
 mod keeper;
 mod recent;
+mod standing;
 mod thumbnail;
 
 use std::path::{Path, PathBuf};
@@ -20,9 +21,10 @@ use self::keeper::Keeper;
 #[cfg(feature = "cli")]
 pub(crate) use self::keeper::end_in_a_hurry;
 pub(crate) use self::keeper::{LastWords, write_last_words};
+use self::standing::Standing;
 use crate::app::text;
 use crate::export;
-use crate::model::Settings;
+use crate::model::{SceneAxis, Settings};
 
 /// Starts in succession that have to fail before one leaves out what may be to blame.
 const FAILED_STARTS: usize = 3;
@@ -32,13 +34,25 @@ pub(crate) fn starts_have_failed(folder: &Path) -> bool {
     earlier::failed_starts(&folder.join("runs")) >= FAILED_STARTS
 }
 
+fn is_builtin(source: &Path) -> bool {
+    source.to_str().is_some_and(|name| name.starts_with("builtin:"))
+}
+
+/// The folder of a file from the root; built-in volumes have none.
+fn folder_of(source: &Path) -> Option<PathBuf> {
+    let whole = (!is_builtin(source)).then(|| std::path::absolute(source).ok()).flatten();
+    whole.and_then(|file| file.parent().map(Path::to_owned))
+}
+
 /// The look that was handed over last, and what it is of.
 type Kept = (Settings, u64);
 
 /// Files in the folder that the system gives us; without one, nothing is remembered.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
-    recent: Vec<String>,
+    recent: Vec<PathBuf>,
+    /// Which way up things stood in folders, the latest first.
+    standing: Vec<Standing>,
     /// Runs that have ended, the latest first.
     earlier: Vec<EarlierRun>,
     /// There was no run before.
@@ -70,6 +84,9 @@ impl Memory {
         let (recent, notice) = recent::read(folder);
         (memory.recent, memory.notices) = (recent, notice.into_iter().collect());
         memory.recent.truncate(recent::MOST);
+        let (standing, notice) = standing::read(folder);
+        memory.standing = standing;
+        memory.notices.extend(notice);
         memory.is_troubled = starts_have_failed(folder);
         let (earlier, notices) = earlier::read(&runs);
         memory.earlier = earlier;
@@ -95,20 +112,36 @@ impl Memory {
     }
 
     /// What was opened, the latest first.
-    pub(crate) fn recent(&self) -> &[String] {
+    pub(crate) fn recent(&self) -> &[PathBuf] {
         &self.recent
     }
 
     /// Takes note of a file that was opened. Built-in volumes have a menu of their own.
-    pub(crate) fn opened(&mut self, source: &str) {
-        if source.starts_with("builtin:") {
+    pub(crate) fn opened(&mut self, source: &Path) {
+        if is_builtin(source) {
             return;
         }
-        let whole =
-            std::path::absolute(source).map_or_else(|_| source.to_owned(), |path| path.display().to_string());
+        let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
         recent::put_first(&mut self.recent, &whole);
         if let Some(keeper) = &self.keeper {
             keeper.opened(&whole);
+        }
+    }
+
+    /// Which way up a file is to stand that is opened from where others were.
+    pub(crate) fn up_of(&self, source: &Path) -> SceneAxis {
+        let folder = folder_of(source);
+        let known = folder.and_then(|folder| self.standing.iter().find(|known| known.folder == folder));
+        known.map_or_else(SceneAxis::default, |known| known.up)
+    }
+
+    /// Takes note of which way up the user has stood a file. Built-in volumes are in no folder.
+    pub(crate) fn stood(&mut self, source: &Path, up: SceneAxis) {
+        let Some(folder) = folder_of(source) else { return };
+        let latest = Standing { folder, up };
+        standing::put_first(&mut self.standing, latest.clone());
+        if let Some(keeper) = &self.keeper {
+            keeper.stood(latest);
         }
     }
 

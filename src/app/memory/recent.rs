@@ -1,17 +1,22 @@
 //! Files that were opened, in all windows of this user.
 
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::damaged;
 use crate::data::read_small;
 use crate::export::{hold_lock, write_atomically};
+use crate::model::{decode_path, encode_path};
+
+/// What names that are no text begin with in the file, all bytes of which are written after it. No other entry does:
+/// they are paths from the root.
+const IN_BYTES: &str = "file://";
 
 /// Files that the menu offers.
 pub(super) const MOST: usize = 12;
 
 /// The list of a folder, the latest first; with a notice if it was damaged and has been put aside.
-pub(super) fn read(folder: &Path) -> (Vec<String>, Option<String>) {
+pub(super) fn read(folder: &Path) -> (Vec<PathBuf>, Option<String>) {
     let path = folder.join("recent.json");
     let found = match read_small(&path) {
         // Also where the folder is none: that is said when the run begins.
@@ -21,26 +26,40 @@ pub(super) fn read(folder: &Path) -> (Vec<String>, Option<String>) {
         found => found.ok(),
     };
     match found.and_then(|bytes| serde_json::from_slice::<Vec<String>>(&bytes).ok()) {
-        Some(list) => (list, None),
+        Some(list) => (list.iter().map(|text| path_of(text)).collect(), None),
         None => (Vec::new(), Some(damaged::put_aside(&path))),
     }
 }
 
+/// An entry as it is written.
+pub(super) fn text_of(path: &Path) -> String {
+    match encode_path(path) {
+        Some(bytes) => format!("{IN_BYTES}{bytes}"),
+        None => path.display().to_string(),
+    }
+}
+
+/// What an entry stands for.
+pub(super) fn path_of(text: &str) -> PathBuf {
+    text.strip_prefix(IN_BYTES).and_then(decode_path).unwrap_or_else(|| text.into())
+}
+
 /// A list with a file at its head.
-pub(super) fn put_first(list: &mut Vec<String>, source: &str) {
+pub(super) fn put_first(list: &mut Vec<PathBuf>, source: &Path) {
     list.retain(|known| known != source);
     list.insert(0, source.to_owned());
     list.truncate(MOST);
 }
 
 /// Adds files to the list of a folder, the latest last. What another window has added stays.
-pub(super) fn add(folder: &Path, opened: &[String]) -> Result<(), String> {
+pub(super) fn add(folder: &Path, opened: &[PathBuf]) -> Result<(), String> {
     // Between reading and writing nobody else writes. Without locks, two windows must be quick to lose an entry.
     let _lock = hold_lock(&folder.join("recent.lock")).map_err(|err| err.to_string())?;
     let (mut list, _) = read(folder);
     for source in opened {
         put_first(&mut list, source);
     }
+    let list: Vec<_> = list.iter().map(|path| text_of(path)).collect();
     let text = serde_json::to_string_pretty(&list).map_err(|err| err.to_string())?;
     write_atomically(&folder.join("recent.json"), text.as_bytes()).map_err(|err| err.to_string())
 }

@@ -7,7 +7,7 @@ use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice};
 use super::{Panels, sampling};
 use crate::app::common::commands::Command;
-use crate::model::{Fit, Projection};
+use crate::model::{Fit, ObjectTurn, Projection, SceneAxis};
 
 const PROJECTIONS: [(Projection, Named); 2] = [
     (Projection::Perspective, text::camera::PERSPECTIVE),
@@ -20,6 +20,11 @@ const FITS: [(Fit, Named); 2] = [(Fit::Frame, text::camera::FRAME), (Fit::Height
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (camera, defaults) = (&mut panels.settings.camera, &panels.defaults.camera);
     choice(ui, text::camera::PROJECTION, &mut camera.projection, &PROJECTIONS);
+    // Lights and floor go with it.
+    let mut up = camera.up;
+    if choice(ui, text::camera::UP, &mut up, &SceneAxis::ALL.map(|axis| (axis, text::camera::axis(axis)))) {
+        panels.commands.push(Command::TurnObject(ObjectTurn::Upright(up)));
+    }
     // Stored as 0 … 360, shown around the middle.
     let mut azimuth_deg = (camera.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
     let default_deg = (defaults.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;

@@ -50,8 +50,15 @@ impl App {
                 }
                 // With the balance that it had.
                 self.keep_balanced.accept(&self.settings);
+                if self.settings.camera.up != self.defaults.camera.up {
+                    self.follow_up();
+                    self.remember_up();
+                }
             }
-            Command::ResetView => self.settings.camera = self.defaults.camera.clone(),
+            Command::ResetView => {
+                self.follow_up();
+                self.settings.camera = self.defaults.camera.clone();
+            }
             Command::AddLight => {
                 if let Some(index) = panels::add_light(&mut self.settings) {
                     self.selected_light = index;
@@ -83,7 +90,12 @@ impl App {
             }
             Command::ToggleFloor => self.settings.floor.on ^= true,
             Command::Balance => self.start_balance(ctx),
-            Command::FrameAll => self.settings.camera.frame_as(&self.defaults.camera),
+            Command::FrameAll => {
+                self.follow_up();
+                self.settings.camera.frame_as(&self.defaults.camera);
+            }
+            Command::TurnObject(turn) => self.turn_object(turn),
+            Command::TurnRound => self.settings.camera.orbit(90.0, 0.0),
             Command::LookFrom(view) => self.settings.camera.look_from(view),
             Command::ToggleProjection => self.settings.camera.toggle_projection(),
             Command::StoreView(slot) => {

@@ -1,5 +1,7 @@
 //! The menu bar.
 
+use std::path::PathBuf;
+
 use eframe::egui::{self, Button, ThemePreference};
 
 use crate::app::common::commands::{Command, VIEW_SLOTS};
@@ -8,7 +10,7 @@ use crate::app::memory::EarlierRun;
 use crate::app::text;
 use crate::app::windows::recovery;
 use crate::data::{plain, synthetic};
-use crate::model::{MAX_LIGHTS, MAX_NAME, Projection, Rig, Settings, StandardView};
+use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, StandardView};
 
 /// Characters of a path under the pointer: the longest that there are.
 const LONGEST_PATH: usize = 4096;
@@ -26,7 +28,7 @@ pub(crate) struct Menu<'a> {
     /// What is on screen.
     pub shown: Shown,
     /// Files that were opened, the latest first.
-    pub recent: &'a [String],
+    pub recent: &'a [PathBuf],
     /// Whether the next volume is shown as this one.
     pub keeps_look: bool,
     /// Runs that have ended, the latest first.
@@ -90,10 +92,11 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
         ui.menu_button(text::menu::OPEN_RECENT, |ui| {
             for path in menu.recent {
-                let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy());
-                let name = plain(name.as_deref().unwrap_or(path), MAX_NAME);
-                if ui.button(name).on_hover_text(plain(path, LONGEST_PATH)).clicked() {
-                    menu.commands.push(Command::Open(path.into()));
+                let whole = path.to_string_lossy();
+                let name = path.file_name().map(|name| name.to_string_lossy());
+                let name = plain(name.as_ref().unwrap_or(&whole), MAX_NAME);
+                if ui.button(name).on_hover_text(plain(&whole, LONGEST_PATH)).clicked() {
+                    menu.commands.push(Command::Open(path.clone()));
                 }
             }
         });
@@ -134,10 +137,13 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::ResetView, true);
     item(ui, menu, Command::FrameAll, true);
+    item(ui, menu, Command::TurnObject(ObjectTurn::Over), true);
+    item(ui, menu, Command::TurnRound, true);
     ui.menu_button(text::menu::LOOK_FROM, |ui| {
         for view in StandardView::ALL {
             let command = Command::LookFrom(view);
-            let button = Button::new(view.name()).shortcut_text(command.shortcut_text(ui.ctx()));
+            let button = Button::new(view.name(menu.settings.camera.up))
+                .shortcut_text(command.shortcut_text(ui.ctx()));
             if ui.add(button).clicked() {
                 menu.commands.push(command);
             }

@@ -11,3 +11,4 @@ pub(super) mod session;
 pub(super) mod status;
 pub(super) mod status_file;
 pub(super) mod treat_as;
+mod upright;

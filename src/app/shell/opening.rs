@@ -15,7 +15,7 @@ use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
 use crate::app::{App, text};
 use crate::data::ValueRange;
-use crate::model::{Length, Record, Settings, VolumePlace, VolumeRecord, made_by};
+use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, VolumeRecord, made_by};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -109,7 +109,8 @@ impl App {
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
-        let started = self.loader.open(source, reading, ctx);
+        let up = self.memory.up_of(source);
+        let started = self.loader.open(source, reading, up, ctx);
         if let Err(err) = &started {
             self.messages.error(text::opening::NOT_OPENED, err.clone());
         }
@@ -148,7 +149,7 @@ impl App {
     /// Whether a record may open a file that is not beside it: the program's own may, and others what the user has
     /// opened before.
     fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
-        let is_known = || self.memory.recent().iter().any(|known| Path::new(known) == volume);
+        let is_known = || self.memory.recent().iter().any(|known| known == volume);
         self.trusts_paths || self.memory.is_own(record) || is_known()
     }
 
@@ -295,8 +296,10 @@ impl App {
         self.defaults = settings.clone();
         let is_kept = self.keeps_look && self.volume.is_some();
         if is_kept {
-            // As it was, but for where the object is: that is another one.
-            let mut kept = Settings { camera: settings.camera.clone(), ..std::mem::take(&mut self.settings) };
+            // As it was, but for where the object is: that is another one, and may stand another way up.
+            let mut before = std::mem::take(&mut self.settings);
+            before.turn_object(ObjectTurn::Upright(settings.camera.up));
+            let mut kept = Settings { camera: settings.camera.clone(), ..before };
             kept.floor.height = settings.floor.height;
             self.settings = kept;
         } else {
@@ -318,10 +321,7 @@ impl App {
             }
             self.session = Some(session);
         }
-        // The list is of texts.
-        if let Some(source) = source.to_str() {
-            self.memory.opened(source);
-        }
+        self.memory.opened(&source);
         match self.pending.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {

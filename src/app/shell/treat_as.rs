@@ -2,7 +2,8 @@
 
 use crate::app::App;
 use crate::data::KindName;
-use crate::model::{Settings, TransferFunction, auto};
+use crate::model::auto::{self, Wishes};
+use crate::model::{Settings, TransferFunction};
 
 /// First looks that were made of the open volume, by their transfer functions: of which kind of data they are for.
 #[derive(Debug, Default)]
@@ -32,7 +33,8 @@ impl App {
     /// Makes the first look anew, for data of a kind; for the volume's own if none is named.
     pub(super) fn treat_as(&mut self, kind: Option<KindName>) {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
-        let mut look = auto::first_settings_as(dataset.volume(), &facts.histogram, kind);
+        let wishes = Wishes { treated_as: kind, up: self.settings.camera.up };
+        let mut look = auto::first_settings_with(dataset.volume(), &facts.histogram, wishes);
         // Near what it is: kept, it is found again.
         look.shadows.balance = self.settings.shadows.balance;
         look.shadows.keep_balanced = self.settings.shadows.keep_balanced;

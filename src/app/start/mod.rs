@@ -5,5 +5,6 @@ mod begin;
 pub(super) mod carried;
 pub(super) mod error;
 mod icon;
+pub(super) mod no_adapter;
 pub(super) mod options;
 pub(super) mod run;

@@ -15,6 +15,7 @@ pub(super) mod light_probe;
 pub(super) mod orbit;
 pub(super) mod overlay;
 pub(super) mod paint_callback;
+mod sides;
 pub(super) mod view_projection;
 
 use std::sync::Arc;

@@ -7,6 +7,7 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
+use super::sides;
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
 use crate::app::text;
@@ -32,7 +33,7 @@ impl Default for Overlay {
 }
 
 impl Overlay {
-    /// Paints scale bar and cube. The side of the cube that was clicked, if one was.
+    /// Paints scale bar, cube, and which side of a body is where. The side of the cube that was clicked, if one was.
     pub(crate) fn show(
         self,
         ui: &Ui,
@@ -46,6 +47,9 @@ impl Overlay {
         }
         let painter = ui.painter_at(picture);
         scale_bar(&painter, picture, camera, scene);
+        if is_anatomical {
+            sides::show(&painter, picture, camera);
+        }
         cube(ui, &painter, picture, camera, is_anatomical)
     }
 
@@ -120,7 +124,7 @@ fn scale_bar(painter: &Painter, picture: Rect, camera: &Camera, scene: &SceneSpa
 }
 
 /// Text that can be read on any picture.
-fn outlined(painter: &Painter, at: Pos2, align: Align2, text: &str) {
+pub(super) fn outlined(painter: &Painter, at: Pos2, align: Align2, text: &str) {
     let font = FontId::proportional(12.0);
     for offset in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
         painter.text(at + offset, align, text, font.clone(), theme::OUTLINE);
@@ -154,15 +158,15 @@ fn cube(
         let corners = [a + b, b - a, -a - b, a - b].map(|corner| seen(normal + corner));
         let area = Rect::from_points(&corners);
         let hovered = pointer.is_some_and(|pointer| contains(&corners, pointer));
-        let view = StandardView::facing(normal);
+        let view = StandardView::facing(normal, camera.up);
         // The side that is under the pointer takes the clicks of its whole box.
         if hovered {
             let response = ui.interact(area, ui.scope_id().with(("cube", name)), Sense::click());
-            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, view.name()));
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, view.name(camera.up)));
             if response.clicked() {
                 clicked = Some(view);
             }
-            response.on_hover_text(view.name());
+            response.on_hover_text(view.name(camera.up));
         }
         let shade = 0.35 + 0.45 * facing as f32;
         let fill = if hovered {
@@ -189,7 +193,7 @@ fn cube(
 }
 
 /// The sides of the cube, and what is written on them: signs, or for bodies what lies there.
-const SIDES: [(DVec3, [&str; 2]); 6] = [
+pub(super) const SIDES: [(DVec3, [&str; 2]); 6] = [
     (DVec3::X, text::overlay::RIGHT),
     (DVec3::NEG_X, text::overlay::LEFT),
     (DVec3::Y, text::overlay::ANTERIOR),

@@ -2,12 +2,14 @@
 
 use eframe::egui;
 
-use crate::app::common::commands::{SHORTCUTS, key_text};
+use crate::app::common::command_names::key_text;
+use crate::app::common::commands::SHORTCUTS;
 use crate::app::text;
 use crate::app::viewport::Facts;
+use crate::model::SceneAxis;
 
 /// Room that keys and mouse take.
-const TABLES: egui::Vec2 = egui::vec2(960.0, 524.0);
+const TABLES: egui::Vec2 = egui::vec2(960.0, 550.0);
 
 /// Two columns: what is done, and what happens.
 fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, String)>) {
@@ -30,8 +32,8 @@ pub(crate) struct Help {
 }
 
 impl Help {
-    /// Shows the windows that are open.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context, facts: &Facts) {
+    /// Shows the windows that are open; some names say which axis of the scene points up.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context, facts: &Facts, up: SceneAxis) {
         // All of it where the window has room, else with scroll bars.
         let size = TABLES.min(ctx.content_rect().size() - egui::vec2(90.0, 130.0));
         let window = egui::Window::new(text::help::KEYS_AND_MOUSE)
@@ -45,7 +47,7 @@ impl Help {
                     table(ui, "mouse", mouse.map(|(what, effect)| (what.to_owned(), effect.to_owned())));
                     let keys: Vec<_> = SHORTCUTS
                         .into_iter()
-                        .map(|(key, command)| (key_text(ctx, key), command.label().into_owned()))
+                        .map(|(key, command)| (key_text(ctx, key), command.label_with(up).into_owned()))
                         .collect();
                     let (first, second) = keys.split_at(keys.len().div_ceil(2));
                     for (name, part) in [("keys", first), ("more_keys", second)] {

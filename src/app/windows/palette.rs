@@ -4,6 +4,7 @@ use eframe::egui::{self, Align2, Key, Modifiers, TextEdit};
 
 use crate::app::common::commands::{self, Command};
 use crate::app::text;
+use crate::model::SceneAxis;
 
 /// Lines that are shown at once.
 const LINES: usize = 12;
@@ -22,8 +23,8 @@ impl Palette {
         *self = Self { open: true, ..Self::default() };
     }
 
-    /// Shows it, and adds the command that was chosen.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+    /// Shows it, and adds the command that was chosen. Some names say which axis of the scene points up.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context, up_axis: SceneAxis, commands: &mut Vec<Command>) {
         if !self.open {
             return;
         }
@@ -31,7 +32,7 @@ impl Palette {
         let up = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowUp));
         let enter = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter));
         let escape = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
-        let mut found = matching(&self.text);
+        let mut found = matching(&self.text, up_axis);
         let last = found.len().min(LINES).saturating_sub(1);
         self.chosen = (self.chosen + usize::from(down)).saturating_sub(usize::from(up)).min(last);
         let mut run = if enter && !found.is_empty() { Some(self.chosen) } else { None };
@@ -47,7 +48,7 @@ impl Palette {
             }
             ui.separator();
             for (at, command) in found.iter().take(LINES).enumerate() {
-                let button = egui::Button::selectable(at == self.chosen, &*command.label())
+                let button = egui::Button::selectable(at == self.chosen, &*command.label_with(up_axis))
                     .shortcut_text(command.shortcut_text(ui.ctx()));
                 if ui.add_sized([ui.available_width(), 20.0], button).clicked() {
                     run = Some(at);
@@ -64,13 +65,16 @@ impl Palette {
     }
 }
 
-/// Commands whose names hold all the words of a text; those that begin with it first.
-fn matching(text: &str) -> Vec<Command> {
+/// Commands whose names, or what else they are found by, hold all the words of a text; those that begin with it first.
+fn matching(text: &str, up: SceneAxis) -> Vec<Command> {
     let text = text.to_lowercase();
     let mut found: Vec<_> = commands::listed()
         .into_iter()
-        .map(|command| (command.label().to_lowercase(), command))
-        .filter(|(name, _)| text.split_whitespace().all(|word| name.contains(word)))
+        .map(|command| (command.label_with(up).to_lowercase(), command))
+        .filter(|(name, command)| {
+            let is_said = |word| name.contains(word) || command.search_words().contains(word);
+            text.split_whitespace().all(is_said)
+        })
         .collect();
     found.sort_by_key(|(name, _)| !name.starts_with(&text));
     found.into_iter().map(|(_, command)| command).collect()
@@ -79,12 +83,25 @@ fn matching(text: &str) -> Vec<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::{ObjectTurn, StandardView};
 
     #[test]
     fn commands_are_found_by_parts_of_their_names() {
+        let matching = |text| matching(text, SceneAxis::default());
         assert_eq!(matching("").len(), commands::listed().len());
         assert_eq!(matching("balance").first(), Some(&Command::Balance));
         assert!(matching("light solo").contains(&Command::Solo));
         assert!(matching("no such thing").is_empty());
+    }
+
+    #[test]
+    fn turning_the_object_is_found_by_what_people_call_it() {
+        for words in ["flip", "upside down", "lay down", "stand up", "rotate 90", "Turn object"] {
+            let found = matching(words, SceneAxis::default());
+            assert!(found.contains(&Command::TurnObject(ObjectTurn::Over)), "{words}: {found:?}");
+        }
+        assert!(matching("rotate 90", SceneAxis::default()).contains(&Command::TurnRound));
+        let above = matching("above +y", SceneAxis::PlusY);
+        assert_eq!(above, [Command::LookFrom(StandardView::PlusZ)], "names say what is up");
     }
 }

@@ -12,8 +12,8 @@ use crate::app::text;
 use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
 use crate::data::{self, Dataset};
 use crate::fault::{Place, may_panic};
-use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look, fitted};
-use crate::model::Settings;
+use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted};
+use crate::model::{SceneAxis, Settings};
 
 /// How a volume is read, where the user has said it.
 #[derive(Debug, Clone, Copy, Default)]
@@ -161,11 +161,12 @@ impl Loader {
         }
     }
 
-    /// Starts to open a file or a built-in volume.
+    /// Starts to open a file or a built-in volume, of which an axis of the scene points up unless it says what does.
     pub(crate) fn open(
         &mut self,
         source: &Path,
         reading: Reading,
+        up: SceneAxis,
         ctx: &egui::Context,
     ) -> Result<(), String> {
         self.cancel();
@@ -180,6 +181,7 @@ impl Loader {
             let opening = Opening {
                 source: source.to_owned(),
                 reading,
+                up,
                 options,
                 context: self.context.clone(),
                 shaders: self.shaders.clone(),
@@ -264,6 +266,7 @@ fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
 struct Opening {
     source: PathBuf,
     reading: Reading,
+    up: SceneAxis,
     options: LoadOptions,
     context: Context,
     shaders: ShaderLibrary,
@@ -273,7 +276,7 @@ struct Opening {
 }
 
 fn open(opening: Opening) -> Outcome {
-    let Opening { source, reading, options, context, shaders, control, phase } = opening;
+    let Opening { source, reading, up, options, context, shaders, control, phase } = opening;
     may_panic(Place::Loader);
     let volume = match data::open(&source, &options, &control) {
         Ok(volume) => volume,
@@ -309,7 +312,7 @@ fn open(opening: Opening) -> Outcome {
     phase.store(3, Ordering::Relaxed);
     let look = Renderer::with_shaders(&context, shaders).and_then(|mut renderer| {
         phase.store(4, Ordering::Relaxed);
-        let settings = first_look(&mut renderer, &dataset)?;
+        let settings = first_look_upright(&mut renderer, &dataset, up)?;
         Ok((renderer, settings))
     });
     if control.is_cancelled() {

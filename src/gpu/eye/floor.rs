@@ -106,8 +106,10 @@ impl Variant for FloorVariant {
 fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLights) -> uniforms::Floor {
     let uniforms::Eye { frame, shading, space, shading_cut, .. } = eye.uniform();
     let Floor { on: _, height, radius, color, opacity, shadow_only } = settings.floor;
-    // z of a scene point is this row of the map from index space.
-    let [a, b, c, offset] = space.scene_from_index_z;
+    // How high a scene point is, which is an affine map from index space.
+    let up = settings.camera.up.direction();
+    let [a, b, c] = scene.scene_from_index.matrix3.transpose().mul_vec3(up).as_vec3().to_array();
+    let offset = scene.scene_from_index.translation.dot(up) as f32;
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
     let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
     for (slot, light) in packed.iter_mut().zip(lit.all()) {
@@ -119,6 +121,8 @@ fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLigh
         shading,
         shading_cut,
         plane: [a, b, c, height as f32 - offset],
+        up: up.as_vec3().to_array(),
+        height: height as f32,
         color: color.map(|c| linear_from_srgb(f64::from(c)) as f32),
         opacity: opacity as f32,
         radius: radius as f32,

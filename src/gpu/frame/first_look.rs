@@ -2,7 +2,8 @@
 
 use crate::data::Dataset;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
-use crate::model::{Engine, Settings, ShadowAlgorithm, auto};
+use crate::model::auto::{self, Wishes};
+use crate::model::{Engine, SceneAxis, Settings, ShadowAlgorithm};
 
 /// Size of the pictures from which brightness is measured: means over some thousand pixels.
 const MEASURED_SIZE: [u32; 2] = [160, 120];
@@ -19,7 +20,20 @@ const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
 /// # Errors
 /// When the GPU cannot do it.
 pub fn first_look(renderer: &mut Renderer, dataset: &Dataset) -> Result<Settings, GpuError> {
-    let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
+    first_look_upright(renderer, dataset, SceneAxis::default())
+}
+
+/// As [`first_look`], of a volume of which an axis of the scene points up, unless its file says what does.
+///
+/// # Errors
+/// When the GPU cannot do it.
+pub fn first_look_upright(
+    renderer: &mut Renderer,
+    dataset: &Dataset,
+    up: SceneAxis,
+) -> Result<Settings, GpuError> {
+    let mut settings =
+        auto::first_settings_with(dataset.volume(), dataset.histogram(), Wishes { up, ..Wishes::default() });
     settings.shadows.balance = balance(renderer, dataset, &settings)?;
     Ok(settings)
 }

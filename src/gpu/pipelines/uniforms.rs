@@ -339,6 +339,8 @@ pub struct Floor {
     pub shading: Shading,
     pub shading_cut: Cut,
     pub plane: [f32; 4],
+    pub up: [f32; 3],
+    pub height: f32,
     pub color: [f32; 3],
     pub opacity: f32,
     pub radius: f32,

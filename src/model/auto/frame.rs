@@ -18,9 +18,9 @@ const BEYOND: f64 = 0.0005;
 /// Share of the outline that may lie below the floor: single voxels of noise.
 const BELOW_FLOOR: f64 = 0.001;
 
-/// The z below which next to nothing of an outline lies.
-fn floor_under(outline: &[DVec3]) -> f64 {
-    let mut heights: Vec<f64> = outline.iter().map(|point| point.z).collect();
+/// The height along `up` below which next to nothing of an outline lies.
+fn floor_under(outline: &[DVec3], up: DVec3) -> f64 {
+    let mut heights: Vec<f64> = outline.iter().map(|point| point.dot(up)).collect();
     let at = (heights.len() as f64 * BELOW_FLOOR) as usize;
     *heights.select_nth_unstable_by(at, f64::total_cmp).1
 }
@@ -43,7 +43,8 @@ pub(super) fn frame(settings: &mut Settings, volume: &Volume, object: &Object) {
     if corners.is_empty() {
         return;
     }
-    settings.floor.height = floor_under(&corners) - volume.scene().smallest_edge() / 2.0;
+    settings.floor.height =
+        floor_under(&corners, settings.camera.up.direction()) - volume.scene().smallest_edge() / 2.0;
     let camera = &mut settings.camera;
     let view = camera.scene_from_view();
     let half_angle_tan = camera.half_height_at_target(FRAME_ASPECT) / camera.distance;

@@ -15,19 +15,32 @@ mod view;
 
 use self::domain::Domain;
 use self::object::Object;
-use super::{Classification, Length, Quality, Rig, Settings, Shading, Shadows, TransferFunction};
+use super::{
+    Camera, Classification, Length, Quality, Rig, SceneAxis, Settings, Shading, Shadows, TransferFunction,
+};
 use crate::data::{DataKind, Histogram, KindName, Volume};
+
+/// What a first look is to respect that the volume itself does not say.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Wishes {
+    /// The kind of data that it is shown as; its own where none is named.
+    pub treated_as: Option<KindName>,
+    /// The axis of the scene that points up, unless the file says where the head is.
+    pub up: SceneAxis,
+}
 
 /// Settings for a volume that nobody has touched yet.
 pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
-    first_settings_as(volume, histogram, None)
+    first_settings_with(volume, histogram, Wishes::default())
 }
 
-/// Settings for a volume that nobody has touched yet, as if it held data of that kind; of its own where none is named.
-pub fn first_settings_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> Settings {
-    let kind = kind_of(volume, treated_as);
+/// Settings for a volume that nobody has touched yet, as somebody wishes them to be.
+pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
+    let kind = kind_of(volume, wishes.treated_as);
     let found = transfer::find(volume, histogram, kind);
+    let up = if volume.is_anatomical() { SceneAxis::PlusZ } else { wishes.up };
     let mut settings = Settings {
+        camera: Camera { up, ..Camera::default() },
         transfer: found.transfer,
         opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
@@ -63,6 +76,14 @@ fn shading(domain: Domain) -> Shading {
         Domain::Metal => Shading { specular: 0.5, shininess: 48.0, ..Shading::default() },
         _ => Shading::default(),
     }
+}
+
+/// Frames what settings show of a volume from where their camera looks, and puts the floor under it.
+pub fn frame(settings: &mut Settings, volume: &Volume) {
+    let object = Object::shown_by(settings, volume);
+    // From where first looks begin: the same view is framed in the same way, whatever it was framed as before.
+    settings.camera.distance = Camera::default().distance;
+    frame::frame(settings, volume, &object);
 }
 
 /// The share of what settings show of a volume's surface that is not where material ends, but where the data do.
@@ -117,6 +138,53 @@ mod tests {
         // The ball's radius is ten of 32 voxels, and a scene unit 16.
         assert!((settings.floor.height + 10.0 / 16.0).abs() < 0.07, "{}", settings.floor.height);
         assert!(!settings.floor.on);
+    }
+
+    /// A rod along x that lies low in y and high in z.
+    fn rod() -> Volume {
+        let n = 32usize;
+        let value = |at: usize| {
+            let [x, y, z] = [at % n, at / n % n, at / n / n];
+            let is_rod = (2..30).contains(&x) && (4..10).contains(&y) && (20..28).contains(&z);
+            if is_rod { 200 } else { 0 }
+        };
+        Volume::with_spacing("rod", [n; 3], DVec3::ONE, Samples::U8((0..n * n * n).map(value).collect()))
+            .unwrap()
+    }
+
+    #[test]
+    fn whatever_is_up_the_object_stands_on_the_floor_and_fills_the_picture() {
+        let volume = rod();
+        let histogram = Histogram::of(&volume);
+        // Scene units are 16 voxels, from the middle.
+        for (up, floor) in [
+            (SceneAxis::PlusX, -14.0 / 16.0),
+            (SceneAxis::MinusX, -14.0 / 16.0),
+            (SceneAxis::PlusY, -12.0 / 16.0),
+            (SceneAxis::MinusY, 6.0 / 16.0),
+            (SceneAxis::PlusZ, 4.0 / 16.0),
+            (SceneAxis::MinusZ, -12.0 / 16.0),
+        ] {
+            let first = first_settings_with(&volume, &histogram, Wishes { up, ..Wishes::default() });
+            assert_eq!(first.camera.up, up);
+            assert!((first.floor.height - floor).abs() < 0.07, "{up:?}: {}", first.floor.height);
+            let mut turned = first_settings(&volume, &histogram);
+            turned.turn_object(crate::model::ObjectTurn::Upright(up));
+            frame(&mut turned, &volume);
+            assert_eq!(turned.floor.height, first.floor.height);
+            for look in [first, turned] {
+                let middle = DVec3::new(0.0, -9.0 / 16.0, 8.0 / 16.0);
+                let (x, y, _) = look.camera.pixel_from_scene(middle, 400.0, 300.0).unwrap();
+                assert!((x - 200.0).abs() < 40.0 && (y - 150.0).abs() < 40.0, "{up:?}: {x} {y}");
+                assert!(
+                    look.lights.iter().all(|light| DVec3::from(light.position).dot(up.direction()) > 0.0)
+                );
+            }
+        }
+        let patient = volume.with_anatomy(true);
+        let first =
+            first_settings_with(&patient, &histogram, Wishes { up: SceneAxis::MinusX, ..Wishes::default() });
+        assert_eq!(first.camera.up, SceneAxis::PlusZ);
     }
 
     #[test]

@@ -3,6 +3,8 @@
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
+use super::scene_axis::SceneAxis;
+
 /// How the picture is projected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -28,14 +30,19 @@ pub enum Fit {
     Frame,
 }
 
-/// A camera that orbits a target. Scene space has z up.
+/// A camera that orbits a target, upright in a scene of which one axis points up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// Perspective or orthographic.
     pub projection: Projection,
-    /// Direction from the target to the eye, counted from +x towards +y.
+    /// The axis of the scene that points up. Azimuth and elevation refer to the scene as it stands then
+    /// ([`SceneAxis::scene_from_upright`]), the floor lies below along it, and the data stay where they are. Cameras
+    /// that were saved before there was a choice have z up.
+    #[serde(default)]
+    pub up: SceneAxis,
+    /// Direction from the target to the eye about the vertical; with z up, counted from +x towards +y.
     pub azimuth_deg: f64,
-    /// Direction from the target to the eye above the xy-plane; may pass 90.
+    /// Direction from the target to the eye above the horizontal plane; may pass 90.
     pub elevation_deg: f64,
     /// Turn of the camera about its own axis.
     pub roll_deg: f64,
@@ -60,7 +67,7 @@ impl Camera {
         // At azimuth 0 and elevation 0 the eye is on +x and looks along −x with z up: right is +y.
         let looking_along_minus_x = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
         let roll = DMat3::from_rotation_z(self.roll_deg.to_radians());
-        azimuth * elevation * looking_along_minus_x * roll
+        self.up.scene_from_upright() * azimuth * elevation * looking_along_minus_x * roll
     }
 
     /// The eye in scene space.
@@ -138,6 +145,7 @@ impl Default for Camera {
     fn default() -> Self {
         Self {
             projection: Projection::Perspective,
+            up: SceneAxis::PlusZ,
             azimuth_deg: -60.0,
             elevation_deg: 28.0,
             roll_deg: 0.0,

@@ -15,7 +15,7 @@ pub const MAX_FLOOR_RADIUS: f64 = 100.0;
 pub struct Floor {
     /// Whether it is there.
     pub on: bool,
-    /// Where it lies: z in scene space.
+    /// Where it lies: from the middle of the scene upwards, which is along the camera's [`crate::model::Camera::up`].
     pub height: f64,
     /// Distance from the middle at which nothing is left of it, in scene units.
     pub radius: f64,

@@ -8,6 +8,7 @@ pub(super) mod light;
 pub(super) mod quality;
 pub(super) mod sampling;
 pub(super) mod sanitise;
+pub(super) mod scene_axis;
 pub(super) mod shadows;
 pub(super) mod variant;
 pub(super) mod view;

@@ -35,6 +35,7 @@ impl Settings {
         for camera in self.views.values_mut().chain([&mut self.camera]) {
             let Camera {
                 projection: _,
+                up: _,
                 azimuth_deg,
                 elevation_deg,
                 roll_deg,

@@ -2,9 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::model::{Camera, Projection};
+use crate::model::{Camera, Projection, SceneAxis};
 
-/// A side from which to look, along the axes of the scene. What the front of a thing is, only its owner knows.
+/// A side from which to look at the scene as it stands: its axes are those of the scene where z is up, and turn with
+/// what is up ([`SceneAxis::scene_from_upright`]). What the front of a thing is, only its owner knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardView {
     /// From +x.
@@ -28,16 +29,34 @@ impl StandardView {
     pub const ALL: [Self; 7] =
         [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ, Self::Isometric];
 
-    /// What menus call it.
-    pub fn name(self) -> &'static str {
+    /// What menus call it while an axis of the scene points up.
+    pub fn name(self, up: SceneAxis) -> &'static str {
+        let Some(side) = self.side() else { return "Isometric" };
+        let [from, above, below] = match SceneAxis::nearest(up.scene_from_upright() * side.direction()) {
+            SceneAxis::PlusX => ["From +x", "From above (+x)", "From below (+x)"],
+            SceneAxis::MinusX => ["From −x", "From above (−x)", "From below (−x)"],
+            SceneAxis::PlusY => ["From +y", "From above (+y)", "From below (+y)"],
+            SceneAxis::MinusY => ["From −y", "From above (−y)", "From below (−y)"],
+            SceneAxis::PlusZ => ["From +z", "From above (+z)", "From below (+z)"],
+            SceneAxis::MinusZ => ["From −z", "From above (−z)", "From below (−z)"],
+        };
         match self {
-            Self::PlusX => "From +x",
-            Self::MinusX => "From −x",
-            Self::PlusY => "From +y",
-            Self::MinusY => "From −y",
-            Self::PlusZ => "From above (+z)",
-            Self::MinusZ => "From below (−z)",
-            Self::Isometric => "Isometric",
+            Self::PlusZ => above,
+            Self::MinusZ => below,
+            _ => from,
+        }
+    }
+
+    /// The side; none for a corner.
+    fn side(self) -> Option<SceneAxis> {
+        match self {
+            Self::PlusX => Some(SceneAxis::PlusX),
+            Self::MinusX => Some(SceneAxis::MinusX),
+            Self::PlusY => Some(SceneAxis::PlusY),
+            Self::MinusY => Some(SceneAxis::MinusY),
+            Self::PlusZ => Some(SceneAxis::PlusZ),
+            Self::MinusZ => Some(SceneAxis::MinusZ),
+            Self::Isometric => None,
         }
     }
 
@@ -56,16 +75,15 @@ impl StandardView {
         }
     }
 
-    /// The side that faces into a direction, of those along the axes.
-    pub fn facing(direction: DVec3) -> Self {
-        let size = direction.abs();
-        let side = |value: f64, plus, minus| if value > 0.0 { plus } else { minus };
-        if size.z >= size.x && size.z >= size.y {
-            side(direction.z, Self::PlusZ, Self::MinusZ)
-        } else if size.y >= size.x {
-            side(direction.y, Self::PlusY, Self::MinusY)
-        } else {
-            side(direction.x, Self::PlusX, Self::MinusX)
+    /// The side that faces into a direction of the scene while one of its axes points up.
+    pub fn facing(direction: DVec3, up: SceneAxis) -> Self {
+        match SceneAxis::nearest(up.scene_from_upright().transpose() * direction) {
+            SceneAxis::PlusX => Self::PlusX,
+            SceneAxis::MinusX => Self::MinusX,
+            SceneAxis::PlusY => Self::PlusY,
+            SceneAxis::MinusY => Self::MinusY,
+            SceneAxis::PlusZ => Self::PlusZ,
+            SceneAxis::MinusZ => Self::MinusZ,
         }
     }
 }
@@ -126,21 +144,24 @@ mod tests {
 
     #[test]
     fn sides_are_seen_from_where_their_names_say() {
-        for (view, from) in [
-            (StandardView::PlusY, DVec3::Y),
-            (StandardView::MinusY, DVec3::NEG_Y),
-            (StandardView::PlusX, DVec3::X),
-            (StandardView::MinusX, DVec3::NEG_X),
-            (StandardView::PlusZ, DVec3::Z),
-            (StandardView::MinusZ, DVec3::NEG_Z),
-        ] {
-            let mut camera = Camera { roll_deg: 20.0, ..Camera::default() };
-            camera.look_from(view);
-            let axes = camera.scene_from_view();
-            assert!((axes.z_axis - from).length() < 1e-9, "{view:?}");
-            assert_eq!(StandardView::facing(from), view);
-            let up = if from.z == 0.0 { DVec3::Z } else { axes.y_axis };
-            assert!((axes.y_axis - up).length() < 1e-9, "{view:?} is upright");
+        let signs = [("+x", DVec3::X), ("+y", DVec3::Y), ("+z", DVec3::Z)];
+        let minus = [("−x", DVec3::NEG_X), ("−y", DVec3::NEG_Y), ("−z", DVec3::NEG_Z)];
+        for up in SceneAxis::ALL {
+            for (sign, from) in signs.into_iter().chain(minus) {
+                let view = StandardView::facing(from, up);
+                let name = view.name(up);
+                assert!(name.contains(sign), "{up:?}: {name} for {sign}");
+                let mut camera = Camera { up, roll_deg: 20.0, ..Camera::default() };
+                camera.look_from(view);
+                let axes = camera.scene_from_view();
+                assert!((axes.z_axis - from).length() < 1e-9, "{view:?}");
+                let is_level = from.dot(up.direction()) == 0.0;
+                assert_eq!(is_level, !name.contains("above") && !name.contains("below"), "{name}");
+                assert_eq!(name.contains("above"), from == up.direction(), "{name}");
+                if is_level {
+                    assert!((axes.y_axis - up.direction()).length() < 1e-9, "{view:?} is upright");
+                }
+            }
         }
         let mut camera = Camera::default();
         camera.look_from(StandardView::Isometric);

@@ -3,6 +3,7 @@
 pub(super) mod bounds;
 pub(super) mod library;
 pub(super) mod made_by;
+pub(super) mod path_text;
 pub(super) mod place;
 pub(super) mod preset;
 pub(super) mod preset_error;

@@ -32,11 +32,13 @@ pub enum VolumePlace {
 
 impl VolumePlace {
     /// Judges what a record says that was read from a folder.
-    pub(super) fn of(source: &str, folder: Option<&Path>) -> Self {
-        if source.starts_with(BUILTIN) {
-            return Self::Builtin(source.to_owned());
+    pub(super) fn of(source: &Path, folder: Option<&Path>) -> Self {
+        // What has a meaning is text.
+        let text = source.to_string_lossy();
+        if text.starts_with(BUILTIN) {
+            return Self::Builtin(text.into_owned());
         }
-        if let Some(why) = never(source) {
+        if let Some(why) = never(&text) {
             return Self::Never(why);
         }
         let folder = folder.and_then(whole);
@@ -148,15 +150,15 @@ mod tests {
             "/tmp/../dev/zero",
             "../../../../../../../../../../../../dev/zero",
         ] {
-            let place = VolumePlace::of(source, Some(Path::new("/no/such/folder")));
+            let place = VolumePlace::of(Path::new(source), Some(Path::new("/no/such/folder")));
             assert!(matches!(place, VolumePlace::Never(_)), "{source:?}: {place:?}");
         }
         for source in ["console.nrrd", "null/a.raw", "com10.raw", "devices/a", "a.con"] {
-            let place = VolumePlace::of(source, Some(Path::new("/no/such/folder")));
+            let place = VolumePlace::of(Path::new(source), Some(Path::new("/no/such/folder")));
             assert_eq!(place, VolumePlace::Beside(Path::new("/no/such/folder").join(source)));
         }
         let long = "a/".repeat(MAX_PATH);
-        assert!(matches!(VolumePlace::of(&long, None), VolumePlace::Never(_)));
+        assert!(matches!(VolumePlace::of(Path::new(&long), None), VolumePlace::Never(_)));
     }
 
     #[test]
@@ -164,7 +166,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let inside = folder.path().join("inside");
         std::fs::create_dir(&inside).unwrap();
-        let of = |source: &str| VolumePlace::of(source, Some(&inside));
+        let of = |source: &str| VolumePlace::of(Path::new(source), Some(&inside));
         for (source, path) in [
             ("a.raw", "a.raw"),
             ("./b/a.raw", "b/a.raw"),
@@ -175,7 +177,7 @@ mod tests {
         }
         let whole = inside.join("a.raw").display().to_string();
         assert_eq!(of(&whole), VolumePlace::Beside(inside.join("a.raw")));
-        assert_eq!(VolumePlace::of(&whole, None), VolumePlace::Elsewhere(inside.join("a.raw")));
+        assert_eq!(VolumePlace::of(Path::new(&whole), None), VolumePlace::Elsewhere(inside.join("a.raw")));
         for (source, path) in
             [("../a.raw", folder.path().join("a.raw")), ("/no/such/a.raw", "/no/such/a.raw".into())]
         {
@@ -186,7 +188,7 @@ mod tests {
         assert_eq!(of("builtin:chair:64"), VolumePlace::Builtin("builtin:chair:64".to_owned()));
         // A bare name of a record is in the current folder.
         let here = std::env::current_dir().unwrap().join("a.raw");
-        assert_eq!(VolumePlace::of("a.raw", Some(Path::new(""))), VolumePlace::Beside(here));
+        assert_eq!(VolumePlace::of(Path::new("a.raw"), Some(Path::new(""))), VolumePlace::Beside(here));
     }
 
     #[cfg(unix)]
@@ -198,8 +200,8 @@ mod tests {
         std::fs::write(&outside, "x").unwrap();
         std::os::unix::fs::symlink(&outside, inside.join("link.raw")).unwrap();
         std::os::unix::fs::symlink("/dev/zero", inside.join("zero.raw")).unwrap();
-        let place = VolumePlace::of("link.raw", Some(&inside));
+        let place = VolumePlace::of(Path::new("link.raw"), Some(&inside));
         assert_eq!(place, VolumePlace::Elsewhere(outside.canonicalize().unwrap()));
-        assert!(matches!(VolumePlace::of("zero.raw", Some(&inside)), VolumePlace::Never(_)));
+        assert!(matches!(VolumePlace::of(Path::new("zero.raw"), Some(&inside)), VolumePlace::Never(_)));
     }
 }

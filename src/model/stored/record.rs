@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use super::bounds::{self, Bounded, MAX_LOOK_BYTES};
 use super::made_by::tells_maker;
+use super::path_text::{decode_path, encode_path};
 use super::renames::rename;
 use super::unknown;
 use crate::data::ValueRange;
@@ -20,6 +21,9 @@ use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_
 pub struct VolumeRecord {
     /// A file, relative to that of the record where it lies below it, or `builtin:NAME`.
     pub source: String,
+    /// Every byte of that file's path ([`encode_path`]), where `source` cannot say it: not all names are text.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source_bytes: Option<String>,
     /// Identifies values and geometry, in hexadecimal digits.
     pub content_id: String,
 }
@@ -52,14 +56,22 @@ impl VolumeRecord {
     /// A volume that was opened from `source`, for a record that is written to `folder`.
     pub fn new(source: impl AsRef<Path>, content_id: u64, folder: Option<&Path>) -> Self {
         let source = source.as_ref();
-        let builtin = source.to_str().filter(|name| name.starts_with("builtin:"));
-        let source = builtin.map_or_else(|| relative(source, folder), str::to_owned);
-        Self { source, content_id: format!("{content_id:016x}") }
+        let is_builtin = source.to_str().is_some_and(|name| name.starts_with("builtin:"));
+        let path = if is_builtin { source.to_owned() } else { relative(source, folder) };
+        let content_id = format!("{content_id:016x}");
+        Self { source: path.display().to_string(), source_bytes: encode_path(&path), content_id }
+    }
+
+    /// What was opened. Bytes count only where they are what `source` shows as well as it can.
+    fn path(&self) -> PathBuf {
+        let bytes = self.source_bytes.as_deref().and_then(decode_path);
+        let path = bytes.filter(|path| path.to_string_lossy() == self.source.as_str());
+        path.unwrap_or_else(|| PathBuf::from(&self.source))
     }
 
     /// Where it is, for a record that was read from `folder`; without one, as for a record that is in no folder.
     pub fn place(&self, folder: Option<&Path>) -> VolumePlace {
-        VolumePlace::of(&self.source, folder)
+        VolumePlace::of(&self.path(), folder)
     }
 
     /// Whether a volume has the values and the geometry that this one had.
@@ -76,14 +88,14 @@ impl PictureRecord {
 }
 
 /// A path as seen from a folder, if it lies below it; else the whole of it.
-fn relative(source: &Path, folder: Option<&Path>) -> String {
+fn relative(source: &Path, folder: Option<&Path>) -> PathBuf {
     let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
     // The folder of a bare name is the current one.
     let here =
         |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
     let folder = folder.and_then(|folder| std::path::absolute(here(folder)).ok());
     let below = folder.and_then(|folder| whole.strip_prefix(folder).ok().map(Path::to_owned));
-    below.unwrap_or(whole).display().to_string()
+    below.unwrap_or(whole)
 }
 
 impl Record {
@@ -294,5 +306,26 @@ mod tests {
         assert_eq!(VolumeRecord::new("data/a.nrrd", 7, Some(Path::new(""))).source, volume.source);
         let elsewhere = VolumeRecord::new(&file, 7, Some(Path::new("/no/such/folder")));
         assert_eq!(Path::new(&elsewhere.source), file);
+    }
+    /// A name that is no text is that of the same file afterwards; bytes that say something else than what is shown
+    /// are not believed.
+    #[cfg(unix)]
+    #[test]
+    fn names_that_are_no_text_are_kept() {
+        use std::os::unix::ffi::OsStrExt as _;
+        let file = Path::new(std::ffi::OsStr::from_bytes(b"/data/t\xfcr.nrrd"));
+        for (folder, place) in [
+            (None, VolumePlace::Elsewhere(file.to_owned())),
+            (Some(Path::new("/data")), VolumePlace::Beside(file.to_owned())),
+        ] {
+            let volume = VolumeRecord::new(file, 7, folder);
+            let text = Record::text(&Settings::default(), Some(&volume), None);
+            let read = Record::read(&text).unwrap().volume.unwrap();
+            assert_eq!((&read, read.place(folder)), (&volume, place));
+        }
+        let told = VolumeRecord::new(file, 7, None);
+        let other = VolumeRecord { source_bytes: Some("/etc/passwd".to_owned()), ..told.clone() };
+        assert_eq!(other.place(None), VolumePlace::Elsewhere(told.source.into()));
+        assert_eq!(VolumeRecord::new("/data/tür.nrrd", 7, None).source_bytes, None);
     }
 }

@@ -46,13 +46,18 @@ fn complete_scattered(groups: &mut Map<String, Value>) {
 }
 
 /// Gives the angle of view of a camera to the picture's height, if it says how far away the eye is, which frames
-/// what is seen, and not what it is framed in: all cameras of schema 1 are so, and those of schema 2 from before
-/// there was a choice.
+/// what is seen, and not what it is framed in; and its z up, if it says from where it looks: all cameras of schema 1
+/// are so, and those of schema 2 from before there was a choice.
 fn complete_camera(camera: &mut Value) {
     if let Value::Object(camera) = camera
         && camera.contains_key("distance")
     {
         camera.entry("fit").or_insert_with(|| Value::String("height".to_owned()));
+    }
+    if let Value::Object(camera) = camera
+        && camera.contains_key("azimuth_deg")
+    {
+        camera.entry("up").or_insert_with(|| Value::String("plus_z".to_owned()));
     }
 }
 

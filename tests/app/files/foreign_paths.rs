@@ -20,7 +20,7 @@ fn picture_of(source: &str, path: &Path) {
     let mut settings = Settings::default();
     settings.shadows.gain = 2.0;
     settings.shadows.keep_balanced = false;
-    let volume = VolumeRecord { source: source.to_owned(), content_id: String::new() };
+    let volume = VolumeRecord { source: source.to_owned(), source_bytes: None, content_id: String::new() };
     let record = Record::text(&settings, Some(&volume), None);
     export_png([1, 1], &[0; 4], false, Some(&record), path).expect("written");
 }

@@ -172,3 +172,38 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair") && app.is_idle());
     assert_eq!(harness.state().settings(), &wanted);
 }
+
+/// Once opened, a file is offered again and belongs to the look that is kept, also if its name is no text.
+#[cfg(unix)]
+#[test]
+fn a_file_whose_name_is_no_text_is_opened_again() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let path = folder.path().join(std::ffi::OsStr::from_bytes(b"t\xfcr_8x9x10_uint8.raw"));
+    // Not every file system has such names.
+    if std::fs::write(&path, (0..720).map(|i| (i / 3) as u8).collect::<Vec<_>>()).is_err() {
+        println!("the temporary folder has no names that are no text: nothing is checked");
+        return;
+    }
+    let start = |source: std::path::PathBuf| {
+        let (source, storage) = (Some(source), Some(storage.path().to_owned()));
+        window_with(Options { source, storage, ..Options::default() }, Vec2::new(760.0, 900.0))
+    };
+    let harness = start(path);
+    let name = harness.state().volume_name().unwrap().to_owned();
+    assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());
+    drop(harness);
+    for again in ["Go on where", "Open recent"] {
+        let mut harness = start(SCENE.into());
+        assert_eq!(harness.state().volume_name(), Some("chair"));
+        click(&mut harness, "File");
+        harness.get_by_label_contains(again).click();
+        harness.run_steps(3);
+        if again == "Open recent" {
+            harness.get_by_label_contains("r_8x9x10_uint8.raw").click();
+            harness.run_steps(3);
+        }
+        wait_until(&mut harness, "never opened", |app| app.volume_name() == Some(&name) && app.is_idle());
+        assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());
+    }
+}

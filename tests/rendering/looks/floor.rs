@@ -2,8 +2,8 @@
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, Projection, Settings,
-    ShadowAlgorithm, ToneMap,
+    Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, ObjectTurn, Projection,
+    SceneAxis, Settings, ShadowAlgorithm, ToneMap,
 };
 use chiaroscuro::reference::{Options, Reference};
 use glam::DVec3;
@@ -64,6 +64,17 @@ fn floor_and_shadows_as_in_the_reference() {
     settings.lights[0].casts_shadows = true;
     settings.cuts.plane.on = true;
     check("shadow alone, and cut", SIZE, DVec3::ONE, &settings);
+}
+
+/// The floor lies under the object, and looks up, whichever axis that is along.
+#[test]
+fn it_lies_below_whatever_is_up() {
+    for up in SceneAxis::ALL {
+        let mut settings = on(scenes::look());
+        settings.turn_object(ObjectTurn::Upright(up));
+        settings.floor.radius = 2.0;
+        check(&format!("{up:?} up"), [48, 40], DVec3::new(1.0, 0.8, 1.6), &settings);
+    }
 }
 
 #[test]

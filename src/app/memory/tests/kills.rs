@@ -22,7 +22,7 @@ fn write_until_killed(folder: &Path) -> ! {
     let words = memory.last_words().unwrap();
     for gain in 2.. {
         let settings = look(f64::from(gain) / 1000.0);
-        memory.opened(&format!("/{gain}.nrrd"));
+        memory.opened(Path::new(&format!("/{gain}.nrrd")));
         memory.keep(&settings, volume, 7);
         words.write();
         for name in ["session.json", "preset.json"] {
@@ -86,8 +86,8 @@ fn kills(count: u32) {
         let run = memory.earlier().first().expect("it is offered");
         assert!(run.crashed);
         is_kept(&run.look);
-        let opened = format!("/{kept}.nrrd");
-        assert!(memory.recent().contains(&opened), "{opened} is not in {:?}", memory.recent());
+        let opened = std::path::PathBuf::from(format!("/{kept}.nrrd"));
+        assert!(memory.recent().contains(&opened), "{} is not in {:?}", opened.display(), memory.recent());
         memory.settle();
         drop(memory);
         crate::export::remove_abandoned(folder.path());

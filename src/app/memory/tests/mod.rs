@@ -50,21 +50,85 @@ fn files_are_remembered_by_all_windows() {
     let mut memory = remember(folder.path());
     assert!(memory.recent().is_empty() && memory.before().is_none() && memory.is_first());
     for file in ["/a.nrrd", "/b.nrrd", "builtin:chair", "/a.nrrd"] {
-        memory.opened(file);
+        memory.opened(Path::new(file));
     }
     // Another window has begun before, and does not know of these.
     let mut other = remember(folder.path());
     drop(memory);
-    other.opened("/c.nrrd");
+    other.opened(Path::new("/c.nrrd"));
     drop(other);
     let memory = remember(folder.path());
     assert!(!memory.is_first());
-    assert_eq!(memory.recent(), ["/c.nrrd", "/a.nrrd", "/b.nrrd"]);
+    assert_eq!(memory.recent(), ["/c.nrrd", "/a.nrrd", "/b.nrrd"].map(PathBuf::from));
     drop(memory);
     for at in 0..2 * recent::MOST {
-        remember(folder.path()).opened(&format!("/{at}.nrrd"));
+        remember(folder.path()).opened(Path::new(&format!("/{at}.nrrd")));
     }
     assert_eq!(remember(folder.path()).recent().len(), recent::MOST);
+}
+
+/// Names on Unix are bytes; not all are text, and some of those look like what is written in their place.
+#[cfg(unix)]
+#[test]
+fn files_whose_names_are_no_text_are_remembered() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    let names: [&[u8]; 4] =
+        [b"/data/t\xfcr.nrrd", b"/data/t%FCr \xff.nrrd", b"/file:/%FC", "/data/tür.nrrd".as_bytes()];
+    let names = names.map(|name| PathBuf::from(std::ffi::OsStr::from_bytes(name)));
+    let mut memory = remember(folder.path());
+    for name in names.iter().rev() {
+        memory.opened(name);
+    }
+    assert_eq!(memory.recent(), names);
+    drop(memory);
+    assert_eq!(remember(folder.path()).recent(), names);
+    // An earlier version reads the list as well.
+    let text = fs::read(folder.path().join("recent.json")).unwrap();
+    assert_eq!(serde_json::from_slice::<Vec<String>>(&text).unwrap().len(), names.len());
+}
+
+#[test]
+fn files_stand_as_those_of_their_folder_did() {
+    let folder = tempfile::tempdir().unwrap();
+    let (a, b, other) = (Path::new("/data/a.nrrd"), Path::new("/data/b.raw"), Path::new("/data/more/a.nrrd"));
+    let mut memory = remember(folder.path());
+    assert_eq!(memory.up_of(a), SceneAxis::PlusZ);
+    memory.stood(a, SceneAxis::PlusX);
+    memory.stood(a, SceneAxis::MinusY);
+    memory.stood(Path::new("builtin:chair"), SceneAxis::PlusX);
+    assert_eq!(
+        [a, b, other].map(|file| memory.up_of(file)),
+        [SceneAxis::MinusY, SceneAxis::MinusY, SceneAxis::PlusZ]
+    );
+    // Another window has begun before, and does not know of these.
+    let mut second = remember(folder.path());
+    drop(memory);
+    second.stood(other, SceneAxis::PlusY);
+    drop(second);
+    let mut memory = remember(folder.path());
+    assert_eq!((memory.up_of(b), memory.up_of(other)), (SceneAxis::MinusY, SceneAxis::PlusY));
+    assert_eq!(memory.up_of(Path::new("builtin:chair")), SceneAxis::PlusZ);
+    memory.stood(b, SceneAxis::PlusZ);
+    drop(memory);
+    let mut memory = remember(folder.path());
+    assert_eq!(memory.up_of(a), SceneAxis::PlusZ, "what was chosen last");
+    // There may be many folders; the oldest goes.
+    for at in 0..2 * standing::MOST {
+        memory.stood(Path::new(&format!("/{at}/a.nrrd")), SceneAxis::PlusX);
+    }
+    assert_eq!(memory.standing.len(), standing::MOST);
+    drop(memory);
+    let memory = remember(folder.path());
+    assert_eq!(memory.standing.len(), standing::MOST);
+    assert_eq!(
+        (memory.up_of(other), memory.up_of(Path::new("/199/b.raw"))),
+        (SceneAxis::PlusZ, SceneAxis::PlusX)
+    );
+    drop(memory);
+    fs::write(folder.path().join("standing.json"), "[{}]").unwrap();
+    let mut memory = remember(folder.path());
+    assert!(memory.standing.is_empty() && memory.take_notices().len() == 1, "put aside, and said");
 }
 
 /// A change is on the disk soon, though nothing happens after it: no frame, no further change.

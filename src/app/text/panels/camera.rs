@@ -1,11 +1,27 @@
 //! The section of the camera.
 
 use crate::app::text::{Named, named};
+use crate::model::SceneAxis;
 
 pub(crate) const PROJECTION: Named = named("Projection", "How the picture is projected");
 pub(crate) const PERSPECTIVE: Named = named("Perspective", "Near things are larger: natural");
 pub(crate) const ORTHOGRAPHIC: Named =
     named("Orthographic", "Lengths compare across the picture: for measuring by eye");
+
+pub(crate) const UP: Named =
+    named("Up", "Which axis of the data points up: the object stands up, lies down or stands on its head");
+
+/// An axis that can point up.
+pub(crate) const fn axis(axis: SceneAxis) -> Named {
+    match axis {
+        SceneAxis::PlusX => named("+x", "What is at high x is at the top"),
+        SceneAxis::MinusX => named("−x", "What is at low x is at the top"),
+        SceneAxis::PlusY => named("+y", "What is at high y is at the top"),
+        SceneAxis::MinusY => named("−y", "What is at low y is at the top"),
+        SceneAxis::PlusZ => named("+z", "What is at high z is at the top"),
+        SceneAxis::MinusZ => named("−z", "What is at low z is at the top"),
+    }
+}
 
 pub(crate) const AZIMUTH: Named = named("Azimuth", "Around the vertical axis; drag the picture sideways");
 pub(crate) const ELEVATION: Named =

@@ -22,6 +22,10 @@ pub(crate) const SHOW_PALETTE: &str = "Find a command…";
 
 pub(crate) const RESET_VIEW: &str = "Reset view";
 pub(crate) const FRAME_ALL: &str = "Frame all";
+pub(crate) const TURN_OBJECT: &str = "Stand up or lay down";
+pub(crate) const TURN_OBJECT_WORDS: &str = "flip tip over upside down rotate 90° turn object orientation";
+pub(crate) const TURN_ROUND: &str = "Turn round by a quarter";
+pub(crate) const TURN_ROUND_WORDS: &str = "rotate 90° around spin object orientation";
 pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
@@ -76,6 +80,11 @@ pub(crate) fn treat_as(kind: Option<KindName>) -> String {
 /// To look from a side.
 pub(crate) fn look_from(view: &str) -> String {
     format!("Look: {view}")
+}
+
+/// To stand the object so that an axis points up.
+pub(crate) fn upright(axis: &str) -> String {
+    format!("Stand up: {axis} up")
 }
 
 /// To take the lights of a rig.

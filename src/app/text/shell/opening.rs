@@ -24,6 +24,11 @@ pub(crate) const SESSION_NOT_LOADED: &str = "the session was not loaded";
 pub(crate) const OF_ANOTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
 pub(crate) const OF_OTHER_VALUES: &str = "The settings were made for other values than the file has now";
 
+/// On the desktop, where no window opens.
+pub(crate) fn no_window(why: &str) -> String {
+    format!("Chiaroscuro cannot open its window: {why}.")
+}
+
 /// The window's title, with what the open volume is called.
 pub(crate) fn title(volume: &str) -> String {
     format!("{volume} – {PROGRAM}")

@@ -14,8 +14,9 @@ const CORNERS: usize = 72;
 /// Lines from a hood's light to the rim of its cone.
 const RIBS: usize = 6;
 
-/// Paints all that help with a light, whose position refers to the scene, over a floor at that height.
-pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, floor: f64) {
+/// Paints all that help with a light, whose position refers to the scene, over a floor that lies that high in a
+/// direction which points up.
+pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, up: DVec3, floor: f64) {
     let line = |points: &[DVec3], strength: f32| {
         let seen: Option<Vec<Pos2>> = points.iter().map(|&point| view.point(point)).collect();
         if let Some(seen) = seen {
@@ -31,7 +32,7 @@ pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, floor: f
         LightKind::Parallel => light.direction() * view.radius(),
         LightKind::Perspective => light.position.into(),
     };
-    let Stand { ring, foot, middle } = Stand::of(place, floor);
+    let Stand { ring, foot, middle } = Stand::of(place, up, floor);
     line(&ring, 0.3);
     line(&[middle, foot], 0.3);
     line(&[place, foot], 0.6);
@@ -55,14 +56,15 @@ struct Stand {
 }
 
 impl Stand {
-    fn of(place: DVec3, floor: f64) -> Self {
-        let middle = DVec3::Z * floor;
-        let radius = place.truncate().length();
+    fn of(place: DVec3, up: DVec3, floor: f64) -> Self {
+        let middle = up * floor;
+        let across = place.reject_from(up);
+        let (one, other) = up.any_orthonormal_pair();
         let at = |corner: usize| {
             let (sin, cos) = (corner as f64 / CORNERS as f64 * TAU).sin_cos();
-            middle + DVec3::new(cos, sin, 0.0) * radius
+            middle + (one * cos + other * sin) * across.length()
         };
-        Self { ring: (0..=CORNERS).map(at).collect(), foot: place.with_z(floor), middle }
+        Self { ring: (0..=CORNERS).map(at).collect(), foot: middle + across, middle }
     }
 }
 
@@ -93,9 +95,12 @@ mod tests {
 
     #[test]
     fn lights_stand_over_the_floor() {
-        let stand = Stand::of(DVec3::new(3.0, -4.0, 2.0), -1.0);
+        let stand = Stand::of(DVec3::new(3.0, -4.0, 2.0), DVec3::Z, -1.0);
         assert_eq!((stand.foot, stand.middle), (DVec3::new(3.0, -4.0, -1.0), DVec3::new(0.0, 0.0, -1.0)));
         assert!(stand.ring.iter().all(|point| ((*point - stand.middle).length() - 5.0).abs() < 1e-9));
+        let stand = Stand::of(DVec3::new(3.0, -4.0, 2.0), DVec3::NEG_X, -1.0);
+        assert_eq!((stand.foot, stand.middle), (DVec3::new(1.0, -4.0, 2.0), DVec3::X));
+        assert!(stand.ring.iter().all(|point| (point.x - 1.0).abs() < 1e-9));
     }
 
     #[test]

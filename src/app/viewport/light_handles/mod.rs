@@ -83,7 +83,8 @@ impl LightHandles {
             self.positions.push(handle.position);
             let lamp = settings.lights[light].in_scene(&settings.camera);
             if active || (*selected == light && self.hood.is_active()) {
-                guides::paint(&painter, &view, &lamp, settings.floor.height);
+                let up = settings.camera.up.direction();
+                guides::paint(&painter, &view, &lamp, up, settings.floor.height);
             }
             if *selected == light
                 && let Some(half_angle_deg) =

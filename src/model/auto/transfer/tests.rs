@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::find;
 use crate::data::{DataKind, Hints, Histogram, KindName, Meaning, Modality, Samples, Volume};
 use crate::model::auto::domain::Domain;
-use crate::model::auto::{first_settings_as, labels_lost, transfer_as};
+use crate::model::auto::{Wishes, first_settings_with, labels_lost, transfer_as};
 use crate::model::{Easing, MAX_POINTS, Settings, TransferFunction};
 
 const N: usize = 32;
@@ -152,7 +152,11 @@ fn every_volume_can_be_treated_as_every_kind() {
     let odd = volume(|p| if p.x > 0.9 { 1e30 } else { 0.0 });
     for volume in [flat, negative, odd] {
         for kind in KindName::choices() {
-            let settings = first_settings_as(&volume, &Histogram::of(&volume), kind);
+            let settings = first_settings_with(
+                &volume,
+                &Histogram::of(&volume),
+                Wishes { treated_as: kind, ..Wishes::default() },
+            );
             let mut sane = settings.clone();
             sane.sanitise();
             assert_eq!(sane, settings, "{kind:?}");

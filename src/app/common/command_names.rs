@@ -1,0 +1,126 @@
+//! What commands are called, and by what else they are found.
+
+use std::borrow::Cow;
+
+use eframe::egui::{self, Key, KeyboardShortcut};
+
+use super::commands::{Command, SHORTCUTS};
+use crate::app::text;
+use crate::model::{COLOR_MAPS, ObjectTurn, SceneAxis};
+
+impl Command {
+    /// What it is called while an axis of the scene points up: that axis is in the names of some.
+    pub(crate) fn label_with(&self, up: SceneAxis) -> Cow<'static, str> {
+        match self {
+            Self::LookFrom(view) => text::commands::look_from(view.name(up)).into(),
+            other => other.label(),
+        }
+    }
+
+    /// Words by which it is found besides those of its name.
+    pub(crate) fn search_words(&self) -> &'static str {
+        match self {
+            Self::TurnObject(_) => text::commands::TURN_OBJECT_WORDS,
+            Self::TurnRound => text::commands::TURN_ROUND_WORDS,
+            _ => "",
+        }
+    }
+
+    /// What help calls it.
+    pub(crate) fn label(&self) -> Cow<'static, str> {
+        let label = match self {
+            Self::LookFrom(view) => {
+                return text::commands::look_from(view.name(SceneAxis::default())).into();
+            }
+            Self::TurnObject(ObjectTurn::Upright(axis)) => {
+                return text::commands::upright(text::camera::axis(*axis).name).into();
+            }
+            Self::TurnObject(ObjectTurn::Over) => text::commands::TURN_OBJECT,
+            Self::TurnRound => text::commands::TURN_ROUND,
+            Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
+            Self::UsePreset(preset) => {
+                return text::commands::use_preset(preset.domain(), &preset.title()).into();
+            }
+            Self::UseColors(at, back) => {
+                let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
+                return text::commands::use_colors(name, *back).into();
+            }
+            Self::TreatAs(kind) => return text::commands::treat_as(*kind).into(),
+            Self::Average(block) => return text::commands::average(*block).into(),
+            Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
+            Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
+            Self::InvertTransfer => text::commands::INVERT_TRANSFER,
+            Self::StoreView(slot) => return text::commands::store_view(*slot).into(),
+            Self::RecallView(slot) => return text::commands::recall_view(*slot).into(),
+            Self::FrameAll => text::commands::FRAME_ALL,
+            Self::ToggleProjection => text::commands::TOGGLE_PROJECTION,
+            Self::ToggleFullScreen => text::commands::TOGGLE_FULL_SCREEN,
+            Self::ToggleOverlay => text::commands::TOGGLE_OVERLAY,
+            Self::ToggleProbe => text::commands::TOGGLE_PROBE,
+            Self::ToggleCrop => text::commands::TOGGLE_CROP,
+            Self::TogglePlane => text::commands::TOGGLE_PLANE,
+            Self::FacePlane => text::commands::FACE_PLANE,
+            Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
+            Self::ShowPalette => text::commands::SHOW_PALETTE,
+            Self::UseLights(_) => text::commands::USE_LIGHTS,
+            Self::TryLights => text::commands::TRY_LIGHTS,
+            Self::TryPresets => text::commands::TRY_PRESETS,
+            Self::NextLight => text::commands::NEXT_LIGHT,
+            Self::PreviousLight => text::commands::PREVIOUS_LIGHT,
+            Self::Solo => text::commands::SOLO,
+            Self::Mute => text::commands::MUTE,
+            Self::Brighter => text::commands::BRIGHTER,
+            Self::Dimmer => text::commands::DIMMER,
+            Self::OpenDialog => text::commands::OPEN_DIALOG,
+            Self::OpenPath => text::commands::OPEN_PATH,
+            Self::Open(_) => text::commands::OPEN_BUILT_IN,
+            Self::CancelOpening => text::commands::CANCEL_OPENING,
+            Self::GoOn => text::commands::GO_ON,
+            Self::SaveSettings => text::commands::SAVE_SETTINGS,
+            Self::LoadSettings => text::commands::LOAD_SETTINGS,
+            Self::Export => text::commands::EXPORT,
+            Self::CopyPicture => text::commands::COPY_PICTURE,
+            Self::KeepLook => text::commands::KEEP_LOOK,
+            Self::Quit => text::commands::QUIT,
+            Self::Undo => text::commands::UNDO,
+            Self::Redo => text::commands::REDO,
+            Self::ResetView => text::commands::RESET_VIEW,
+            Self::AddLight => text::commands::ADD_LIGHT,
+            Self::AutomaticTransfer => text::commands::AUTOMATIC_TRANSFER,
+            Self::Balance => text::commands::BALANCE,
+            Self::ToggleSide => text::commands::TOGGLE_SIDE,
+            Self::ToggleHandles => text::commands::TOGGLE_HANDLES,
+            Self::ToggleCompare => text::commands::TOGGLE_COMPARE,
+            Self::ShowSlices => text::commands::SHOW_SLICES,
+            Self::ShowLightVolume => text::commands::SHOW_LIGHT_VOLUME,
+            Self::CompareWithFile => text::commands::COMPARE_WITH_FILE,
+            Self::ShowHelp => text::help::KEYS_AND_MOUSE,
+            Self::ShowAbout => text::help::ABOUT,
+        };
+        label.into()
+    }
+
+    /// The command's key, for menus.
+    pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
+        match self {
+            Self::StoreView(slot) => return text::commands::store_view_keys(*slot),
+            Self::RecallView(slot) => return text::commands::recall_view_keys(*slot),
+            _ => {}
+        }
+        let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
+        found.map_or_else(String::new, |(shortcut, _)| key_text(ctx, shortcut))
+    }
+}
+
+/// A key as it is printed on the keyboard.
+pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
+    let named = ctx.format_shortcut(&shortcut);
+    let signs = [
+        (Key::OpenBracket, "["),
+        (Key::CloseBracket, "]"),
+        (Key::Comma, ","),
+        (Key::Period, "."),
+        (Key::Questionmark, "?"),
+    ];
+    signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
+}

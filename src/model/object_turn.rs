@@ -1,0 +1,181 @@
+//! Standing the object up and laying it down: by quarter turns of all that is around it. The data stay
+//! where they are.
+
+use glam::{DMat3, DVec3};
+
+use super::{Camera, LightLock, SceneAxis, Settings};
+
+/// How the object is to turn, as its viewer sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ObjectTurn {
+    /// A quarter about the horizontal across the picture, its top away from the viewer: what stood lies on its back.
+    Over,
+    /// Until an axis of the scene points up.
+    Upright(SceneAxis),
+}
+
+/// How everything around the object turns when that turns: the other way, by quarters about axes of the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoomTurn(DMat3);
+
+/// A rotation by a quarter about an axis of the scene.
+fn quarter(axis: SceneAxis) -> DMat3 {
+    rounded(DMat3::from_axis_angle(axis.direction(), std::f64::consts::FRAC_PI_2))
+}
+
+/// A matrix of whole numbers, without what rounding has left.
+fn rounded(matrix: DMat3) -> DMat3 {
+    DMat3::from_cols(matrix.x_axis.round(), matrix.y_axis.round(), matrix.z_axis.round())
+}
+
+impl Camera {
+    /// The axis of the scene that runs most to the right, of those that are level.
+    fn level_right(&self) -> SceneAxis {
+        let right = self.scene_from_view().x_axis;
+        SceneAxis::nearest(right.reject_from(self.up.direction()))
+    }
+
+    /// How everything around the object turns when that turns as this camera's viewer has asked for.
+    pub fn room_turn(&self, turn: ObjectTurn) -> RoomTurn {
+        RoomTurn(match turn {
+            ObjectTurn::Over => quarter(self.level_right()),
+            ObjectTurn::Upright(up) => {
+                let (from, to) = (self.up.direction(), up.direction());
+                let across = from.cross(to);
+                if across != DVec3::ZERO {
+                    quarter(SceneAxis::nearest(across))
+                } else if from == to {
+                    DMat3::IDENTITY
+                } else {
+                    let half = quarter(self.level_right());
+                    half * half
+                }
+            }
+        })
+    }
+
+    /// Turns with everything around the object.
+    fn turn_with(&mut self, room: DMat3) {
+        let upright = room * self.up.scene_from_upright();
+        self.up = SceneAxis::nearest(upright.z_axis);
+        // What is left of the turn is one about the vertical.
+        let about_up = self.up.scene_from_upright().transpose() * upright;
+        let angle_deg = about_up.x_axis.y.atan2(about_up.x_axis.x).to_degrees().round();
+        self.azimuth_deg = (self.azimuth_deg + angle_deg).rem_euclid(360.0);
+    }
+}
+
+impl Settings {
+    /// Turns camera and lights, which see and light the object as if it had been turned the other way about the point
+    /// in the middle of the picture. Cuts stay with the data, and the floor at its distance from the middle of the
+    /// scene.
+    pub fn turn_room(&mut self, RoomTurn(room): RoomTurn) {
+        self.camera.turn_with(room);
+        for light in self.lights.iter_mut().filter(|light| light.lock == LightLock::Scene) {
+            light.position = (room * DVec3::from(light.position)).into();
+        }
+    }
+
+    /// Turns the object, as it seems: everything around it turns the other way.
+    pub fn turn_object(&mut self, turn: ObjectTurn) {
+        self.turn_room(self.camera.room_turn(turn));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Projection, Rig};
+
+    fn looks() -> impl Iterator<Item = Settings> {
+        SceneAxis::ALL.into_iter().flat_map(|up| {
+            [-60.0, 10.0, 100.0, 190.0, 300.0].map(|azimuth_deg| {
+                let camera = Camera { up, azimuth_deg, roll_deg: 5.0, ..Camera::default() };
+                Settings { lights: Rig::KeyFillBack.lights(&camera), camera, ..Settings::default() }
+            })
+        })
+    }
+
+    /// Where the lights are as the eye sees it.
+    fn seen(settings: &Settings) -> Vec<DVec3> {
+        let view_from_scene = settings.camera.scene_from_view().transpose();
+        let place = |light: &crate::model::Light| DVec3::from(light.in_scene(&settings.camera).position);
+        settings.lights.iter().map(|light| view_from_scene * place(light)).collect()
+    }
+
+    #[test]
+    fn the_object_turns_as_it_is_seen_and_light_and_view_stay() {
+        for before in looks() {
+            let mut after = before.clone();
+            after.turn_object(ObjectTurn::Over);
+            for (a, b) in seen(&before).into_iter().zip(seen(&after)) {
+                assert!((a - b).length() < 1e-9, "the light comes from where it came from");
+            }
+            assert_eq!(after.camera.elevation_deg, before.camera.elevation_deg);
+            // Level with the eye and without a roll, so that the vertical is the picture's.
+            let level = |camera: &Camera| {
+                let camera = Camera { elevation_deg: 0.0, roll_deg: 0.0, ..camera.clone() };
+                camera.scene_from_view()
+            };
+            // A point of the object, in both views.
+            let top = before.camera.up.direction();
+            let seen_before = level(&before.camera).transpose() * top;
+            let seen_after = level(&after.camera).transpose() * top;
+            assert!((seen_before - DVec3::Y).length() < 1e-9);
+            assert!(seen_after.z < -0.7 && seen_after.y.abs() < 1e-9, "on its back: {seen_after}");
+        }
+    }
+
+    #[test]
+    fn four_quarters_are_a_whole_turn() {
+        for before in looks() {
+            let mut after = before.clone();
+            for _ in 0..4 {
+                after.turn_object(ObjectTurn::Over);
+            }
+            let camera = |settings: &Settings| settings.camera.scene_from_view();
+            assert_eq!(after.camera.up, before.camera.up);
+            assert!((camera(&after).z_axis - camera(&before).z_axis).length() < 1e-9);
+            assert!((camera(&after).y_axis - camera(&before).y_axis).length() < 1e-9);
+            for (a, b) in after.lights.iter().zip(&before.lights) {
+                assert!((DVec3::from(a.position) - DVec3::from(b.position)).length() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn any_axis_can_be_stood_on_end() {
+        for before in looks() {
+            for up in SceneAxis::ALL {
+                let mut after = before.clone();
+                after.turn_object(ObjectTurn::Upright(up));
+                assert_eq!(after.camera.up, up);
+                for (a, b) in seen(&before).into_iter().zip(seen(&after)) {
+                    assert!((a - b).length() < 1e-9);
+                }
+                if up == before.camera.up {
+                    assert_eq!(after.lights, before.lights);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_picture_is_that_of_the_turned_object() {
+        for before in looks() {
+            for projection in [Projection::Perspective, Projection::Orthographic] {
+                let mut after = before.clone();
+                after.camera.projection = projection;
+                let old = after.camera.clone();
+                after.turn_object(ObjectTurn::Over);
+                // A quarter about the axis that ran most to the right.
+                let turned = |point: DVec3| quarter(old.level_right()).transpose() * point;
+                for point in [DVec3::new(0.3, -0.2, 0.5), DVec3::new(-0.6, 0.1, 0.2)] {
+                    let found = after.camera.pixel_from_scene(point, 300.0, 200.0).unwrap();
+                    let wanted = old.pixel_from_scene(turned(point), 300.0, 200.0).unwrap();
+                    assert!((found.0 - wanted.0).abs() < 1e-9 && (found.1 - wanted.1).abs() < 1e-9);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Paths as text: nearly all are text, and the rest keep every byte.
+//!
+//! On Unix a file's name is any bytes. Those that are no UTF-8 are written with `%` and two hexadecimal digits for
+//! whatever is not plain ASCII, as addresses have it.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// A path that is no text, with every byte; none for one that is text, and where names are no bytes.
+pub fn encode_path(path: &Path) -> Option<String> {
+    if path.to_str().is_some() {
+        return None;
+    }
+    let mut text = String::new();
+    for &byte in bytes_of(path)? {
+        if byte.is_ascii_alphanumeric() || b"/-_.~".contains(&byte) {
+            text.push(char::from(byte));
+        } else {
+            write!(text, "%{byte:02X}").ok()?;
+        }
+    }
+    Some(text)
+}
+
+/// The path that [`encode_path`] has written; none if the text is nothing of that kind.
+pub fn decode_path(text: &str) -> Option<PathBuf> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.bytes();
+    while let Some(byte) = rest.next() {
+        bytes.push(match byte {
+            b'%' => 16 * digit(rest.next()?)? + digit(rest.next()?)?,
+            plain => plain,
+        });
+    }
+    path_of(bytes)
+}
+
+/// The value of a hexadecimal digit.
+fn digit(byte: u8) -> Option<u8> {
+    char::from(byte).to_digit(16).and_then(|value| u8::try_from(value).ok())
+}
+
+#[cfg(unix)]
+#[expect(clippy::unnecessary_wraps, reason = "other systems have no bytes")]
+fn bytes_of(path: &Path) -> Option<&[u8]> {
+    Some(std::os::unix::ffi::OsStrExt::as_bytes(path.as_os_str()))
+}
+
+#[cfg(unix)]
+#[expect(clippy::unnecessary_wraps, reason = "on other systems not all bytes are a name")]
+fn path_of(bytes: Vec<u8>) -> Option<PathBuf> {
+    Some(PathBuf::from(<std::ffi::OsString as std::os::unix::ffi::OsStringExt>::from_vec(bytes)))
+}
+
+#[cfg(not(unix))]
+fn bytes_of(_: &Path) -> Option<&[u8]> {
+    None
+}
+
+#[cfg(not(unix))]
+fn path_of(bytes: Vec<u8>) -> Option<PathBuf> {
+    String::from_utf8(bytes).ok().map(PathBuf::from)
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+
+    use super::*;
+
+    #[test]
+    fn no_byte_is_lost() {
+        for (first, second) in
+            (1..=u8::MAX).flat_map(|first| (1..=u8::MAX).map(move |second| (first, second)))
+        {
+            let name = [b'/', b'a', first, second, b'%'];
+            let path = Path::new(OsStr::from_bytes(&name));
+            match encode_path(path) {
+                Some(text) => {
+                    assert!(text.is_ascii());
+                    assert_eq!(decode_path(&text).as_deref(), Some(path));
+                }
+                None => assert!(path.to_str().is_some(), "{name:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn text_that_is_cut_off_or_no_number_is_no_path() {
+        for text in ["%", "a%F", "%G0", "%é"] {
+            assert_eq!(decode_path(text), None, "{text}");
+        }
+        assert_eq!(encode_path(Path::new(OsStr::from_bytes(b"/a b/\xff"))).as_deref(), Some("/a%20b/%FF"));
+    }
+}
