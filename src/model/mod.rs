@@ -40,7 +40,10 @@ pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, o
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
 pub use rig::Rig;
-pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, Sides, ToneMap};
+pub use settings::{
+    Background, LightingTransfer, MAX_EXPOSURE, MIN_EXPOSURE, Output, SCHEMA, Settings, Shading, Sides,
+    ToneMap,
+};
 pub use transfer::{
     ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, MAX_POINTS, Mixing, STEPS, TransferFunction,
     linear_from_srgb, srgb_from_linear,
