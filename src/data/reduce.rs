@@ -15,9 +15,16 @@ impl Volume {
     pub fn reduced(self, block: [usize; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
-        if block == [1; 3] {
-            return Ok(self);
-        }
+        if block == [1; 3] { Ok(self) } else { self.averaged(block) }
+    }
+
+    /// As [`Self::reduced`], beside the volume itself, which is still needed.
+    ///
+    /// # Errors
+    /// As [`Volume::new`].
+    pub fn averaged(&self, block: [usize; 3]) -> Result<Self, VolumeError> {
+        let dims = self.dims();
+        let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
         let samples = match self.samples() {
             Samples::U8(values) => Samples::U8(means(values, dims, block, |mean| mean.round() as u8)),
             Samples::I8(values) => Samples::I8(means(values, dims, block, |mean| mean.round() as i8)),
@@ -33,7 +40,7 @@ impl Volume {
         let index_from_block =
             DAffine3 { matrix3: DMat3::from_diagonal(edges), translation: 0.5 * (edges - 1.0) };
         let geometry = self.world_from_index() * index_from_block;
-        Ok(Self::new(self.name(), reduced_dims(dims, block), geometry, samples)?.standing_for(&self))
+        Ok(Self::new(self.name(), reduced_dims(dims, block), geometry, samples)?.standing_for(self))
     }
 }
 

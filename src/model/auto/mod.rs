@@ -4,11 +4,16 @@
 //! What is around the object is recognised by the volume's own border: most scans have a margin.
 //! The opacity ramp starts above it, at the value that best splits the volume in two (Otsu 1979).
 
+mod floor;
 mod frame;
 mod isosurfaces;
+mod looks;
 mod object;
 mod threshold;
 mod view;
+
+pub use self::floor::wants_floor;
+pub use self::looks::{Proposal, looks};
 
 use self::object::Object;
 use self::threshold::object_threshold;
@@ -68,6 +73,11 @@ pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
 
 /// The density below which a share of the voxels above `start` lies.
 fn percentile_above(histogram: &Histogram, start: f64, fraction: f64) -> f64 {
+    above(histogram, start).percentile(fraction)
+}
+
+/// What of a histogram lies above a density.
+fn above(histogram: &Histogram, start: f64) -> Histogram {
     let first = ((start * histogram.counts.len() as f64) as usize).min(histogram.counts.len() - 1);
     let counts: Vec<u64> = histogram
         .counts
@@ -76,7 +86,7 @@ fn percentile_above(histogram: &Histogram, start: f64, fraction: f64) -> f64 {
         .map(|(bin, &count)| if bin < first { 0 } else { count })
         .collect();
     let total = counts.iter().sum();
-    Histogram { counts, total }.percentile(fraction)
+    Histogram { counts, total }
 }
 
 #[cfg(test)]

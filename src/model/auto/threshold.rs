@@ -30,7 +30,7 @@ fn above_surroundings(volume: &Volume, histogram: &Histogram) -> f64 {
 }
 
 /// The density that splits the histogram into the two most compact classes (Otsu's method).
-fn otsu(histogram: &Histogram) -> f64 {
+pub(super) fn otsu(histogram: &Histogram) -> f64 {
     let bins = histogram.counts.len() as f64;
     let (total, sum) = histogram
         .counts
