@@ -2,7 +2,7 @@
 
 use eframe::egui;
 
-use crate::app::common::commands::{SHORTCUTS, key_text};
+use crate::app::common::shortcuts::{SHORTCUTS, key_text};
 use crate::app::text;
 use crate::app::viewport::Facts;
 
