@@ -11,7 +11,8 @@ fn associated(material: vec4f) -> vec4f {
     return vec4f(material.rgb * material.a, material.a);
 }
 
-// Σ over the 4³ neighbours of material × kernel, voxel by voxel: no filter knows the transfer function.
+// Σ over the 4³ neighbours of material × kernel, voxel by voxel: no filter knows the transfer function. Where voxels are
+// missing others stand in for them, and the sum fades with what is there.
 fn material_by_kernel(p: vec3f) -> vec4f {
     let cell = floor(p);
     let f = p - cell;
@@ -24,13 +25,15 @@ fn material_by_kernel(p: vec3f) -> vec4f {
         for (var y = 0; y < 4; y += 1) {
             let weight = wy[y] * wz[z];
             for (var x = 0; x < 4; x += 1) {
-                // One voxel of padding; beyond it is nothing, too.
-                let texel = clamp(vec3i(cell) + vec3i(x, y, z), vec3i(0), last);
-                sum += wx[x] * weight * associated(classify(textureLoad(density_texture, texel, 0).r));
+                // Texels of padding, and beyond, are no voxels.
+                let texel = vec3i(cell) + vec3i(x, y, z);
+                let voxel = clamp(texel, vec3i(1), last - 1);
+                let share = select(0.0, wx[x] * weight, MISSING || all(texel == voxel));
+                sum += share * associated(classify(textureLoad(density_texture, voxel, 0).r));
             }
         }
     }
-    return sum;
+    return select(sum, sum * presence_at(p, 0.0), MISSING);
 }
 
 // A stretched kernel finds the blurred volume classified instead.
@@ -38,7 +41,8 @@ fn material_at(p: vec3f, level: f32) -> vec4f {
     if (!STRETCH || level <= 0.0) {
         return material_by_kernel(p);
     }
-    let blurred = associated(classify(pyramid(p, max(level, 1.0))));
+    let wide = max(level, 1.0);
+    let blurred = associated(classify(pyramid(p, wide))) * presence_at(p, wide);
     if (level >= 1.0) {
         return blurred;
     }
@@ -57,7 +61,8 @@ fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
         return SlabSample(spread_material(frame, ray, k), 0.0);
     }
     let density = slab_density(frame, ray, k);
-    return SlabSample(classify(density), density);
+    let material = classify(density);
+    return SlabSample(vec4f(material.rgb, material.a * slab_presence(frame, ray, k)), density);
 }
 
 // The material of classified voxels in slab k where the ray crosses it.
@@ -75,7 +80,7 @@ fn spread_material(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
 // Its extinction alone.
 fn slab_extinction(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
     if (!PRECLASSIFY) {
-        return classified_extinction(slab_density(frame, ray, k));
+        return classified_extinction(slab_density(frame, ray, k)) * slab_presence(frame, ray, k);
     }
     return spread_material(frame, ray, k).a;
 }

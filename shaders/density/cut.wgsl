@@ -82,21 +82,22 @@ fn blurred_edge(distance: f32) -> f32 {
     return select(select(0.0, far, d < 2.0), near, d < 1.0);
 }
 
-// The gradient, in index space, that faces of a cut have of their own: that of something solid which ends
-// there, reconstructed with a B-spline stretched 2^level times. Data behind the face would only give it the
-// direction of their noise.
+// The gradient, in index space, that faces have of their own where data end or are cut: that of something solid which
+// ends there, reconstructed with a B-spline stretched 2^level times. Data behind the face would only give it the
+// direction of their noise, and there are none beyond the grid.
 fn face_gradient(cut: Cut, p: vec3f, level: f32) -> vec3f {
-    if (!CUT) {
-        return vec3f(0.0);
-    }
     let width = exp2(level);
     let below = (p - cut.low) / width;
     let above = (cut.high - p) / width;
+    let depth = (cut.plane.w - dot(cut.plane.xyz, p)) / width;
+    // Nearly everywhere no face is near.
+    if (all(min(below, above) >= vec3f(2.0)) && depth >= 2.0) {
+        return vec3f(0.0);
+    }
     let faces = vec3f(
         blurred_edge(below.x) - blurred_edge(above.x),
         blurred_edge(below.y) - blurred_edge(above.y),
         blurred_edge(below.z) - blurred_edge(above.z),
     );
-    let depth = (cut.plane.w - dot(cut.plane.xyz, p)) / width;
     return (faces - cut.plane.xyz * blurred_edge(depth)) / width;
 }

@@ -1,5 +1,7 @@
-// The volume as the sheets see it: density at a point of index space, by kernel or from the pyramid.
+// The volume as the sheets see it: density at a point of index space, by kernel or from the pyramid, and how much of
+// it is there.
 #import "density/kernel.wgsl"
+#import "density/presence.wgsl"
 #import "sheets/sheet_frame.wgsl"
 
 struct Grid {
@@ -7,10 +9,10 @@ struct Grid {
     dims: vec3f,
     // Cells beyond the one around a sample that it sees: stretched, or at two points.
     dilation: i32,
-    // 1 / texels of the density texture, which has one voxel of nothing around the data.
+    // 1 / texels of the density texture, in which the border of the data is once more around them.
     density_scale: vec3f,
     pad0: f32,
-    // 1 / texels of the pyramid's level 0, which has four voxels of nothing before the data.
+    // 1 / texels of the pyramid's level 0, which begins four voxels before the data.
     pyramid_scale: vec3f,
     pad1: f32,
     // 1 / cells of 2³ voxels.
@@ -27,9 +29,9 @@ var<private> grid: Grid;
 @group(1) @binding(3) var clamped: sampler;
 // Takes the nearest texel.
 @group(1) @binding(4) var nearest: sampler;
+// Where voxels are missing, the share of kernels that lies on those that are there, level by level as in the pyramid.
+@group(1) @binding(9) var presence_texture: texture_3d<f32>;
 
-// Points per slab: 1 at its middle, or 2 by Gauss–Legendre.
-override QUADRATURE: u32 = 1u;
 // Whether any slab's pixels are wider than voxels.
 override STRETCH: bool = false;
 
@@ -89,6 +91,55 @@ fn density(p: vec3f, level: f32) -> f32 {
         return blurred;
     }
     return mix(density_by_kernel(p), blurred, level);
+}
+
+// The share of the kernel at a point that lies within the grid, where it is stretched to pyramid level `level`.
+fn presence_in_grid(p: vec3f, level: f32) -> f32 {
+    if (!STRETCH) {
+        return presence(p, grid.dims, 1.0);
+    }
+    return presence(p, grid.dims, exp2(level));
+}
+
+// The share of it that lies on voxels that are there.
+fn presence_at(p: vec3f, level: f32) -> f32 {
+    if (MISSING) {
+        return textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
+    }
+    return presence_in_grid(p, level);
+}
+
+// How steeply that rises, in index space: by central differences over as far as the kernel is stretched.
+fn presence_slope(p: vec3f, level: f32) -> vec3f {
+    let h = exp2(level);
+    let x = vec3f(h, 0.0, 0.0);
+    let y = vec3f(0.0, h, 0.0);
+    let z = vec3f(0.0, 0.0, h);
+    return vec3f(
+        presence_at(p + x, level) - presence_at(p - x, level),
+        presence_at(p + y, level) - presence_at(p - y, level),
+        presence_at(p + z, level) - presence_at(p - z, level),
+    ) / (2.0 * h);
+}
+
+// The share of the material of slab k that is there, where the ray crosses it.
+fn slab_presence(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+    let depth = depth_of(frame, k);
+    if (QUADRATURE == 2u) {
+        let near = depth - TWO_POINT_OFFSET * frame.slab;
+        let far = depth + TWO_POINT_OFFSET * frame.slab;
+        return 0.5 * (presence_at(ray.origin + ray.direction * near, kernel_level(frame, near))
+            + presence_at(ray.origin + ray.direction * far, kernel_level(frame, far)));
+    }
+    return presence_at(ray.origin + ray.direction * depth, kernel_level(frame, depth));
+}
+
+// The share of slab k within the grid, where the ray crosses it.
+fn slab_in_grid(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+    let depth = depth_of(frame, k);
+    let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
+    return 0.5 * (presence_in_grid(ray.origin + ray.direction * (depth - offset), kernel_level(frame, depth - offset))
+        + presence_in_grid(ray.origin + ray.direction * (depth + offset), kernel_level(frame, depth + offset)));
 }
 
 // The sheet's value: density averaged over slab k where the ray crosses it.

@@ -48,9 +48,6 @@ var<private> view: Backprojection;
 override FIRST_TOUCH: bool = false;
 // Whether the kernel is anywhere wider than a pixel or a slab, or the light inside of a cube of views.
 override WIDE: bool = false;
-// Points per slab at which the kernel is evaluated, as in density/volume.wgsl: with two it is the
-// paper's h̄, the kernel averaged over the slab.
-override QUADRATURE: u32 = 1u;
 
 // Of the kernel across the sheets: least width in voxels, and largest in pixels (src/plan/geometry/light_frame.rs).
 const MIN_KERNEL_VOXELS = 0.3125;

@@ -19,17 +19,42 @@ fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towar
     return near_or_looked_up(light, volume, surface, towards);
 }
 
-// The sheet's value at a pixel; nothing lies before the first or behind the last.
-fn sheet(pixel: vec2i, k: i32) -> f32 {
-    let last = i32(scatter.sheet_count) - 1;
-    let sum = f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(clamp(k, 0, last)))])) / UNIT;
-    return select(0.0, sum, (k >= 0) & (k <= last));
+// The share of kernels that lies within the grid where a ray crosses a sheet. A slice of voxels is there all along its
+// axis.
+fn sheet_in_grid(ray: Ray, k: i32) -> f32 {
+    if (ORDER == ORDER_IMAGE_ALIGNED) {
+        return slab_in_grid(eye.frame, ray, f32(k));
+    }
+    let depth = crossing_of(ray, f32(k)).depth;
+    let p = mix(ray.origin + ray.direction * depth, 0.5 * (grid.dims - 1.0), scatter.axis);
+    return presence_in_grid(p, kernel_level(eye.frame, depth));
 }
 
-// The sheet's material: what its density means, or the sum of what its voxels mean.
+// The share that lies on voxels that are there.
+fn sheet_presence(ray: Ray, k: i32) -> f32 {
+    if (!MISSING) {
+        return sheet_in_grid(ray, k);
+    }
+    let depth = crossing_of(ray, f32(k)).depth;
+    return presence_at(ray.origin + ray.direction * depth, kernel_level(eye.frame, depth));
+}
+
+// The sheet's value at a pixel, which is the mean of the voxels that are there; nothing lies before the first or behind
+// the last.
+fn sheet(pixel: vec2i, k: i32) -> f32 {
+    let last = i32(scatter.sheet_count) - 1;
+    let known = clamp(k, 0, last);
+    let sum = f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(known))])) / UNIT;
+    let there = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), known);
+    return select(0.0, sum / max(there, LEAST_PRESENCE), (k >= 0) & (k <= last));
+}
+
+// The sheet's material: what its density means, as far as it is there, or the sum of what its voxels mean.
 fn material_of(pixel: vec2i, k: i32) -> vec4f {
+    let there = sheet_presence(ray_of(eye.frame, vec2f(pixel)), k);
     if (SPLAT != SPLAT_MATERIAL) {
-        return classify(sheet(pixel, k));
+        let material = classify(sheet(pixel, k));
+        return vec4f(material.rgb, material.a * there);
     }
     let at = sheet_index(vec2u(pixel), u32(k));
     let sums = vec4f(
@@ -38,7 +63,9 @@ fn material_of(pixel: vec2i, k: i32) -> vec4f {
         f32(atomicLoad(&sheets[channel_index(at, 3u)])),
         f32(atomicLoad(&sheets[channel_index(at, 4u)])),
     ) / UNIT;
-    return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit);
+    // Others stand in for voxels that are missing.
+    let share = select(1.0, there, MISSING);
+    return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit * share);
 }
 
 fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {

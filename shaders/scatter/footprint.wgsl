@@ -2,9 +2,6 @@
 #import "density/kernel.wgsl"
 #import "scatter/slab.wgsl"
 
-// Points per slab for kernels without a table.
-override QUADRATURE: u32 = 1u;
-
 // Pre-integrated Gaussian of radius two voxels: x by the square of the distance across the ray, from 0
 // to 4; y its integral along the ray up to a distance from −2 to 2.
 const FOOTPRINT_SIZE = 512u;

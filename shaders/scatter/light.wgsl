@@ -1,6 +1,7 @@
 // The march of light through scattered sheets (P §3.5, eq. 10): one thread per pixel takes the slab's
 // sum and leaves room for the next.
 #import "density/table.wgsl"
+#import "density/volume.wgsl"
 #import "sheets/march.wgsl"
 #import "scatter/slab.wgsl"
 
@@ -17,6 +18,7 @@ override DILATION: i32 = 0;
 fn main(@builtin(global_invocation_id) id: vec3u) {
     march = bound_march;
     scatter = bound_scatter;
+    grid = bound_grid;
     if (any(id.xy >= march.frame.size)) {
         return;
     }
@@ -29,7 +31,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (t > march.dark && brick.x >= 0) {
         // Sums are complete only where something attenuates light at all.
         if (i32(textureLoad(distances, brick, 0).g) <= DILATION) {
-            let extinction = select(classify(sum).a, sum * scatter.extinction_unit, SPLAT == SPLAT_EXTINCTION);
+            // The mean of the voxels that are there, as far as they are.
+            let in_grid = slab_in_grid(march.frame, ray, f32(scatter.k));
+            let there = slab_presence(march.frame, ray, f32(scatter.k));
+            let classified = classified_extinction(sum / max(in_grid, LEAST_PRESENCE)) * there;
+            let splatted = sum * scatter.extinction_unit * select(1.0, there, MISSING);
+            let extinction = select(classified, splatted, SPLAT == SPLAT_EXTINCTION);
             let place = ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k));
             let share = share_that_shades(march.shading_cut, place);
             tau = share * extinction * march.extinction_scale * march.frame.slab * ray.obliquity;

@@ -1,8 +1,8 @@
 // What the picture's samples look like: material, lights, and what of them arrives (P eq. 2–5).
 //
-// The shader that imports this says what is left of a shadowed light, by attenuation_at(), and has a
-// sampler `clamped`.
+// The shader that imports this says what is left of a shadowed light, by attenuation_at().
 #import "density/table.wgsl"
+#import "density/volume.wgsl"
 #import "shading/lights.wgsl"
 #import "common/space.wgsl"
 #import "sheets/sheet_frame.wgsl"
@@ -34,6 +34,8 @@ struct Eye {
     pad0: f32,
     // What is seen.
     seen: Cut,
+    // The same within the grid: where solids end.
+    faces: Cut,
     // What attenuates light.
     shading_cut: Cut,
     lights: array<Light, MAX_LIGHTS>,
@@ -90,11 +92,15 @@ struct Sampled {
     level: f32,
 }
 
-// The gradient, in scene space, that faces of what is seen have of their own: into the solid that ends there, in
-// which opacity rises, as density does or against it.
+// The gradient, in scene space, that faces of what is seen have of their own, the grid's included: into the solid that
+// ends there, in which opacity rises, as density does or against it.
 fn face_slope(p: vec3f, level: f32, density: f32) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && side_of(density) < 0.0);
-    return turned * gradient_to_scene(eye.space, face_gradient(eye.seen, p, level));
+    var faces = face_gradient(eye.faces, p, level);
+    if (MISSING) {
+        faces += presence_slope(p, level);
+    }
+    return turned * gradient_to_scene(eye.space, faces);
 }
 
 fn surface_of(found: Sampled) -> Surface {

@@ -48,7 +48,7 @@ fn shadow_ray(
         if (k > inside.y) {
             break;
         }
-        let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k)));
+        let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
         depth += light_extinction(slab_density(frame, ray, f32(k))) * share * ray_step * scale;
         if (depth > dark) {
             break;
@@ -59,7 +59,7 @@ fn shadow_ray(
     let end = p + direction * reach;
     if (frame.first_depth < reach && all(end > vec3f(-2.0)) && all(end < grid.dims + 1.0)) {
         frame.slab = reach - frame.first_depth;
-        let share = share_that_shades(cut, p + direction * depth_of(frame, 0.0));
+        let share = share_that_shades(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
         depth += light_extinction(slab_density(frame, ray, 0.0)) * share * frame.slab * scale;
     }
     return exp(-depth);

@@ -3,7 +3,7 @@
 //! A sample at `p` (index space) belongs to brick `floor(p / 8)`, clamped to the grid, and its
 //! kernel of radius two sees voxels `floor(p) − 1 … floor(p) + 2`; with two quadrature points it
 //! looks from up to 0.58 voxel further on. A brick's range therefore covers its voxels and three more
-//! on every side, and the 0 of the outside where that leaves the grid: skipping a brick whose range
+//! on every side; beyond the grid, densities are those at its border: skipping a brick whose range
 //! is transparent can then not change any pixel.
 
 use std::ops::RangeInclusive;
@@ -64,19 +64,10 @@ fn union(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// First and last voxel that brick `b` looks at along an axis of `n` voxels, if any, and whether it looks
-/// outside.
-fn reach(b: usize, n: usize) -> (Option<RangeInclusive<usize>>, bool) {
+/// First and last voxel that brick `b` looks at along an axis of `n` voxels.
+fn reach(b: usize, n: usize) -> RangeInclusive<usize> {
     let (low, high) = (b * BRICK_EDGE, (b + 1) * BRICK_EDGE - 1 + REACH);
-    let first = low.saturating_sub(REACH);
-    ((first < n).then(|| first..=high.min(n - 1)), low < REACH || high > n - 1)
-}
-
-/// The union of what lies in reach of brick `b`, and of nothing where it looks outside.
-fn gather(b: usize, n: usize, at: impl Fn(usize) -> [f32; 2]) -> [f32; 2] {
-    let (inside, outside) = reach(b, n);
-    let start = if outside { [0.0, 0.0] } else { EMPTY };
-    inside.map_or(start, |voxels| voxels.fold(start, |range, i| union(range, at(i))))
+    low.saturating_sub(REACH).min(n - 1)..=high.min(n - 1)
 }
 
 /// The range of every brick: slices reduced in x and y, then layers of slices in z.
@@ -86,21 +77,22 @@ fn ranges(volume: &Volume, dims: [usize; 3]) -> Vec<[f32; 2]> {
         let densities = volume.slice_densities(z);
         let rows: Vec<[f32; 2]> = (0..ny * dims[0])
             .map(|at| {
-                let (row, (inside, outside)) = (&densities[at / dims[0] * nx..], reach(at % dims[0], nx));
-                let start = if outside { [0.0, 0.0] } else { EMPTY };
-                let seen = inside.map_or(&row[..0], |voxels| &row[voxels]);
-                seen.iter().fold(start, |[low, high], &d| [low.min(d), high.max(d)])
+                let row = &densities[at / dims[0] * nx..];
+                let seen = &row[reach(at % dims[0], nx)];
+                seen.iter().fold(EMPTY, |[low, high], &d| [low.min(d), high.max(d)])
             })
             .collect();
+        let column = |x: usize, b: usize| reach(b, ny).map(move |y| y * dims[0] + x);
         (0..dims[1] * dims[0])
-            .map(|at| gather(at / dims[0], ny, |y| rows[y * dims[0] + at % dims[0]]))
+            .map(|at| column(at % dims[0], at / dims[0]).fold(EMPTY, |range, row| union(range, rows[row])))
             .collect()
     };
     let per_slice: Vec<Vec<[f32; 2]>> = (0..nz).into_par_iter().map(reduce_slice).collect();
     (0..dims[2])
         .into_par_iter()
         .flat_map_iter(|b| {
-            (0..dims[0] * dims[1]).map(|at| gather(b, nz, |z| per_slice[z][at])).collect::<Vec<_>>()
+            let range = |at: usize| reach(b, nz).fold(EMPTY, |range, z| union(range, per_slice[z][at]));
+            (0..dims[0] * dims[1]).map(range).collect::<Vec<_>>()
         })
         .collect()
 }

@@ -9,12 +9,10 @@ mod dataset;
 mod histogram;
 pub mod load;
 mod open;
-mod reduce;
 mod small_file;
 pub mod synthetic;
 mod value_range;
 mod volume;
-mod volume_error;
 
 pub(crate) use attempt::address_bytes_left;
 pub use attempt::{plain, single_line, without_controls};
@@ -23,8 +21,6 @@ pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANC
 pub use dataset::Dataset;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use open::open;
-pub use reduce::reduced_dims;
 pub use small_file::read_small;
 pub use value_range::ValueRange;
-pub use volume::{Samples, Volume, VoxelType};
-pub use volume_error::VolumeError;
+pub use volume::{Missing, Samples, Volume, VolumeError, VoxelType, reduced_dims};

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::Bounds;
+
 /// A half-space: all points with normal · p ≤ offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
@@ -32,6 +34,12 @@ pub struct Region {
 impl Region {
     /// All of space.
     pub const EVERYTHING: Self = Self { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY, plane: None };
+
+    /// What of it lies within a box.
+    #[must_use]
+    pub fn within(&self, bounds: &Bounds) -> Self {
+        Self { low: self.low.max(bounds.min), high: self.high.min(bounds.max), plane: self.plane }
+    }
 
     /// Where a ray enters and where it leaves, in lengths of its direction; the first is the larger one if it
     /// never enters.
@@ -83,6 +91,15 @@ mod tests {
             let point = DVec3::new(at - 3.0, 0.0, 0.0);
             assert_eq!(region.contains(point), (2.0..=7.0).contains(&at), "{at}");
         }
+    }
+
+    #[test]
+    fn a_part_within_a_box_is_in_both() {
+        let half = HalfSpace { normal: DVec3::Z, offset: 0.5 };
+        let region = Region { low: DVec3::splat(-9.0), high: DVec3::new(2.0, 9.0, 9.0), plane: Some(half) };
+        let within = region.within(&Bounds { min: DVec3::ZERO, max: DVec3::splat(3.0) });
+        assert_eq!((within.low, within.high), (DVec3::ZERO, DVec3::new(2.0, 3.0, 3.0)));
+        assert_eq!(within.plane, Some(half));
     }
 
     #[test]

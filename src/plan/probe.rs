@@ -105,6 +105,11 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
 }
 
 impl Rays<'_> {
+    /// The box of the voxels, in index space: nothing lies outside.
+    fn grid(&self) -> Bounds {
+        Bounds::of_grid(self.volume.dims(), 0.0)
+    }
+
     fn step(&self) -> f64 {
         STEP * self.scene.smallest_edge()
     }
@@ -113,9 +118,7 @@ impl Rays<'_> {
     fn span(&self, remains: &Region, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
         let origin = self.scene.index_from_scene.transform_point3(origin);
         let direction = self.scene.index_from_scene.transform_vector3(direction);
-        let grid = Bounds::of_grid(self.volume.dims(), 0.0);
-        let (low, high) = (remains.low.max(grid.min), remains.high.min(grid.max));
-        let (enter, leave) = Region { low, high, ..*remains }.span(origin, direction);
+        let (enter, leave) = remains.within(&self.grid()).span(origin, direction);
         let enter = enter.max(0.0);
         (enter < leave).then_some((enter, leave))
     }
@@ -189,9 +192,11 @@ impl Rays<'_> {
         (0..8).map(voxel).sum()
     }
 
-    /// ∇ density in scene space, by central differences over a voxel; what is cut away has the density `outside`.
+    /// ∇ density in scene space, by central differences over a voxel; what is cut away, and what lies beyond the grid,
+    /// has the density `outside`.
     fn gradient(&self, point: DVec3, seen: &Region, outside: f64) -> DVec3 {
         let edge = self.scene.smallest_edge();
+        let seen = seen.within(&self.grid());
         let at = |offset: DVec3| {
             let index = self.scene.index_from_scene.transform_point3(point + offset * edge);
             if seen.contains(index) { self.density(index) } else { outside }

@@ -26,26 +26,44 @@ impl Reference<'_> {
         self.remaining(&[CutEffect::Removed, CutEffect::Shadowless])
     }
 
-    fn remaining(&self, effects: &[CutEffect]) -> Remaining {
+    /// Where what the eye sees ends: at cuts, and at the grid's own faces.
+    pub(super) fn faces(&self) -> Remaining {
+        let crop = &self.settings.cuts.crop;
+        let is_cropped = crop.on && crop.effect != CutEffect::Shadowless;
+        let mut bounds = self.seen().bounds;
+        for axis in 0..3 {
+            if !(is_cropped && crop.low[axis] > 0.0) {
+                bounds.push(self.face(axis, -1.0, -0.5));
+            }
+            if !(is_cropped && crop.high[axis] < 1.0) {
+                bounds.push(self.face(axis, 1.0, self.scene.dims[axis] as f64 - 0.5));
+            }
+        }
+        Remaining { bounds }
+    }
+
+    /// The half-space within a face across an axis of index space, which lies `at` that coordinate and looks along the
+    /// axis or against it.
+    fn face(&self, axis: usize, outward: f64, at: f64) -> (DVec3, f64) {
         let to_scene = |index: DVec3| self.scene.scene_from_index.transform_point3(index);
+        // A face is spanned by the two other axes, and may be no right angle to its own.
+        let side = |k: usize| to_scene(DVec3::AXES[(axis + k) % 3]) - to_scene(DVec3::ZERO);
+        let across = side(1).cross(side(2)).normalize();
+        let normal = across * across.dot(side(0)).signum() * outward;
+        (normal, normal.dot(to_scene(DVec3::AXES[axis] * at)))
+    }
+
+    fn remaining(&self, effects: &[CutEffect]) -> Remaining {
         let CropBox { on, low, high, effect } = &self.settings.cuts.crop;
         let mut bounds = Vec::new();
         if *on && effects.contains(effect) {
             for axis in 0..3 {
                 let n = self.scene.dims[axis] as f64;
-                // A face is spanned by the two other axes, and may be no right angle to its own.
-                let side = |k: usize| to_scene(DVec3::AXES[(axis + k) % 3]) - to_scene(DVec3::ZERO);
-                let across = side(1).cross(side(2)).normalize();
-                let up = across * across.dot(side(0)).signum();
-                let mut face = |normal: DVec3, share: f64| {
-                    let at = to_scene(DVec3::AXES[axis] * (share * n - 0.5));
-                    bounds.push((normal, normal.dot(at)));
-                };
                 if low[axis] > 0.0 {
-                    face(-up, low[axis]);
+                    bounds.push(self.face(axis, -1.0, low[axis] * n - 0.5));
                 }
                 if high[axis] < 1.0 {
-                    face(up, high[axis]);
+                    bounds.push(self.face(axis, 1.0, high[axis] * n - 0.5));
                 }
             }
         }

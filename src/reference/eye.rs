@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::Reference;
 use super::back_project::Attenuation;
+use super::cut::Remaining;
 use super::shade::{Sampled, Shader};
 use super::sheet::{Cutting, Sample, Stack};
 use crate::model::{BakedTransfer, Classification, THIN_SLABS};
@@ -40,7 +41,7 @@ impl Reference<'_> {
     pub fn picture(&self, size: [u32; 2], attenuations: &[Option<Attenuation>]) -> Vec<[f64; 4]> {
         let frame = self.eye_frame(size);
         let stack = self.eye_stack(&frame);
-        let seen = self.seen();
+        let faces = self.faces();
         let shader = Shader::new(self, attenuations);
         if self.settings.has_slabs_by_need() {
             return self.picture_by_need(&stack, &shader);
@@ -74,8 +75,7 @@ impl Reference<'_> {
                     };
                     let density = density(pixel, k, sample.point, level);
                     // Faces look to where the solid ends, whichever way its opacity runs.
-                    let gradient =
-                        gradient + self.face_gradient(&seen, sample.point, level) * shader.turned(density);
+                    let gradient = gradient + self.ends(&faces, sample.point, level) * shader.turned(density);
                     let color =
                         shader.color(&Sampled { point: sample.point, density, gradient, level }, sample.rgb);
                     let opacity = -(-sample.optical_depth).exp_m1();
@@ -87,6 +87,11 @@ impl Reference<'_> {
             });
         }
         rays.into_iter().map(|[r, g, b, transmittance]| [r, g, b, 1.0 - transmittance]).collect()
+    }
+
+    /// The gradient that ends of solids have of their own: at faces, and where voxels are missing.
+    fn ends(&self, faces: &Remaining, point: DVec3, level: f64) -> DVec3 {
+        self.face_gradient(faces, point, level) + self.missing_gradient(point, level)
     }
 
     fn eye_stack<'r>(&'r self, frame: &'r SheetFrame) -> Stack<'r> {
@@ -165,7 +170,7 @@ impl Reference<'_> {
         let found = stack.sample_of(ray.pixel, middle, f64::from(width), table.sample(density));
         let Some(Sample { point, rgb, optical_depth }) = found else { return };
         let level = stack.frame.stretch_level(stack.frame.depth_of(middle));
-        let faces: DVec3 = self.face_gradient(&self.seen(), point, level);
+        let faces: DVec3 = self.ends(&self.faces(), point, level);
         let gradient = shader.gradient(point, level) + faces * shader.turned(density);
         let color = shader.color(&Sampled { point, density, gradient, level }, rgb);
         let opacity = -(-optical_depth).exp_m1();

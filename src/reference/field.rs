@@ -7,13 +7,24 @@ use crate::data::Volume;
 /// How a number is rounded when it is stored; for the GPU's half floats, f32 → f16 → f32.
 pub type Rounding = fn(f32) -> f32;
 
-/// The densities of a volume. Outside its grid the density is 0.
+/// The densities of a volume, or other numbers on its grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
     /// One density per voxel, x fastest.
     pub densities: Vec<f64>,
+    /// What is beyond the grid.
+    pub beyond: Beyond,
+}
+
+/// What lies beyond a grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beyond {
+    /// The border again.
+    Border,
+    /// 0.
+    Nothing,
 }
 
 impl Field {
@@ -24,18 +35,30 @@ impl Field {
             .flat_map(|z| volume.slice_densities(z))
             .map(|density| f64::from(round(density)))
             .collect();
-        Self { dims, densities }
+        Self { dims, densities, beyond: Beyond::Border }
     }
 
-    /// The density of one voxel; 0 outside the grid.
+    /// 1 where a voxel is there and 0 where it is missing, if any is.
+    pub(super) fn of_presence(volume: &Volume) -> Option<Self> {
+        let missing = volume.missing()?;
+        let there = |voxel| if missing.contains(voxel) { 0.0 } else { 1.0 };
+        let densities = (0..volume.voxel_count()).map(there).collect();
+        Some(Self { dims: volume.dims(), densities, beyond: Beyond::Nothing })
+    }
+
+    /// The density of one voxel, or of what is beyond the grid.
     pub fn at(&self, x: i64, y: i64, z: i64) -> f64 {
-        let inside = |c: i64, n: usize| (0..n as i64).contains(&c);
-        let [nx, ny, nz] = self.dims;
-        if inside(x, nx) && inside(y, ny) && inside(z, nz) {
-            self.densities[x as usize + nx * (y as usize + ny * z as usize)]
-        } else {
-            0.0
+        if self.beyond == Beyond::Nothing && !self.has(x, y, z) {
+            return 0.0;
         }
+        let nearest = |c: i64, n: usize| c.clamp(0, n as i64 - 1) as usize;
+        let [nx, ny, nz] = self.dims;
+        self.densities[nearest(x, nx) + nx * (nearest(y, ny) + ny * nearest(z, nz))]
+    }
+
+    /// Whether a voxel is in the grid.
+    pub(super) fn has(&self, x: i64, y: i64, z: i64) -> bool {
+        [x, y, z].iter().zip(self.dims).all(|(c, n)| (0..n as i64).contains(c))
     }
 }
 

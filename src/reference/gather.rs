@@ -43,20 +43,35 @@ fn weights(profile: &Profile, point: DVec3) -> [[f64; 4]; 3] {
 
 /// Σ ρ(v) · w(v) with these weights along each axis.
 fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f64 {
-    neighbours(reference, point, weights).map(|(weight, density)| weight * density).sum()
+    neighbours(reference, point, weights).map(|tap| tap.weight * tap.density).sum()
 }
 
-/// (w(v), ρ(v)) of the 4³ voxels around a point.
+/// A voxel near a point.
+struct Tap {
+    /// w(v).
+    weight: f64,
+    /// ρ(v).
+    density: f64,
+    /// Whether it is a voxel of the grid, and not its border's repetition.
+    is_there: bool,
+}
+
+/// The 4³ voxels around a point.
 fn neighbours(
     reference: &Reference<'_>,
     point: DVec3,
     [wx, wy, wz]: [[f64; 4]; 3],
-) -> impl Iterator<Item = (f64, f64)> {
+) -> impl Iterator<Item = Tap> {
     let [x, y, z] = point.floor().to_array().map(|c| c as i64 - 1);
     (0..64).map(move |at| {
         let [dx, dy, dz] = [at % 4, at / 4 % 4, at / 16];
-        let density = reference.field.at(x + dx as i64, y + dy as i64, z + dz as i64);
-        (wx[dx] * wy[dy] * wz[dz], density)
+        let voxel = [x + dx as i64, y + dy as i64, z + dz as i64];
+        let [x, y, z] = voxel;
+        Tap {
+            weight: wx[dx] * wy[dy] * wz[dz],
+            density: reference.field.at(x, y, z),
+            is_there: reference.field.has(x, y, z),
+        }
     })
 }
 
@@ -70,16 +85,25 @@ pub(super) fn material(
     level: f64,
 ) -> [f64; 4] {
     let level = level.clamp(0.0, MAX_LEVEL as f64);
-    let blurred = |level: f64| associated(table.sample(reference.pyramid.fetch(point, level)));
+    let blurred = |level: f64| {
+        let there = reference.presence(profile, point, level);
+        associated(table.sample(reference.pyramid.fetch(point, level))).map(|channel| channel * there)
+    };
     if level >= 1.0 {
         return blurred(level);
     }
     let mut narrow = [0.0; 4];
-    for (weight, density) in neighbours(reference, point, weights(profile, point)) {
-        let voxel = associated(table.sample(density));
+    let taps = neighbours(reference, point, weights(profile, point));
+    // Where voxels are missing others stand in for them, and the sum fades with what is there.
+    let has_missing = reference.presence.is_some();
+    for tap in taps.filter(|tap| tap.is_there || has_missing) {
+        let voxel = associated(table.sample(tap.density));
         for (sum, value) in narrow.iter_mut().zip(voxel) {
-            *sum += weight * value;
+            *sum += tap.weight * value;
         }
+    }
+    if has_missing {
+        narrow = narrow.map(|channel| channel * reference.presence(profile, point, 0.0));
     }
     if level == 0.0 {
         return narrow;

@@ -10,6 +10,7 @@
 //! |---|---|---|
 //! | prefiltered volume and its pyramid | `pyramid` | [`Reference::density`] |
 //! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
+//! | what is there at all | `presence` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | crop box and clip plane | `cut` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
@@ -26,6 +27,7 @@ mod footprint;
 mod gather;
 mod kernel;
 mod light;
+mod presence;
 mod pyramid;
 mod shade;
 mod shadow_ray;
@@ -104,6 +106,8 @@ pub struct Reference<'a> {
     range: ValueRange,
     field: Field,
     pyramid: Pyramid,
+    /// The share of kernels that lies on voxels that are there, where some are missing.
+    presence: Option<Pyramid>,
 }
 
 impl<'a> Reference<'a> {
@@ -111,7 +115,20 @@ impl<'a> Reference<'a> {
     pub fn new(volume: &Volume, settings: &'a Settings, options: Options) -> Self {
         let field = Field::with_rounding(volume, options.rounding.unwrap_or(|density| density));
         let pyramid = Pyramid::of(&field, kernel_width(options.fault), options.rounding);
-        Self { settings, options, scene: volume.scene(), range: volume.value_range(), field, pyramid }
+        // Stored in eight bits.
+        let presence = Field::of_presence(volume).map(|field| {
+            let presence = Pyramid::of(&field, kernel_width(options.fault), None);
+            if options.rounding.is_some() { presence.in_steps(255.0) } else { presence }
+        });
+        Self {
+            settings,
+            options,
+            scene: volume.scene(),
+            range: volume.value_range(),
+            field,
+            pyramid,
+            presence,
+        }
     }
 
     /// The density at an index-space point as the GPU gathers it, with the kernel stretched

@@ -40,6 +40,14 @@ impl Pyramid {
         Self { levels }
     }
 
+    /// The same, stored in so many steps from 0 to 1.
+    pub(super) fn in_steps(mut self, steps: f64) -> Self {
+        for value in self.levels.iter_mut().flat_map(|level| &mut level.values) {
+            *value = (*value * steps).round() / steps;
+        }
+        self
+    }
+
     /// The value at an index-space point: trilinear in the two levels around `level`, linear
     /// between them.
     pub fn fetch(&self, point: DVec3, level: f64) -> f64 {
@@ -104,10 +112,12 @@ fn texels(dims: [usize; 3], value: impl Fn([usize; 3]) -> f64 + Sync) -> Vec<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reference::field::Beyond;
 
     #[test]
     fn every_level_keeps_the_sum_and_the_place_and_widens_the_kernel_as_it_should() {
-        let mut field = Field { dims: [24; 3], densities: vec![0.0; 24 * 24 * 24] };
+        let densities = vec![0.0; 24 * 24 * 24];
+        let mut field = Field { dims: [24; 3], densities, beyond: Beyond::Border };
         field.densities[11 + 24 * (12 + 24 * 12)] = 1.0;
         let pyramid = Pyramid::of(&field, 1.0, None);
         // All phases: sample finely along x through the sums over y and z.

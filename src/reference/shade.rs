@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::back_project::Attenuation;
 use super::cut::Remaining;
+use super::kernel::Profile;
 use super::pyramid::MAX_LEVEL;
 use super::shadow_ray::ShadowRays;
 use super::{Fault, Reference, gather};
@@ -20,6 +21,8 @@ pub(super) struct Shader<'r> {
     opacity_unit: f64,
     /// What light meets.
     lighting: BakedTransfer,
+    /// The kernel of the picture.
+    profile: Profile,
     remaining: Remaining,
     /// See [`sides`]; evenly over densities 0 … 1.
     sides: Vec<f64>,
@@ -95,6 +98,7 @@ impl<'r> Shader<'r> {
             lamps: settings.lights.iter().enumerate().filter(|(_, light)| light.on).map(lamp).collect(),
             opacity_unit: settings.opacity_unit.in_scene(&reference.scene).max(1e-9),
             lighting: settings.baked_lighting(reference.range, &reference.scene),
+            profile: reference.profile(settings.sampling.kernel),
             remaining: reference.shading(),
             sides: sides(&settings.baked_eye(reference.range, &reference.scene)),
         }
@@ -185,7 +189,8 @@ impl<'r> Shader<'r> {
             let length = width.min(distance - way);
             let middle = at(way + 0.5 * length);
             let extinction = self.lighting.sample(self.reference.pyramid.fetch(middle, sample.level))[3];
-            depth += extinction * self.reference.share_that_shades(&self.remaining, middle) * length;
+            let there = self.reference.presence(&self.profile, middle, sample.level);
+            depth += there * extinction * self.reference.share_that_shades(&self.remaining, middle) * length;
             way += length;
         }
         (-depth * lamp.light.density_scale).exp() * volume.at(at(way))

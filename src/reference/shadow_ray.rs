@@ -78,8 +78,13 @@ impl<'r> ShadowRays<'r> {
                     let at = point + forward * (middle + offset * length) + reference.kernel_shift();
                     gather::density(reference, &self.profile, at, 0.0)
                 };
+                let there = |offset: &f64| {
+                    let at = point + forward * (middle + offset * length) + reference.kernel_shift();
+                    reference.presence(&self.profile, at, 0.0)
+                };
+                let there = offsets.iter().map(there).sum::<f64>() / offsets.len() as f64;
                 let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
-                let share = reference.share_that_shades(&self.remaining, at);
+                let share = there * reference.share_that_shades(&self.remaining, at);
                 share * self.table.sample(density)[3] * length * self.light.density_scale
             })
             .sum();

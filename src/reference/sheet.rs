@@ -11,6 +11,9 @@ use super::{Fault, Reference, Weights, footprint, gather};
 use crate::model::{BakedTransfer, Classification, Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
+/// What sums over the voxels that are there are divided by at least: so little is there below that nobody sees it.
+const LEAST_PRESENCE: f64 = 1e-4;
+
 /// The sheets of one pass.
 pub(super) struct Stack<'r> {
     reference: &'r Reference<'r>,
@@ -53,13 +56,24 @@ impl<'r> Stack<'r> {
         Self { reference, frame, profile: reference.profile(kernel), quadrature, table, remaining }
     }
 
-    /// The mean densities of slab `k`, row by row; 0 outside the volume's support.
+    /// The mean densities of slab `k`, row by row; 0 outside the volume's support. What is splatted is divided by the
+    /// share of the kernels that lies on voxels: the mean of those that are there.
     pub(super) fn densities(&self, k: u32) -> Vec<f64> {
         let Self { reference, frame, profile, quadrature, .. } = self;
         match reference.weights() {
             weights @ (Weights::Footprint | Weights::Scatter) => {
                 let points = (weights == Weights::Scatter).then_some(*quadrature);
-                footprint::splat(&reference.field, frame, profile, points, reference.kernel_shift(), k)
+                let shift = reference.kernel_shift();
+                let sums = footprint::splat(&reference.field, frame, profile, points, shift, k);
+                let mean = |(pixel, sum): (usize, f64)| {
+                    let [i, j] = self.place_of(pixel as u32);
+                    let at = [i, j, f64::from(k)];
+                    let in_grid = reference.slab_mean_of(frame, *quadrature, at, |point, level| {
+                        reference.presence_in_grid(profile, point, level)
+                    });
+                    sum / in_grid.max(LEAST_PRESENCE)
+                };
+                sums.into_iter().enumerate().map(mean).collect()
             }
             Weights::Gather => {
                 let width = frame.size[0];
@@ -85,10 +99,16 @@ impl<'r> Stack<'r> {
             let channels: [Vec<f64>; 4] = std::array::from_fn(|channel| {
                 let of_voxel = |&density: &f64| gather::associated(table.sample(density))[channel];
                 let densities = field.densities.iter().map(of_voxel).collect();
-                let field = Field { dims: field.dims, densities };
+                let field = Field { dims: field.dims, densities, beyond: field.beyond };
                 footprint::splat(&field, frame, profile, points, reference.kernel_shift(), k)
             });
-            let material = |at: usize| gather::straight(std::array::from_fn(|channel| channels[channel][at]));
+            let material = |at: usize| {
+                let [i, j] = self.place_of(at as u32);
+                // Others stand in for voxels that are missing.
+                let there =
+                    if reference.presence.is_some() { self.presence_at([i, j, f64::from(k)]) } else { 1.0 };
+                gather::straight(std::array::from_fn(|channel| channels[channel][at] * there))
+            };
             return (0..self.pixel_count()).map(material).collect();
         }
         let width = frame.size[0];
@@ -133,6 +153,17 @@ impl<'r> Stack<'r> {
         let [i, j] = self.place_of(pixel);
         let point = self.material_at([i, j, k])?;
         let [r, g, b, extinction] = material;
+        // Voxels that are classified are there by themselves; what is gathered of them knows what is missing.
+        let there = match self.reference.settings.sampling.classification {
+            Classification::Post => self.presence_at([i, j, k]),
+            Classification::Pre => 1.0,
+        };
+        let optical_depth = there * extinction * self.length_of([i, j, k], width, point);
+        (optical_depth > 0.0).then_some(Sample { point, rgb: [r, g, b], optical_depth })
+    }
+
+    /// How much of a ray's length in scene units is what remains of a slab, in whose middle a point lies.
+    fn length_of(&self, [i, j, k]: [f64; 3], width: f64, point: DVec3) -> f64 {
         let lengthening =
             if self.reference.options.fault == Fault::NoObliquity { 1.0 } else { self.frame.obliquity(i, j) };
         let share = match &self.remaining {
@@ -142,13 +173,21 @@ impl<'r> Stack<'r> {
             }
             Cutting::Shading(remaining) => self.reference.share_that_shades(remaining, point),
         };
-        let optical_depth = share * extinction * width * self.frame.slab * lengthening;
-        (optical_depth > 0.0).then_some(Sample { point, rgb: [r, g, b], optical_depth })
+        share * width * self.frame.slab * lengthening
     }
 
-    /// Whether anything of slab `k` can be there on a pixel's ray, whatever the density.
+    /// The share of the material of slab `k` that is there.
+    fn presence_at(&self, at: [f64; 3]) -> f64 {
+        let Self { reference, frame, profile, quadrature, .. } = self;
+        reference
+            .slab_mean_of(frame, *quadrature, at, |point, level| reference.presence(profile, point, level))
+    }
+
+    /// Whether cuts leave anything of slab `k` on a pixel's ray.
     pub(super) fn remains(&self, pixel: u32, k: u32) -> bool {
-        self.sample(pixel, k, [0.0, 0.0, 0.0, 1.0]).is_some()
+        let [i, j] = self.place_of(pixel);
+        let at = [i, j, f64::from(k)];
+        self.material_at(at).is_some_and(|point| self.length_of(at, 1.0, point) > 0.0)
     }
 
     /// The density with the GPU's weights in the middle of slab `k` on the ray of pixel (i, j); 0 outside the

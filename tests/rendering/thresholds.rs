@@ -25,6 +25,14 @@ pub(crate) const RAY_BEER_LAMBERT: f64 = 1e-3;
 /// Opacity of a homogeneous chord, absolute.
 pub(crate) const CHORD_OPACITY: f64 = 2e-3;
 
+/// The opacity beside the face of a volume of one value, absolute: as that of chords, and slabs of half a voxel across
+/// faces that lie along the ray.
+pub(crate) const EDGE_PROFILE: f64 = 4e-3;
+
+/// A signed wave against the negative one: the ends of a range of 16-bit numbers are not symmetrical around its middle,
+/// and table entries lie beside the control points of either lobe, by 1/1023 of the range.
+pub(crate) const LOBES: Limit = Limit { max: 4.0 / 255.0, rmse: 0.5 / 255.0 };
+
 /// Change of the picture's mean when slabs become four times thinner, relative.
 pub(crate) const SLAB_MEAN_CHANGE: f64 = 0.005;
 

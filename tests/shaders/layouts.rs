@@ -177,6 +177,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 combined_lookup,
                 pad0,
                 seen,
+                faces,
                 shading_cut,
                 lights
             }),

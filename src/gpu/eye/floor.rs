@@ -40,7 +40,8 @@ pub(crate) fn draw(
     let Gpu { context, shaders, volume, .. } = gpu;
     let frame = eye.frame();
     let lights = LightCount { all: lit.all().len() as u32, shadowed: lit.shadowed().len() as u32 };
-    let pipeline = shaders.pipeline(&FloorVariant::of(settings, lights))?;
+    let variant = FloorVariant::of(settings, lights).with_missing(volume.has_missing());
+    let pipeline = shaders.pipeline(&variant)?;
     let tiles = pass::tiles([frame.size[0], rows.end - rows.start]);
     let runs = pass::runs(context, tiles);
     let uniform = uniforms::Floor {
@@ -80,6 +81,11 @@ impl FloorVariant {
     /// The floor under so many lights.
     pub(crate) fn of(settings: &Settings, lights: LightCount) -> Self {
         Self { rays: RaycastVariant::of(settings), lights }
+    }
+
+    /// The floor under a volume in which voxels are missing, or are not.
+    fn with_missing(self, has_missing: bool) -> Self {
+        Self { rays: self.rays.with_missing(has_missing), ..self }
     }
 }
 

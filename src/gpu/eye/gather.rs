@@ -12,7 +12,7 @@ use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{Context, GpuError, RenderOptions};
-use crate::math::SceneSpace;
+use crate::math::{Bounds, SceneSpace};
 use crate::model::{Classification, Deposit, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm};
 use crate::plan::picture_frame;
 use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
@@ -69,6 +69,7 @@ impl EyePass {
             combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
             pad0: 0.0,
             seen: uniforms::Cut::new(&remains.region(scene)),
+            faces: uniforms::Cut::new(&remains.region(scene).within(&Bounds::of_grid(scene.dims, 0.0))),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
             lights: packed,
         };
@@ -120,6 +121,11 @@ impl EyePass {
         gpu.volume.gradients_views.as_ref().map(|views| self.levels.choose(views))
     }
 
+    /// Whether pixels are wider than voxels somewhere.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.variant.is_stretched
+    }
+
     /// Levels of the pyramid that kernels reach.
     pub(crate) fn levels(&self) -> Levels {
         self.levels
@@ -138,7 +144,7 @@ impl EyePass {
     ) -> Result<(), GpuError> {
         let Gpu { context, shaders, .. } = gpu;
         let gradients = self.gradients(gpu);
-        let variant = self.variant.with_gradients(gradients.is_some());
+        let variant = self.variant.with_gradients(gradients.is_some()).with_missing(gpu.volume.has_missing());
         let pipeline = shaders.pipeline(&variant)?;
         let tiles = pass::tiles([self.frame.size[0], rows.end - rows.start]);
         let runs = pass::runs(context, tiles);
@@ -236,6 +242,12 @@ impl GatherVariant {
     /// The pass whose shadowed lights are combined in one volume, or are not.
     pub(crate) fn with_combined(mut self, is_combined: bool) -> Self {
         self.shading.is_combined = is_combined;
+        self
+    }
+
+    /// The pass over a volume in which voxels are missing, or are not.
+    pub(crate) fn with_missing(mut self, has_missing: bool) -> Self {
+        self.reconstruction = self.reconstruction.with_missing(has_missing);
         self
     }
 

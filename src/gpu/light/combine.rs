@@ -6,7 +6,7 @@ use super::packed::{LightInput, light_bind_group};
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant};
+use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::Tables;
@@ -19,7 +19,11 @@ pub(crate) const BRICKS_PER_STEP: usize = 2048;
 
 /// What tells one pipeline that combines lights from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct CombineVariant(ShadingVariant);
+struct CombineVariant {
+    shading: ShadingVariant,
+    /// Voxels are missing.
+    has_missing: bool,
+}
 
 impl Variant for CombineVariant {
     fn shader(&self) -> &'static str {
@@ -27,7 +31,9 @@ impl Variant for CombineVariant {
     }
 
     fn constants(&self) -> Constants {
-        self.0.constants()
+        let mut constants = self.shading.constants();
+        constants.push(flag("MISSING", self.has_missing));
+        constants
     }
 }
 
@@ -83,8 +89,8 @@ impl CombinedLight {
         }
         let attenuation: Vec<_> =
             lights.iter().filter_map(|input| input.volume).map(|volume| &volume.view).collect();
-        let Gpu { shaders, .. } = gpu;
-        let pipeline = shaders.pipeline(&CombineVariant(shading))?;
+        let Gpu { shaders, volume, .. } = gpu;
+        let pipeline = shaders.pipeline(&CombineVariant { shading, has_missing: volume.has_missing() })?;
         let eye = gpu.uniform("Combine::eye", eye);
         let uniform = uniforms::Combine {
             dims: self.dims.map(|n| n as u32),

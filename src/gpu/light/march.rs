@@ -112,6 +112,12 @@ impl MarchVariant {
             deposit: shadows.deposit,
         }
     }
+
+    /// The march through a volume in which voxels are missing, or are not.
+    pub(crate) fn with_missing(mut self, has_missing: bool) -> Self {
+        self.reconstruction = self.reconstruction.with_missing(has_missing);
+        self
+    }
 }
 
 impl Variant for MarchVariant {
@@ -174,7 +180,8 @@ pub(crate) fn march(
     }
     // Slabs near a perspective light have narrower pixels than those behind.
     let is_stretched = view.frame.max_stretch_level_of(slabs.clone()) > 0.0;
-    let pipeline = shaders.pipeline(&MarchVariant::of(settings, is_stretched))?;
+    let pipeline =
+        shaders.pipeline(&MarchVariant::of(settings, is_stretched).with_missing(volume.has_missing()))?;
     let cut = settings.cuts.shading().region(&volume.scene);
     let count = tiles.len() as u32;
     let uniform = uniforms::March { tiles: count, ..march_uniform(light, &cut, view, sheets, slabs) };

@@ -35,6 +35,12 @@ impl RaycastVariant {
             is_cut: is_cut(settings.cuts.shading()),
         }
     }
+
+    /// Rays through a volume in which voxels are missing, or are not.
+    pub(crate) fn with_missing(mut self, has_missing: bool) -> Self {
+        self.reconstruction = self.reconstruction.with_missing(has_missing);
+        self
+    }
 }
 
 impl Variant for RaycastVariant {
@@ -63,7 +69,8 @@ pub(crate) fn raycast(
         return Ok(());
     }
     let Gpu { shaders, volume, .. } = gpu;
-    let pipeline = shaders.pipeline_into(&RaycastVariant::of(settings), target.texture.format())?;
+    let variant = RaycastVariant::of(settings).with_missing(volume.has_missing());
+    let pipeline = shaders.pipeline_into(&variant, target.texture.format())?;
     let uniform = uniforms::Raycast {
         light: pack_light(light, Some(target), &volume.scene, settings),
         space: uniforms::Space::new(&volume.scene),

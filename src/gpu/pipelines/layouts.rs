@@ -14,6 +14,7 @@ const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;
 const GRID: Slot = Slot::uniform::<uniforms::Grid>(0, "bound_grid");
 const PYRAMID_TEXTURE: Slot = Slot::sampled(2, "pyramid_texture", Shape::Volume);
 const CLAMPED: Slot = Slot::sampler(3, "clamped");
+const PRESENCE_TEXTURE: Slot = Slot::sampled(9, "presence_texture", Shape::Volume);
 
 /// Density, with a pyramid for kernels that perspective stretches.
 const VOLUME: &[Slot] = &[
@@ -22,10 +23,11 @@ const VOLUME: &[Slot] = &[
     PYRAMID_TEXTURE,
     CLAMPED,
     Slot::sampler(4, "nearest"),
+    PRESENCE_TEXTURE,
 ];
 
 /// The pyramid alone.
-const PYRAMID: &[Slot] = &[GRID, PYRAMID_TEXTURE, CLAMPED];
+const PYRAMID: &[Slot] = &[GRID, PYRAMID_TEXTURE, CLAMPED, PRESENCE_TEXTURE];
 
 /// Names of the light volumes, in the order of their lights.
 pub(crate) const ATTENUATION: [&str; 8] = [
@@ -181,7 +183,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
         "scatter/eye.wgsl",
         &[
             &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume), LIGHTING_TABLE, GRADIENTS],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS, PRESENCE_TEXTURE],
             LIGHTS,
         ],
     ),
@@ -196,7 +198,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::list(5, "splats", 4, Access::ReadWrite),
                 Slot::list(6, "voxels", 4, Access::Read),
             ],
-            &[CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS],
+            &[GRID, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE],
             LIGHTS,
             &[Slot::uniform::<uniforms::Phase>(0, "bound_phase")],
         ],
@@ -212,7 +214,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::target(4, "ring", Shape::Sheets, Format::Ring),
                 Slot::list(5, "deposits", 16, Access::ReadWrite),
             ],
-            &[SCATTER, SHEETS],
+            &[GRID, CLAMPED, SCATTER, SHEETS, PRESENCE_TEXTURE],
         ],
     ),
     (

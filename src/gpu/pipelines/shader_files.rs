@@ -19,6 +19,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "density/gradient.wgsl",
     "density/kernel.wgsl",
     "density/kernel_gradient.wgsl",
+    "density/presence.wgsl",
     "density/stored_gradient.wgsl",
     "density/table.wgsl",
     "density/volume.wgsl",

@@ -325,6 +325,7 @@ pub struct Eye {
     pub combined_lookup: [f32; 3],
     pub pad0: f32,
     pub seen: Cut,
+    pub faces: Cut,
     pub shading_cut: Cut,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }

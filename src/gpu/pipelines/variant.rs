@@ -57,22 +57,34 @@ impl From<Kernel> for KernelVariant {
 pub(crate) struct Reconstruction {
     pub kernel: KernelVariant,
     pub quadrature: Quadrature,
+    /// Voxels are missing.
+    pub has_missing: bool,
 }
 
 impl Reconstruction {
-    /// With a kernel and its quadrature along the ray.
+    /// With a kernel and its quadrature along the ray, of a volume whose voxels are all there.
     pub(crate) fn new(kernel: Kernel, quadrature: Quadrature) -> Self {
-        Self { kernel: kernel.into(), quadrature }
+        Self { kernel: kernel.into(), quadrature, has_missing: false }
     }
 
-    /// `KERNEL`, `SIGMA` and `QUADRATURE`.
+    /// Of a volume in which voxels are missing, or are not.
+    pub(crate) fn with_missing(self, has_missing: bool) -> Self {
+        Self { has_missing, ..self }
+    }
+
+    /// `KERNEL`, `SIGMA`, `QUADRATURE` and `MISSING`.
     pub(crate) fn constants(self) -> Constants {
         let (code, sigma) = match self.kernel {
             KernelVariant::BSpline => (0.0, 0.6),
             KernelVariant::Gaussian { sigma_bits } => (1.0, f64::from_bits(sigma_bits)),
             KernelVariant::Prefiltered => (2.0, 0.6),
         };
-        vec![("KERNEL", code), ("SIGMA", sigma), ("QUADRATURE", self.quadrature.offsets().len() as f64)]
+        vec![
+            ("KERNEL", code),
+            ("SIGMA", sigma),
+            ("QUADRATURE", self.quadrature.offsets().len() as f64),
+            flag("MISSING", self.has_missing),
+        ]
     }
 }
 

@@ -9,7 +9,7 @@ use crate::data::BRICK_EDGE;
 use crate::gpu::eye::gather::{EyePass, SamplingVariant};
 use crate::gpu::light::packed::light_bind_group;
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
-use crate::gpu::pipelines::variant::{Constants, Only, ShadingVariant, Variant};
+use crate::gpu::pipelines::variant::{Constants, Only, ShadingVariant, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
@@ -27,6 +27,8 @@ struct ScatterEyeVariant {
     shading: ShadingVariant,
     sampling: SamplingVariant,
     sheets: ScatterVariant,
+    /// Pixels are wider than voxels somewhere.
+    is_stretched: bool,
 }
 
 impl Variant for ScatterEyeVariant {
@@ -37,7 +39,8 @@ impl Variant for ScatterEyeVariant {
     fn constants(&self) -> Constants {
         let mut constants = self.shading.constants();
         constants.extend(self.sampling.constants());
-        constants.extend(self.sheets.sheet_constants());
+        constants.extend(self.sheets.constants());
+        constants.push(flag("STRETCH", self.is_stretched));
         constants
     }
 }
@@ -137,6 +140,7 @@ impl EyeScatter {
             shading: eye.shading_variant(),
             sampling: eye.sampling_variant(gradients.is_some()),
             sheets: self.scatterer.variant(),
+            is_stretched: eye.is_stretched(),
         };
         let pipeline = shaders.pipeline(&variant)?;
         let own = pass::bind(
@@ -178,6 +182,7 @@ impl EyeScatter {
                 &[
                     buffer("bound_grid", &grid),
                     view_of("pyramid_texture", eye.levels().choose(&volume.pyramid_views)),
+                    view_of("presence_texture", gpu.presence(eye.levels())),
                     sampler("clamped", &volume.clamped),
                     buffer("bound_scatter", &slab),
                     buffer("sheets", &self.scatterer.sheets),

@@ -7,12 +7,12 @@ use crate::data::BRICK_EDGE;
 use crate::gpu::GpuError;
 use crate::gpu::eye::gather::EyePass;
 use crate::gpu::light::packed::light_bind_group;
-use crate::gpu::pipelines::binding::{buffer, sampler};
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::uniforms::Phase;
 use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
+use crate::gpu::volume::{Gpu, Levels};
 
 /// What tells one pipeline that composites footprints from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -124,12 +124,15 @@ impl Footprints {
         );
         let uniform: uniforms::Scatter = scatterer.uniform(k, 1.0);
         let slab = context.buffer("Footprints::slice", &[uniform], wgpu::BufferUsages::UNIFORM);
+        let grid = gpu.uniform("Volume::grid", gpu.volume.grid(0));
         let shared = pass::bind(
             context,
             "Footprints::rays",
             &pipeline,
             1,
             &[
+                buffer("bound_grid", &grid),
+                view_of("presence_texture", gpu.presence(Levels::Finest)),
                 buffer("bound_scatter", &slab),
                 buffer("footprint_table", scatterer.footprints()),
                 buffer("rays", rays),

@@ -4,16 +4,16 @@
 use std::ops::Range;
 
 use super::eye::splatted_bricks;
-use super::splat::{Scatterer, Splat, Splatting, sums};
+use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums};
 use super::voxels::Scattering;
 use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, march_uniform};
 use crate::gpu::light::volume::LightVolume;
-use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::variant::{Constants, Only, Variant, deposit_constant, flag, is_cut};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
 use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
+use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Classification, Deposit, SceneLight, Settings, SheetOrder};
 use crate::plan::{BrickSet, LightView, scatter_reach_bricks};
@@ -23,7 +23,9 @@ use crate::plan::{BrickSet, LightView, scatter_reach_bricks};
 struct ScatterMarchVariant {
     is_cut: bool,
     deposit: Deposit,
-    splat: Splat,
+    sheets: ScatterVariant,
+    /// Pixels are wider than voxels somewhere.
+    is_stretched: bool,
     /// Bricks around a sample's own that it sees.
     dilation: i32,
 }
@@ -34,12 +36,15 @@ impl Variant for ScatterMarchVariant {
     }
 
     fn constants(&self) -> Constants {
-        vec![
+        let mut constants = self.sheets.reconstruction.constants();
+        constants.extend([
             flag("CUT", self.is_cut),
+            flag("STRETCH", self.is_stretched),
             deposit_constant(self.deposit),
-            self.splat.constant(),
+            self.sheets.splat.constant(),
             ("DILATION", f64::from(self.dilation)),
-        ]
+        ]);
+        constants
     }
 }
 
@@ -128,7 +133,8 @@ impl LightScatter {
         let pipeline = shaders.pipeline(&ScatterMarchVariant {
             is_cut: is_cut(settings.cuts.shading()),
             deposit: settings.shadows.deposit,
-            splat: self.scatterer.variant().splat,
+            sheets: self.scatterer.variant(),
+            is_stretched: self.scatterer.widest() > 1.0,
             dilation: self.dilation,
         })?;
         let cut = settings.cuts.shading().region(&gpu.volume.scene);
@@ -137,6 +143,8 @@ impl LightScatter {
         let mut entries = sheets.march_entries(&uniform, table, &self.distances).to_vec();
         entries.push(buffer("deposits", &self.deposits));
         let own = pass::bind(context, "LightScatter::march", &pipeline, 0, &entries);
+        let grid = gpu.uniform("Volume::grid", gpu.volume.grid(0));
+        let levels = Levels::of(self.scatterer.widest() > 1.0);
         for k in slabs {
             if self.scatterer.is_filled(k) {
                 self.scatterer.splat(gpu, scattering, k, encoder)?;
@@ -147,7 +155,13 @@ impl LightScatter {
                 "LightScatter::sheets",
                 &pipeline,
                 1,
-                &[buffer("bound_scatter", &slab), buffer("sheets", &self.scatterer.sheets)],
+                &[
+                    buffer("bound_grid", &grid),
+                    view_of("presence_texture", gpu.presence(levels)),
+                    sampler("clamped", &gpu.volume.clamped),
+                    buffer("bound_scatter", &slab),
+                    buffer("sheets", &self.scatterer.sheets),
+                ],
             );
             pass::dispatch(
                 encoder,

@@ -174,7 +174,7 @@ impl Scatterer {
         Ok(Self {
             frame: frame.clone(),
             variant: ScatterVariant {
-                reconstruction: Reconstruction::new(kernel, quadrature),
+                reconstruction: Reconstruction::new(kernel, quadrature).with_missing(volume.has_missing()),
                 order,
                 splat: what,
             },

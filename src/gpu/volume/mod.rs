@@ -1,14 +1,22 @@
-//! The volume on the GPU: density with a border of nothing, and the pyramid made from it.
+//! The volume on the GPU: density with its border once more around it, and the pyramid made from it.
 
 pub(super) mod gradients;
 pub(super) mod listed_bricks;
 pub(super) mod prefilter;
+pub(super) mod presence;
+mod textures;
 pub(super) mod transfer_tables;
+
+#[cfg(feature = "testing")]
+pub use textures::stored_density;
+pub(crate) use textures::{texture_3d, textures};
 
 use std::sync::Arc;
 
 use half::f16;
 
+use self::presence::Presence;
+use self::textures::{Textures, density_is_unorm, padded, unorm16};
 use super::resources::pool::ResourcePool;
 use super::resources::tools::Tools;
 use super::{Context, GpuError};
@@ -16,13 +24,9 @@ use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
 use crate::gpu::pipelines::binding::{Named, Pipeline, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms::Grid;
 use crate::math::SceneSpace;
-use crate::plan::MAX_STRETCH_LEVEL;
 
-/// Voxels of nothing before the data in the pyramid: one texel of its coarsest level.
+/// Voxels before the data in the pyramid, which repeat its border: one texel of its coarsest level.
 const PYRAMID_PADDING: usize = 4;
-
-/// Voxels along an axis: brick coordinates are packed into ten bits each, and the pyramid has a brick more.
-const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
 
 /// Upload block: small enough that one takes a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;
@@ -89,6 +93,7 @@ impl Gpu<'_> {
             &[
                 buffer("bound_grid", &grid),
                 view_of("pyramid_texture", &volume.pyramid_views.all),
+                view_of("presence_texture", self.presence(Levels::All)),
                 sampler("clamped", &volume.clamped),
             ],
         )
@@ -106,10 +111,16 @@ impl Gpu<'_> {
                 buffer("bound_grid", &grid),
                 view_of("density_texture", &volume.density_view),
                 view_of("pyramid_texture", levels.choose(&volume.pyramid_views)),
+                view_of("presence_texture", self.presence(levels)),
                 sampler("clamped", &volume.clamped),
                 sampler("nearest", &volume.nearest),
             ],
         )
+    }
+
+    /// The texture of what is there where voxels are missing, or what is bound in its place.
+    pub(crate) fn presence(&self, levels: Levels) -> &wgpu::TextureView {
+        self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
     }
 }
 
@@ -168,6 +179,8 @@ pub(crate) struct GpuVolume {
     pub density_view: wgpu::TextureView,
     pub pyramid: wgpu::Texture,
     pub pyramid_views: LevelViews,
+    /// What is there, where voxels are missing.
+    presence: Option<Presence>,
     /// The bricks of its levels that hold anything.
     pub filled_levels: Vec<Vec<u32>>,
     /// Gradients of the pyramid, while memory allows.
@@ -191,7 +204,7 @@ impl GpuVolume {
         bricks: &Arc<Bricks>,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        let (density, pyramid) = textures(context, volume, dims)?;
+        let Textures { density, pyramid, presence } = textures(context, volume, dims)?;
         let padded = padded(dims);
         let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
         let grid = Grid {
@@ -216,6 +229,7 @@ impl GpuVolume {
             gradients,
             pyramid_views: LevelViews::new(&pyramid),
             pyramid,
+            presence,
             clamped: context.sampler("Volume::clamped"),
             nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("Volume::nearest"),
@@ -232,36 +246,56 @@ impl GpuVolume {
         (UPLOAD_BYTES / (nx * ny * 2)).max(1)
     }
 
-    /// Uploads some z-slices.
+    /// Uploads some z-slices, each with a voxel more on either side of its rows and columns; the first and the last slice
+    /// also once more before and behind them.
     pub(crate) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
         use rayon::prelude::*;
-        let [nx, ny, _] = self.volume.dims();
+        let [nx, ny, nz] = self.volume.dims();
         let encode =
             |density: f32| if self.unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
-        let words: Vec<u16> = slices
-            .clone()
+        let first = if slices.start == 0 { 0 } else { slices.start + 1 };
+        let end = if slices.end == nz { nz + 2 } else { slices.end + 1 };
+        // What a texel of padding repeats.
+        let voxel = |texel: usize, n: usize| texel.saturating_sub(1).min(n - 1);
+        let words: Vec<u16> = (first..end)
             .into_par_iter()
-            .flat_map_iter(|z| self.volume.slice_densities(z).into_iter().map(encode))
+            .flat_map_iter(|z| {
+                let slice: Vec<u16> =
+                    self.volume.slice_densities(voxel(z, nz)).into_iter().map(encode).collect();
+                let mut padded = Vec::with_capacity((nx + 2) * (ny + 2));
+                for y in 0..ny + 2 {
+                    let row = &slice[voxel(y, ny) * nx..][..nx];
+                    padded.push(row[0]);
+                    padded.extend_from_slice(row);
+                    padded.push(row[nx - 1]);
+                }
+                padded
+            })
             .collect();
+        let (width, height) = (nx as u32 + 2, ny as u32 + 2);
         context.queue.write_texture(
             wgpu::TexelCopyTextureInfo {
                 texture: &self.density,
                 mip_level: 0,
-                origin: wgpu::Origin3d { x: 1, y: 1, z: 1 + slices.start as u32 },
+                origin: wgpu::Origin3d { x: 0, y: 0, z: first as u32 },
                 aspect: wgpu::TextureAspect::All,
             },
             bytemuck::cast_slice(&words),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: Some(2 * nx as u32),
-                rows_per_image: Some(ny as u32),
+                bytes_per_row: Some(2 * width),
+                rows_per_image: Some(height),
             },
-            wgpu::Extent3d {
-                width: nx as u32,
-                height: ny as u32,
-                depth_or_array_layers: slices.len() as u32,
-            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: (end - first) as u32 },
         );
+        if let Some(presence) = self.presence.as_ref().filter(|_| slices.end == nz) {
+            presence.upload(context, &self.volume);
+        }
+    }
+
+    /// Whether voxels are missing.
+    pub(crate) fn has_missing(&self) -> bool {
+        self.presence.is_some()
     }
 
     /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.
@@ -277,97 +311,12 @@ impl GpuVolume {
         };
         // The coarser levels of the pyramid add a seventh.
         let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
-        2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + gradients
-    }
-}
-
-/// Density and pyramid of a volume, if it had these dimensions.
-///
-/// # Errors
-/// When the adapter cannot hold them.
-pub(crate) fn textures(
-    context: &Context,
-    volume: &Volume,
-    dims: [usize; 3],
-) -> Result<(wgpu::Texture, wgpu::Texture), GpuError> {
-    if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
-        return Err(GpuError::OverLimit {
-            what: "the volume".to_owned(),
-            size: size as u64,
-            limit: MAX_VOXELS as u64,
-            help: "a part of it, or fewer voxels, helps",
-        });
-    }
-    let unorm = density_is_unorm(context, volume);
-    let density = context.texture(&texture_3d(
-        "Volume::density",
-        dims.map(|n| n + 2),
-        if unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float },
-        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-    ))?;
-    let pyramid = context.texture(&wgpu::TextureDescriptor {
-        mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
-        ..texture_3d(
-            "Volume::pyramid",
-            padded(dims),
-            context.storage_format,
-            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
-        )
-    })?;
-    Ok((density, pyramid))
-}
-
-/// Texels of the pyramid: whole ones on every level, so that a level's texel is exactly 2³ of the finer one's.
-fn padded(dims: [usize; 3]) -> [usize; 3] {
-    dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
-}
-
-/// A 3D texture without mip levels.
-pub(crate) fn texture_3d(
-    label: &'static str,
-    dims: [usize; 3],
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d {
-            width: dims[0] as u32,
-            height: dims[1] as u32,
-            depth_or_array_layers: dims[2] as u32,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D3,
-        format,
-        usage,
-        view_formats: &[],
+        let presence = self.presence.as_ref().map_or(0, |presence| texels(&presence.texture) * 8 / 7);
+        2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + presence + gradients
     }
 }
 
 /// Bricks along each axis of a grid.
 pub(crate) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| n.div_ceil(BRICK_EDGE))
-}
-
-fn unorm16(density: f32) -> u16 {
-    (density.clamp(0.0, 1.0) * 65535.0).round() as u16
-}
-
-/// 16-bit floats carry 11 bits and are quickest on software drivers: enough for 8-bit data. Anything
-/// finer goes to 16 normalised bits where the adapter has them.
-fn density_is_unorm(context: &Context, volume: &Volume) -> bool {
-    use crate::data::VoxelType;
-    let eight_bits = matches!(volume.samples().voxel_type(), VoxelType::U8 | VoxelType::I8);
-    context.unorm16 && !eight_bits
-}
-
-/// A density as the GPU will have it: the reference rounds the same way.
-#[cfg(feature = "testing")]
-pub fn stored_density(context: &Context, volume: &Volume, density: f32) -> f32 {
-    if density_is_unorm(context, volume) {
-        f32::from(unorm16(density)) / 65535.0
-    } else {
-        f16::from_f32(density).to_f32()
-    }
 }

@@ -22,8 +22,10 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture) -> Vec<Vec
     let dims = |level: u32| size.map(|n| (n >> level).max(1).div_ceil(8));
     let [nx, ny, nz] = bricks.dims;
     let is_empty = |x: usize, y: usize, z: usize| {
-        // A brick's range looks three voxels beyond it: the blur sees one, a difference two more.
-        x >= nx || y >= ny || z >= nz || bricks.ranges[x + nx * (y + ny * z)] == [0.0, 0.0]
+        // A brick's range looks three voxels beyond it: the blur sees one, a difference two more. Beyond the grid its
+        // border is repeated.
+        let [x, y, z] = [x.min(nx - 1), y.min(ny - 1), z.min(nz - 1)];
+        bricks.ranges[x + nx * (y + ny * z)] == [0.0, 0.0]
     };
     let finest = dims(0);
     let holds = |at: usize| {

@@ -1,5 +1,6 @@
 //! The GPU against the independent f64 reference, and proof that the comparison notices mistakes.
 
+use chiaroscuro::data::Volume;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{Settings, ShadowAlgorithm};
 use chiaroscuro::reference::{Options, Reference, Rounding};
@@ -13,6 +14,7 @@ use crate::thresholds::SAME_WEIGHTS;
 mod gather;
 mod limit;
 mod mutations;
+mod presence;
 mod scatter;
 
 const SIZE: [u32; 2] = [96, 80];
@@ -30,7 +32,12 @@ pub(crate) fn check_against(
     settings: &Settings,
     rounding: Option<Rounding>,
 ) {
-    let loaded = Dataset::new(scenes::creature(n, spacing_mm));
+    check_volume(name, scenes::creature(n, spacing_mm), settings, rounding);
+}
+
+/// The same of any volume.
+pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, rounding: Option<Rounding>) {
+    let loaded = Dataset::new(volume);
     let context = context();
     let options = Options { rounding, ..Options::default() };
     let reference = Reference::new(loaded.volume(), settings, options);

@@ -11,6 +11,7 @@ mod brightness;
 mod kernels;
 mod lights;
 mod path_tracer;
+mod presence;
 
 pub(crate) fn renderer() -> Renderer {
     Renderer::new(&context().with_full_precision()).expect("a renderer")

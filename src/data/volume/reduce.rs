@@ -8,7 +8,7 @@ use super::{Samples, Volume, VolumeError};
 impl Volume {
     /// The volume with blocks of so many voxels along x, y and z averaged into one each: same place in the world,
     /// same number type (means are rounded), at least one voxel along each axis. The last block of an axis may
-    /// have fewer voxels; values that are not finite are left out of means.
+    /// have fewer voxels; values that are not finite, and padding, are left out of means.
     ///
     /// # Errors
     /// As [`Volume::new`].
@@ -25,22 +25,40 @@ impl Volume {
     pub fn averaged(&self, block: [usize; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
+        let padding = self.padding_value();
         let samples = match self.samples() {
-            Samples::U8(values) => Samples::U8(means(values, dims, block, |mean| mean.round() as u8)),
-            Samples::I8(values) => Samples::I8(means(values, dims, block, |mean| mean.round() as i8)),
-            Samples::U16(values) => Samples::U16(means(values, dims, block, |mean| mean.round() as u16)),
-            Samples::I16(values) => Samples::I16(means(values, dims, block, |mean| mean.round() as i16)),
-            Samples::U32(values) => Samples::U32(means(values, dims, block, |mean| mean.round() as u32)),
-            Samples::I32(values) => Samples::I32(means(values, dims, block, |mean| mean.round() as i32)),
-            Samples::F32(values) => Samples::F32(means(values, dims, block, |mean| mean as f32)),
-            Samples::F64(values) => Samples::F64(means(values, dims, block, |mean| mean)),
+            Samples::U8(values) => {
+                Samples::U8(means(values, dims, block, padding, |mean| mean.round() as u8))
+            }
+            Samples::I8(values) => {
+                Samples::I8(means(values, dims, block, padding, |mean| mean.round() as i8))
+            }
+            Samples::U16(values) => {
+                Samples::U16(means(values, dims, block, padding, |mean| mean.round() as u16))
+            }
+            Samples::I16(values) => {
+                Samples::I16(means(values, dims, block, padding, |mean| mean.round() as i16))
+            }
+            Samples::U32(values) => {
+                Samples::U32(means(values, dims, block, padding, |mean| mean.round() as u32))
+            }
+            Samples::I32(values) => {
+                Samples::I32(means(values, dims, block, padding, |mean| mean.round() as i32))
+            }
+            Samples::F32(values) => Samples::F32(means(values, dims, block, padding, |mean| mean as f32)),
+            Samples::F64(values) => Samples::F64(means(values, dims, block, padding, |mean| mean)),
         };
         // A block's centre is that of its voxels: voxel 0 of two voxels lies at index 0.5.
         let edges = DVec3::from(block.map(|n| n as f64));
         let index_from_block =
             DAffine3 { matrix3: DMat3::from_diagonal(edges), translation: 0.5 * (edges - 1.0) };
         let geometry = self.world_from_index() * index_from_block;
-        Ok(Self::new(self.name(), reduced_dims(dims, block), geometry, samples)?.standing_for(self))
+        let reduced = Self::new(self.name(), reduced_dims(dims, block), geometry, samples)?;
+        let reduced = match padding {
+            Some(padding) => reduced.with_padding(padding)?,
+            None => reduced,
+        };
+        Ok(reduced.standing_for(self))
     }
 }
 
@@ -54,6 +72,7 @@ fn means<T: Copy + Into<f64> + Sync, R: Send>(
     values: &[T],
     dims: [usize; 3],
     block: [usize; 3],
+    padding: Option<f64>,
     round: impl Fn(f64) -> R + Sync,
 ) -> Vec<R> {
     let [nx, ny, nz] = dims;
@@ -66,15 +85,20 @@ fn means<T: Copy + Into<f64> + Sync, R: Send>(
                 let first = y / block[1] * width;
                 let blocks = sums[first..].iter_mut().zip(&mut counts[first..]);
                 for (voxels, (sum, count)) in row.chunks(block[0]).zip(blocks) {
-                    for value in voxels.iter().map(|&value| value.into()).filter(|value| value.is_finite()) {
+                    let values = voxels.iter().map(|&value| value.into());
+                    for value in values.filter(|value| value.is_finite() && Some(*value) != padding) {
                         *sum += value;
                         *count += 1;
                     }
                 }
             }
         }
-        // 0 / 0: of nothing finite, nothing finite.
-        sums.into_iter().zip(counts).map(|(sum, count)| round(sum / f64::from(count))).collect::<Vec<_>>()
+        // 0 / 0: of nothing finite, nothing finite, unless there is a value that says so.
+        let mean = |(sum, count): (f64, u32)| match padding {
+            Some(padding) if count == 0 => round(padding),
+            _ => round(sum / f64::from(count)),
+        };
+        sums.into_iter().zip(counts).map(mean).collect::<Vec<_>>()
     };
     (0..depth).into_par_iter().flat_map_iter(slice).collect()
 }

@@ -1,150 +1,22 @@
 //! A scalar volume on a regular grid, with its place in the world and its values in data units.
 
+mod error;
+mod missing;
+mod reduce;
+mod samples;
+
+pub use error::VolumeError;
+pub use missing::Missing;
+pub use reduce::reduced_dims;
+pub use samples::{Samples, VoxelType};
+
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{ValueRange, VolumeError};
+use self::samples::with_samples;
+use super::ValueRange;
 use crate::math::SceneSpace;
-
-/// The number types that a voxel can have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it all")]
-pub enum VoxelType {
-    U8,
-    I8,
-    U16,
-    I16,
-    U32,
-    I32,
-    F32,
-    F64,
-}
-
-impl VoxelType {
-    /// Every type, in the order of the declaration.
-    pub const ALL: [Self; 8] =
-        [Self::U8, Self::I8, Self::U16, Self::I16, Self::U32, Self::I32, Self::F32, Self::F64];
-
-    /// Size of one voxel in bytes.
-    pub const fn bytes(self) -> usize {
-        match self {
-            Self::U8 | Self::I8 => 1,
-            Self::U16 | Self::I16 => 2,
-            Self::U32 | Self::I32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    /// The name used in file names and on the command line: `uint8` … `float64`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::U8 => "uint8",
-            Self::I8 => "int8",
-            Self::U16 => "uint16",
-            Self::I16 => "int16",
-            Self::U32 => "uint32",
-            Self::I32 => "int32",
-            Self::F32 => "float32",
-            Self::F64 => "float64",
-        }
-    }
-}
-
-/// The voxels' values as the file has them, x fastest, z slowest.
-#[derive(Debug, Clone, PartialEq)]
-#[expect(missing_docs, reason = "one variant per voxel type")]
-pub enum Samples {
-    U8(Vec<u8>),
-    I8(Vec<i8>),
-    U16(Vec<u16>),
-    I16(Vec<i16>),
-    U32(Vec<u32>),
-    I32(Vec<i32>),
-    F32(Vec<f32>),
-    F64(Vec<f64>),
-}
-
-/// Calls `$body` with `$values` bound to the vector inside, whatever its type.
-macro_rules! with_samples {
-    ($samples:expr, $values:ident => $body:expr) => {
-        match $samples {
-            Samples::U8($values) => $body,
-            Samples::I8($values) => $body,
-            Samples::U16($values) => $body,
-            Samples::I16($values) => $body,
-            Samples::U32($values) => $body,
-            Samples::I32($values) => $body,
-            Samples::F32($values) => $body,
-            Samples::F64($values) => $body,
-        }
-    };
-}
-
-impl Samples {
-    /// Number of voxels.
-    pub fn len(&self) -> usize {
-        with_samples!(self, values => values.len())
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The number type.
-    pub fn voxel_type(&self) -> VoxelType {
-        match self {
-            Self::U8(_) => VoxelType::U8,
-            Self::I8(_) => VoxelType::I8,
-            Self::U16(_) => VoxelType::U16,
-            Self::I16(_) => VoxelType::I16,
-            Self::U32(_) => VoxelType::U32,
-            Self::I32(_) => VoxelType::I32,
-            Self::F32(_) => VoxelType::F32,
-            Self::F64(_) => VoxelType::F64,
-        }
-    }
-
-    /// One value in data units.
-    #[expect(
-        trivial_numeric_casts,
-        clippy::unnecessary_cast,
-        reason = "one of the eight types is f64 already"
-    )]
-    pub fn value(&self, voxel: usize) -> f64 {
-        with_samples!(self, values => values[voxel] as f64)
-    }
-
-    /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
-    fn finite_range(&self) -> Option<(ValueRange, usize)> {
-        #[expect(
-            trivial_numeric_casts,
-            clippy::unnecessary_cast,
-            reason = "one of the eight types is f64 already"
-        )]
-        let (low, high, non_finite) = with_samples!(self, values => values.iter().fold(
-            (f64::INFINITY, f64::NEG_INFINITY, 0),
-            |(low, high, non_finite), &value| {
-                let value = value as f64;
-                if value.is_finite() { (low.min(value), high.max(value), non_finite) } else { (low, high, non_finite + 1) }
-            },
-        ));
-        (low <= high).then_some((ValueRange::new(low, high), non_finite))
-    }
-
-    /// A 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
-    fn fingerprint(&self) -> u64 {
-        const PRIME: u64 = 0x0000_0100_0000_01b3;
-        #[expect(
-            trivial_numeric_casts,
-            clippy::unnecessary_cast,
-            reason = "one of the eight types is f64 already"
-        )]
-        let hash = with_samples!(self, values => values.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
-            (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
-        }));
-        hash
-    }
-}
 
 /// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range.
 #[derive(Debug, Clone)]
@@ -155,7 +27,9 @@ pub struct Volume {
     world_from_index: DAffine3,
     samples: Samples,
     value_range: ValueRange,
+    missing: Option<Arc<Missing>>,
     non_finite_voxels: usize,
+    padding_value: Option<f64>,
     unit_mm: Option<f64>,
     is_anatomical: bool,
     content_id: u64,
@@ -197,18 +71,21 @@ impl Volume {
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
             hash.rotate_left(17) ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15)
         });
-        Ok(Self {
+        let volume = Self {
             name: name.into(),
             dims,
             file_dims: dims,
             world_from_index,
             samples,
             value_range,
+            missing: None,
             non_finite_voxels,
+            padding_value: None,
             unit_mm: None,
             is_anatomical: false,
             content_id,
-        })
+        };
+        Ok(if non_finite_voxels > 0 { volume.with_missing() } else { volume })
     }
 
     /// States the length to which opacities of this material refer, so that it looks the same at
@@ -306,7 +183,7 @@ impl Volume {
         self.value_range
     }
 
-    /// How many voxels hold NaN or an infinity; they count as the smallest value.
+    /// How many voxels hold NaN or an infinity: nothing is there.
     pub fn non_finite_voxels(&self) -> usize {
         self.non_finite_voxels
     }
@@ -322,7 +199,7 @@ impl Volume {
     }
 
     /// A value in data units as a density in [0, 1]: 0 at the smallest value of the volume, 1 at
-    /// the largest. What lies outside the grid has density 0; so do values that are not finite.
+    /// the largest. Values that are not finite have density 0.
     pub fn density_of(&self, value: f64) -> f64 {
         let ValueRange { low, .. } = self.value_range;
         let span = self.value_range.span();
@@ -334,7 +211,8 @@ impl Volume {
         self.value_range.at(density)
     }
 
-    /// Densities in [0, 1] of the voxels of one z-slice, x fastest.
+    /// Densities in [0, 1] of the voxels of one z-slice, x fastest. Those that hold nothing have the mean of what is
+    /// near.
     #[expect(
         trivial_numeric_casts,
         clippy::unnecessary_cast,
@@ -343,10 +221,14 @@ impl Volume {
     pub fn slice_densities(&self, z: usize) -> Vec<f32> {
         let count = self.dims[0] * self.dims[1];
         let range = z * count..(z + 1) * count;
-        with_samples!(&self.samples, values => values[range]
+        let mut densities: Vec<f32> = with_samples!(&self.samples, values => values[range]
             .iter()
             .map(|&value| self.density_of(value as f64) as f32)
-            .collect())
+            .collect());
+        for (at, value) in self.missing.iter().flat_map(|missing| missing.in_slice(z)) {
+            densities[at] = self.density_of(value) as f32;
+        }
+        densities
     }
 }
 
@@ -360,7 +242,9 @@ mod tests {
         let volume = Volume::with_spacing("t", [4, 1, 1], DVec3::ONE, samples).unwrap();
         assert_eq!(volume.value_range(), ValueRange::new(-1000.0, 1000.0));
         assert_eq!(volume.non_finite_voxels(), 1);
+        // What is not there has the mean of what is beside it.
         assert_eq!(volume.slice_densities(0), [0.0, 0.0, 0.5, 1.0]);
+        assert!(volume.missing().is_some_and(|missing| missing.count() == 1 && missing.contains(0)));
         assert_eq!(volume.value_of(0.5), 0.0);
     }
 

@@ -1,0 +1,192 @@
+//! Voxels that hold nothing: their values are not finite, or what the file declares as padding. There is no material;
+//! but the field beside them needs densities, which are the means of those nearby.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::{Volume, VolumeError};
+
+/// Which voxels of a grid hold nothing, and what stands in for them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Missing {
+    dims: [usize; 3],
+    /// A bit for each voxel, x fastest.
+    bits: Vec<u64>,
+    count: usize,
+    /// For each block of 2³ voxels the mean of those that hold something; of the nearest larger block that does, where
+    /// none of them is.
+    means: Vec<f32>,
+}
+
+impl Missing {
+    /// Looks at all voxels of a grid, of which at least one holds something: `value` is that of a voxel, `None` where it
+    /// holds nothing. `None` where every voxel holds something.
+    pub(super) fn find(dims: [usize; 3], value: impl Fn(usize) -> Option<f64> + Sync) -> Option<Self> {
+        let voxels = dims.iter().product::<usize>();
+        let bits: Vec<u64> = (0..voxels.div_ceil(64))
+            .into_par_iter()
+            .map(|word| {
+                let places = word * 64..((word + 1) * 64).min(voxels);
+                places.filter(|&voxel| value(voxel).is_none()).fold(0, |bits, voxel| bits | 1 << (voxel % 64))
+            })
+            .collect();
+        let count = bits.par_iter().map(|word| word.count_ones() as usize).sum();
+        (count > 0).then(|| Self { dims, count, means: filled(halved(dims, value), half(dims)), bits })
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Whether a voxel, counted with x fastest, holds nothing.
+    pub fn contains(&self, voxel: usize) -> bool {
+        self.bits[voxel / 64] >> (voxel % 64) & 1 == 1
+    }
+
+    /// Voxels of slice z that hold nothing: their places in the slice, x fastest, and the values that stand in for them.
+    pub(super) fn in_slice(&self, z: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let [nx, ny, _] = self.dims;
+        let [width, height, _] = half(self.dims);
+        let first = z * nx * ny;
+        (0..nx * ny).filter(move |at| self.contains(first + at)).map(move |at| {
+            let block = at % nx / 2 + width * (at / nx / 2 + height * (z / 2));
+            (at, f64::from(self.means[block]))
+        })
+    }
+}
+
+impl Volume {
+    /// Finds the voxels that hold nothing.
+    pub(super) fn with_missing(self) -> Self {
+        let holds_something = |value: f64| value.is_finite() && Some(value) != self.padding_value;
+        let value = |voxel: usize| Some(self.samples.value(voxel)).filter(|&value| holds_something(value));
+        let missing = Missing::find(self.dims(), value).map(Arc::new);
+        Self { missing, ..self }
+    }
+
+    /// States the value of voxels that hold nothing, as a file declares it: there is no material, and it counts neither
+    /// among the values of the volume nor in means.
+    ///
+    /// # Errors
+    /// When no voxel has another value.
+    pub fn with_padding(mut self, padding_value: f64) -> Result<Self, VolumeError> {
+        let (value_range, _) = self.samples.range_without(padding_value).ok_or(VolumeError::NothingFinite)?;
+        // Beside the values, it decides what is shown.
+        self.content_id = self.content_id.rotate_left(9) ^ padding_value.to_bits();
+        self.padding_value = Some(padding_value);
+        self.value_range = value_range;
+        Ok(self.with_missing())
+    }
+
+    /// The voxels that hold nothing, if there are any.
+    pub fn missing(&self) -> Option<&Missing> {
+        self.missing.as_deref()
+    }
+
+    /// See [`Self::with_padding`].
+    pub fn padding_value(&self) -> Option<f64> {
+        self.padding_value
+    }
+}
+
+/// Blocks of two along each axis.
+fn half(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| n.div_ceil(2))
+}
+
+/// The mean of what there is in each block of 2³; NaN where there is nothing.
+fn halved(dims: [usize; 3], value: impl Fn(usize) -> Option<f64> + Sync) -> Vec<f32> {
+    let [width, height, depth] = half(dims);
+    let [nx, ny, nz] = dims;
+    let mean = |block: usize| {
+        let [x, y, z] = [block % width, block / width % height, block / (width * height)].map(|c| 2 * c);
+        let (mut sum, mut count) = (0.0, 0u32);
+        for z in z..(z + 2).min(nz) {
+            for y in y..(y + 2).min(ny) {
+                for x in x..(x + 2).min(nx) {
+                    if let Some(value) = value(x + nx * (y + ny * z)) {
+                        sum += value;
+                        count += 1;
+                    }
+                }
+            }
+        }
+        // 0 / 0 is NaN.
+        (sum / f64::from(count)) as f32
+    };
+    (0..width * height * depth).into_par_iter().map(mean).collect()
+}
+
+/// Values of a grid with those of larger blocks where they are NaN.
+fn filled(mut values: Vec<f32>, dims: [usize; 3]) -> Vec<f32> {
+    if values.len() == 1 || !values.iter().any(|value| value.is_nan()) {
+        return values;
+    }
+    let there = |voxel: usize| Some(f64::from(values[voxel])).filter(|value| !value.is_nan());
+    let coarser = half(dims);
+    let means = filled(halved(dims, there), coarser);
+    values.par_iter_mut().enumerate().filter(|(_, value)| value.is_nan()).for_each(|(at, value)| {
+        let [x, y, z] = [at % dims[0], at / dims[0] % dims[1], at / (dims[0] * dims[1])].map(|c| c / 2);
+        *value = means[x + coarser[0] * (y + coarser[1] * z)];
+    });
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::data::{Samples, ValueRange};
+
+    #[test]
+    fn what_is_missing_has_the_mean_of_what_is_near() {
+        // Of 5 × 4 × 3 voxels with their own numbers, these hold nothing.
+        let dims = [5, 4, 3];
+        let lost = [0, 6, 19, 59, 58];
+        let missing = Missing::find(dims, |voxel| (!lost.contains(&voxel)).then_some(voxel as f64)).unwrap();
+        assert_eq!(missing.count(), 5);
+        assert!((0..60).all(|voxel| missing.contains(voxel) == lost.contains(&voxel)));
+        // Voxels 1, 5, 20, 21, 25 and 26 are left of the block of 0 and 6.
+        let mean = (1.0 + 5.0 + 20.0 + 21.0 + 25.0 + 26.0) / 6.0;
+        let near = |found: f64, wanted: f64| (found - wanted).abs() < 1e-5;
+        let first: Vec<_> = missing.in_slice(0).collect();
+        assert_eq!(first.iter().map(|(at, _)| *at).collect::<Vec<_>>(), [0, 6, 19]);
+        assert!(near(first[0].1, mean) && near(first[1].1, mean), "{first:?}");
+        assert_eq!(missing.in_slice(1).count(), 0);
+        // The last block is one voxel wide and deep: voxel 54 is left of it.
+        let last: Vec<_> = missing.in_slice(2).collect();
+        assert!(near(last[1].1, 54.0), "{last:?}");
+    }
+
+    #[test]
+    fn larger_blocks_stand_in_where_all_is_missing() {
+        let dims = [16, 16, 16];
+        let value = |voxel: usize| (voxel % 16 >= 12).then_some(3.0);
+        let missing = Missing::find(dims, value).unwrap();
+        assert_eq!(missing.count(), 12 * 256);
+        assert!((0..16).all(|z| missing.in_slice(z).all(|(_, value)| value == 3.0)));
+        assert_eq!(Missing::find(dims, |_| Some(1.0)), None);
+    }
+    #[test]
+    fn padding_is_no_value() {
+        let volume = |padding: Option<f64>| {
+            let samples = Samples::I16(vec![-3024, -1000, 0, 1000, -3024, 40, 50, 60]);
+            let volume = Volume::with_spacing("t", [4, 2, 1], DVec3::ONE, samples).unwrap();
+            padding.map_or(Ok(volume.clone()), |value| volume.with_padding(value))
+        };
+        let padded = volume(Some(-3024.0)).unwrap();
+        assert_eq!(padded.value_range(), ValueRange::new(-1000.0, 1000.0));
+        assert_eq!(padded.missing().map(Missing::count), Some(2));
+        assert_eq!(padded.value(0, 0, 0), -3024.0, "what the file says");
+        // The mean of −1000 and 40 stands in for both.
+        assert_eq!(padded.slice_densities(0)[0], 0.26);
+        assert_eq!(padded.non_finite_voxels(), 0);
+        assert_ne!(padded.content_id(), volume(None).unwrap().content_id());
+        assert_eq!(volume(Some(7.0)).unwrap().missing(), None);
+        let all = Volume::with_spacing("t", [1; 3], DVec3::ONE, Samples::U8(vec![3])).unwrap();
+        assert!(matches!(all.with_padding(3.0), Err(VolumeError::NothingFinite)));
+    }
+}

@@ -1,0 +1,103 @@
+//! The textures that a volume's voxels become, and the numbers in them.
+
+#[cfg(feature = "testing")]
+use half::f16;
+
+use super::PYRAMID_PADDING;
+use super::presence::Presence;
+use crate::data::{BRICK_EDGE, Volume, VoxelType};
+use crate::gpu::{Context, GpuError};
+use crate::plan::MAX_STRETCH_LEVEL;
+
+/// Voxels along an axis: brick coordinates are packed into ten bits each, and the pyramid has a brick more.
+const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
+
+/// What a volume's voxels become.
+#[derive(Debug)]
+pub(crate) struct Textures {
+    pub density: wgpu::Texture,
+    pub pyramid: wgpu::Texture,
+    pub presence: Option<Presence>,
+}
+
+/// The textures of a volume, if it had these dimensions.
+///
+/// # Errors
+/// When the adapter cannot hold them.
+pub(crate) fn textures(context: &Context, volume: &Volume, dims: [usize; 3]) -> Result<Textures, GpuError> {
+    if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
+        return Err(GpuError::OverLimit {
+            what: "the volume".to_owned(),
+            size: size as u64,
+            limit: MAX_VOXELS as u64,
+            help: "a part of it, or fewer voxels, helps",
+        });
+    }
+    let unorm = density_is_unorm(context, volume);
+    let density = context.texture(&texture_3d(
+        "Volume::density",
+        dims.map(|n| n + 2),
+        if unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float },
+        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+    ))?;
+    let pyramid = context.texture(&wgpu::TextureDescriptor {
+        mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
+        ..texture_3d(
+            "Volume::pyramid",
+            padded(dims),
+            context.storage_format,
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        )
+    })?;
+    Ok(Textures { density, pyramid, presence: Presence::new(context, volume, dims)? })
+}
+
+/// Texels of the pyramid: whole ones on every level, so that a level's texel is exactly 2³ of the finer one's.
+pub(super) fn padded(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
+}
+
+/// A 3D texture without mip levels.
+pub(crate) fn texture_3d(
+    label: &'static str,
+    dims: [usize; 3],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: dims[0] as u32,
+            height: dims[1] as u32,
+            depth_or_array_layers: dims[2] as u32,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format,
+        usage,
+        view_formats: &[],
+    }
+}
+
+/// A density in 16 normalised bits.
+pub(super) fn unorm16(density: f32) -> u16 {
+    (density.clamp(0.0, 1.0) * 65535.0).round() as u16
+}
+
+/// 16-bit floats carry 11 bits and are quickest on software drivers: enough for 8-bit data. Anything
+/// finer goes to 16 normalised bits where the adapter has them.
+pub(super) fn density_is_unorm(context: &Context, volume: &Volume) -> bool {
+    let eight_bits = matches!(volume.samples().voxel_type(), VoxelType::U8 | VoxelType::I8);
+    context.unorm16 && !eight_bits
+}
+
+/// A density as the GPU will have it: the reference rounds the same way.
+#[cfg(feature = "testing")]
+pub fn stored_density(context: &Context, volume: &Volume, density: f32) -> f32 {
+    if density_is_unorm(context, volume) {
+        f32::from(unorm16(density)) / 65535.0
+    } else {
+        f16::from_f32(density).to_f32()
+    }
+}

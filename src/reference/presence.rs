@@ -1,0 +1,110 @@
+//! How much of what is reconstructed is there: the share of the kernel around a point that lies on voxels. Outside the
+//! grid is no material, whatever a transfer function makes of the field, which goes on there as it is at the border.
+
+use glam::DVec3;
+
+use super::kernel::{Profile, quadrature_nodes};
+use super::pyramid::MAX_LEVEL;
+use super::{Reference, Weights};
+use crate::model::{Kernel, Quadrature};
+use crate::plan::SheetFrame;
+
+impl Reference<'_> {
+    /// Σ w(v) over the voxels that are there, at an index-space point with the kernel stretched 2^`level` times. Where
+    /// voxels are missing the prefiltered kernel says so, whichever the settings have: a fetch of the pyramid.
+    pub(super) fn presence(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
+        match &self.presence {
+            Some(presence) => presence.fetch(point, level),
+            None => self.presence_in_grid(profile, point, level),
+        }
+    }
+
+    /// The share of the kernel within the grid, missing voxels or not.
+    pub(super) fn presence_in_grid(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
+        let width = level.clamp(0.0, MAX_LEVEL as f64).exp2();
+        let along = |axis: usize| {
+            let n = self.scene.dims[axis] as f64;
+            let before = share_of_half_space(profile, (point[axis] + 0.5) / width);
+            let behind = share_of_half_space(profile, (n - 0.5 - point[axis]) / width);
+            // What is missing before and behind do not overlap unless there are fewer voxels than a kernel has.
+            (before + behind - 1.0).max(0.0)
+        };
+        along(0) * along(1) * along(2)
+    }
+
+    /// ∇ presence in index space: central differences over as many voxels as the kernel is stretched.
+    fn presence_slope(&self, profile: &Profile, point: DVec3, level: f64) -> DVec3 {
+        let step = level.clamp(0.0, MAX_LEVEL as f64).exp2();
+        let at = |point| self.presence(profile, point, level);
+        let along = |axis: DVec3| (at(point + axis * step) - at(point - axis * step)) / (2.0 * step);
+        DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
+    }
+
+    /// The gradient in scene space of something solid that ends where voxels are missing.
+    pub(super) fn missing_gradient(&self, point: DVec3, level: f64) -> DVec3 {
+        if self.presence.is_none() {
+            return DVec3::ZERO;
+        }
+        let profile = self.profile(self.settings.sampling.kernel);
+        self.scene.index_from_scene.matrix3.transpose() * self.presence_slope(&profile, point, level)
+    }
+
+    /// The mean over slab `k` along the ray of pixel (i, j) of what `presence` says of a point and a level: where
+    /// densities are taken, or for whole footprints all along.
+    pub(super) fn slab_mean_of(
+        &self,
+        frame: &SheetFrame,
+        quadrature: Quadrature,
+        [i, j, k]: [f64; 3],
+        presence: impl Fn(DVec3, f64) -> f64,
+    ) -> f64 {
+        let at = |offset: f64| {
+            let depth = frame.depth_of(k) + offset * frame.slab;
+            presence(frame.point(i, j, depth) + self.kernel_shift(), frame.stretch_level(depth))
+        };
+        if self.weights() == Weights::Footprint {
+            return quadrature_nodes().into_iter().map(|(offset, weight)| weight * at(offset)).sum();
+        }
+        let offsets = quadrature.offsets();
+        offsets.iter().map(|&offset| at(offset)).sum::<f64>() / offsets.len() as f64
+    }
+}
+
+/// The share of the weights along an axis that lie on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
+fn share_of_half_space(profile: &Profile, depth: f64) -> f64 {
+    let place = depth - 0.5;
+    let first = place.floor() - 1.0;
+    let weights: Vec<f64> = match profile.kernel {
+        // Blur and tent together reach over the same four voxels.
+        Kernel::Prefiltered => (0..4).map(|tap| profile.of_density(place - first - f64::from(tap))).collect(),
+        Kernel::BSpline | Kernel::Gaussian { .. } => profile.four_weights(place - place.floor()).to_vec(),
+    };
+    let inside = |tap: usize| first + tap as f64 >= 0.0;
+    let there: f64 =
+        weights.iter().enumerate().filter(|(tap, _)| inside(*tap)).map(|(_, weight)| weight).sum();
+    there / weights.iter().sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_a_kernel_lies_behind_an_edge() {
+        let kernels = [Kernel::BSpline, Kernel::Gaussian { sigma: 0.6 }, Kernel::Prefiltered];
+        for kernel in kernels {
+            let profile = Profile { kernel, width: 1.0 };
+            let share = |depth| share_of_half_space(&profile, depth);
+            assert!((share(0.0) - 0.5).abs() < 1e-12, "{kernel:?}");
+            assert!((share(1.51) - 1.0).abs() < 1e-12 && share(-1.51).abs() < 1e-12, "{kernel:?}");
+            for depth in [0.1, 0.4, 0.7, 1.2] {
+                assert!((share(depth) + share(-depth) - 1.0).abs() < 1e-12, "{kernel:?} {depth}");
+                assert!(share(depth) >= share(depth - 0.1), "{kernel:?} {depth}");
+            }
+        }
+        // On the outermost voxel: what the kernel has beyond it is missing.
+        let on_voxel = |kernel| share_of_half_space(&Profile { kernel, width: 1.0 }, 0.5);
+        assert!((on_voxel(Kernel::BSpline) - 5.0 / 6.0).abs() < 1e-12);
+        assert!((on_voxel(Kernel::Prefiltered) - 11.0 / 12.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,162 @@
+//! Where data end, and where voxels are missing, material ends, whatever the transfer function.
+
+use chiaroscuro::data::{Samples, Volume};
+use chiaroscuro::model::{
+    Classification, ControlPoint, Engine, Interpolation, Kernel, Settings, TransferFunction,
+};
+use chiaroscuro::reference::cubic_b_spline;
+use glam::DVec3;
+
+use super::{base, renderer, with_both_engines};
+use crate::common::{Dataset, render};
+use crate::compare::{compare, wide};
+use crate::thresholds::{CHORD_OPACITY, EDGE_PROFILE, LOBES};
+
+with_both_engines! {
+    a_constant_volume_ends_at_its_faces
+    holes_are_empty
+    lobes_of_either_sign_look_alike
+}
+
+/// Voxels along an edge.
+const N: usize = 24;
+
+/// Extinction `per_voxel` at every value.
+fn all_opaque(per_voxel: f64) -> TransferFunction {
+    let point = |value| ControlPoint::new(value, [1.0; 3], 1.0 - (-per_voxel).exp());
+    TransferFunction {
+        points: vec![point(0.0), point(255.0)],
+        interpolation: Interpolation::Extinction,
+        ..TransferFunction::default()
+    }
+}
+
+/// Extinction falls from `per_voxel` at the lowest value to nothing at the highest.
+fn falling(per_voxel: f64) -> TransferFunction {
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+    TransferFunction {
+        points: vec![point(0.0, 1.0 - (-per_voxel).exp()), point(255.0, 0.0)],
+        interpolation: Interpolation::Extinction,
+        ..TransferFunction::default()
+    }
+}
+
+/// A volume of one value; a voxel in the middle has another, so that the values span a range.
+fn constant(value: u8) -> Dataset {
+    let mut values = vec![value; N * N * N];
+    values[0] = 255;
+    Dataset::new(Volume::with_spacing("constant", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
+}
+
+/// The share of the B-spline's weights on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
+fn edge_profile(depth: f64) -> f64 {
+    (0..4).map(|voxel| cubic_b_spline(depth - 0.5 - f64::from(voxel))).sum()
+}
+
+/// Along an axis, a ray sees 1 − e^(−μ·n) of a volume of one value, times the kernel's edge profile beside it.
+fn a_constant_volume_ends_at_its_faces(engine: Engine) {
+    let per_voxel = 0.04;
+    for classification in [Classification::Post, Classification::Pre] {
+        // At the lowest value, extinction is what the function has there.
+        for (value, transfer) in
+            [(0, all_opaque(per_voxel)), (0, falling(per_voxel)), (255, all_opaque(per_voxel))]
+        {
+            let mut settings = Settings { transfer, ..base(engine, per_voxel) };
+            settings.sampling.classification = classification;
+            settings.sampling.slab = 0.5;
+            let size = [96, 96];
+            let loaded = constant(value);
+            let picture = render(&mut renderer(), &loaded, &settings, size);
+            let scene = loaded.volume().scene();
+            let middle = f64::from(picture.light[48 * 96 + 48][3]);
+            let chord = 1.0 - (-per_voxel * N as f64).exp();
+            assert!(
+                (middle - chord).abs() <= CHORD_OPACITY,
+                "{value} {classification:?}: {middle} not {chord}"
+            );
+            // Across the left face, on the middle row.
+            let mut beside = 0;
+            for column in 0..48 {
+                let (origin, _) = settings.camera.ray_through(f64::from(column) + 0.5, 48.5, 96.0, 96.0);
+                let index = scene.index_from_scene.transform_point3(origin);
+                // The camera looks along y: x is across.
+                let depth = (index.x + 0.5).min(N as f64 - 0.5 - index.x);
+                let share = if depth > 1.5 { 1.0 } else { edge_profile(depth.max(-1.5)) };
+                let expected = 1.0 - (-per_voxel * N as f64 * share).exp();
+                let found = f64::from(picture.light[48 * 96 + column as usize][3]);
+                assert!(
+                    (found - expected).abs() <= EDGE_PROFILE,
+                    "{value} {classification:?}, {depth} voxels inside: {found} not {expected}"
+                );
+                beside += usize::from(depth.abs() < 1.5);
+            }
+            assert!(beside > 4, "{beside} pixels across the edge");
+        }
+    }
+}
+
+/// A slab of missing voxels in a volume of one value is a slab of nothing.
+fn holes_are_empty(engine: Engine) {
+    let per_voxel = 0.04;
+    let values = (0..N * N * N).map(|at| match at / N % N {
+        _ if at == 0 => 255.0,
+        8..=15 => f32::NAN,
+        _ => 0.0,
+    });
+    let samples = Samples::F32(values.collect());
+    let loaded = Dataset::new(Volume::with_spacing("holes", [N; 3], DVec3::ONE, samples).expect("a volume"));
+    for kernel in [Kernel::BSpline, Kernel::Prefiltered] {
+        let mut settings = Settings { transfer: falling(per_voxel), ..base(engine, per_voxel) };
+        settings.sampling.kernel = kernel;
+        settings.sampling.slab = 0.5;
+        let picture = render(&mut renderer(), &loaded, &settings, [64, 64]);
+        // The camera looks along y.
+        let expected = 1.0 - (-per_voxel * (N - 8) as f64).exp();
+        let found = f64::from(picture.light[32 * 64 + 32][3]);
+        assert!((found - expected).abs() <= CHORD_OPACITY, "{kernel:?}: {found} not {expected}");
+    }
+}
+
+/// A signed wave: its picture is that of the negative wave with the colours of the lobes exchanged.
+fn lobes_of_either_sign_look_alike(engine: Engine) {
+    let wave = |sign: f64| {
+        let value = |at: usize| {
+            let p = DVec3::new((at % N) as f64, (at / N % N) as f64, (at / N / N) as f64) / N as f64;
+            127.5
+                + sign * 127.5 * (11.0 * p.x + 2.0 * p.z).sin() * (9.0 * p.y).cos() * (8.0 * p.z + 1.0).sin()
+        };
+        // The same steps to either side of the middle.
+        let values = (0..N * N * N).map(|at| (value(at) * 2.0).round() / 2.0).map(|value| value as f32);
+        let mut values: Vec<f32> = values.collect();
+        // Both ends of the range.
+        (values[0], values[1]) = (127.5 - sign as f32 * 127.5, 127.5 + sign as f32 * 127.5);
+        Dataset::new(
+            Volume::with_spacing("wave", [N; 3], DVec3::ONE, Samples::F32(values)).expect("a volume"),
+        )
+    };
+    let lobes = |low: [f32; 3], high: [f32; 3]| {
+        let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
+        let points = vec![
+            point(0.0, low, 0.5),
+            point(75.0, low, 0.3),
+            point(95.0, low, 0.0),
+            point(127.5, [1.0; 3], 0.0),
+            point(160.0, high, 0.0),
+            point(180.0, high, 0.3),
+            point(255.0, high, 0.5),
+        ];
+        TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() }
+    };
+    let (red, blue) = ([0.9, 0.2, 0.1], [0.1, 0.3, 0.9]);
+    let mut settings = base(engine, 0.1);
+    settings.camera.azimuth_deg = 20.0;
+    settings.camera.elevation_deg = 30.0;
+    let picture = |sign: f64, low, high| {
+        let settings = Settings { transfer: lobes(low, high), ..settings.clone() };
+        render(&mut renderer(), &wave(sign), &settings, [96, 96]).light.concat()
+    };
+    let (one, other) = (picture(1.0, blue, red), picture(-1.0, red, blue));
+    let exchanged = picture(1.0, red, blue);
+    compare("lobes", &wide(&one), &wide(&other), LOBES).unwrap_or_else(|err| panic!("{err}"));
+    compare("lobes that differ", &wide(&exchanged), &wide(&other), LOBES).expect_err("colours are exchanged");
+}
