@@ -75,8 +75,7 @@ fn looks_are_tried_on_the_volume() {
     let count = harness.query_all_by_label_contains("Use ").count();
     assert!((6..=9).contains(&count), "{count} looks");
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
-    let rim = harness.query_all_by_label_contains("Rim light").next().expect("a look").clone();
-    rim.click();
+    harness.query_all_by_label_contains("Rim light").next().expect("a look").click();
     harness.run_steps(3);
     let after = harness.state().settings().clone();
     assert_eq!(after.lights[0].name, "Rim left");

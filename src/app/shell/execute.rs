@@ -114,8 +114,8 @@ impl App {
             }
             Command::UseLook(look) => {
                 // Views that were kept are no part of it, nor is how truly it is drawn, nor what is cut away.
-                let Settings { views, sampling, cuts, .. } = std::mem::take(&mut self.settings);
-                self.settings = Settings { views, sampling, cuts, ..*look };
+                let Settings { cuts, sampling, views, .. } = std::mem::take(&mut self.settings);
+                self.settings = Settings { cuts, sampling, views, ..*look };
                 self.selected_light = 0;
             }
             Command::TryLooks => self.contact_sheet.open(Sheet::Looks),

@@ -11,9 +11,10 @@ pub(super) const MEASURED_SIZE: [u32; 2] = [160, 120];
 /// Balance stays within this factor: beyond it the settings are at fault, not the shadows.
 const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
 
-/// Settings for a volume that nobody has touched, but for what takes longer ([`super::finish_look`]): automatic,
-/// balanced so that shadows do not make the picture darker, and exposed. Uploads the volume and fills the light volumes
-/// on the way.
+/// Settings for a volume that nobody has touched, but for what takes longer ([`super::finish_look`]).
+///
+/// They are automatic, balanced so that shadows do not make the picture darker, and exposed. Uploads the volume and fills
+/// the light volumes on the way.
 ///
 /// # Errors
 /// When the GPU cannot do it.

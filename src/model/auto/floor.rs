@@ -15,8 +15,10 @@ const COMPACT: f64 = 0.7;
 /// Degrees from which an eye looks down onto a floor, and not along it.
 const LOOKING_DOWN_DEG: f64 = 8.0;
 
-/// Whether the first look has a floor: under what stands on something, and under what is compact and has hardly a shadow
-/// itself (`shadowed`: its share). Not under what goes on where the data end, as heads do below the neck: that would
+/// Whether the first look has a floor.
+///
+/// Under what stands on something, and under what is compact and has hardly a shadow itself (`shadowed`: its share). Not
+/// under what goes on where the data end, as heads do below the neck: that would
 /// stand on its cut.
 pub fn wants_floor(settings: &Settings, volume: &Volume, shadowed: f64) -> bool {
     if settings.camera.elevation_deg < LOOKING_DOWN_DEG || volume.is_anatomical() {
