@@ -9,7 +9,7 @@ struct Display {
     transparent: u32,
     // 0: neutral, 1: clip.
     clip: u32,
-    // Multiplies all light.
+    // Multiplies the light of the volume.
     exposure: f32,
     // First row of this part of the picture, and rows of the whole.
     first_row: f32,
@@ -18,7 +18,8 @@ struct Display {
     first_column: f32,
     // Step between the numbers of a picture whose background is dithered; else 0.
     dither_step: f32,
-    pad0: u32,
+    // Multiplies the light of the floor: what previews of the volume need, it does not.
+    floor_exposure: f32,
 }
 
 @group(0) @binding(0) var<uniform> bound_display: Display;
@@ -46,7 +47,7 @@ fn neutral(color: vec3f) -> vec3f {
 fn sample_light(at: vec2u, has_floor: bool) -> vec4f {
     let volume = textureLoad(picture, at, 0) * vec4f(vec3f(display.exposure), 1.0);
     let below = textureLoad(floor_light, select(vec2u(0u), at, has_floor), 0);
-    return volume + (1.0 - volume.a) * below;
+    return volume + (1.0 - volume.a) * below * vec4f(vec3f(display.floor_exposure), 1.0);
 }
 
 // Linear, premultiplied light of a pixel: the mean of its samples.

@@ -27,13 +27,14 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use self::common::{commands, light_keys, theme};
+use self::common::{light_keys, shortcuts, theme};
 use self::shell::{menu, picture, status, status_file};
 use self::windows::files;
 
 use self::common::commands::Command;
 use self::common::volume_facts::VolumeFacts;
 use self::memory::Memory;
+use self::shell::first_lights::FirstLights;
 use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
 use self::shell::messages::Messages;
@@ -67,7 +68,7 @@ use self::windows::slices::Slices;
 use self::worker::loader::Loader;
 use self::worker::task::{self, Work};
 use crate::data::Dataset;
-use crate::gpu::{Context, GpuError, WindowPainter};
+use crate::gpu::{Context, Found, GpuError, WindowPainter};
 use crate::model::Settings;
 
 /// A frame that keeps the window's thread longer is felt.
@@ -103,6 +104,8 @@ pub struct App {
     pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
     keep_balanced: KeepBalanced,
+    first_lights: FirstLights,
+    light_search: Option<Work<Result<Option<Found>, GpuError>>>,
     export: Export,
     files: Files,
     session: Option<Session>,
@@ -164,10 +167,10 @@ impl App {
         &self.settings
     }
 
-    /// Whether the full-quality picture of the current settings is on screen, nothing is being opened, and the balance
-    /// is that of the settings, if it is kept.
+    /// Whether the full-quality picture of the current settings is on screen, nothing is being opened, the first look is
+    /// finished, and the balance is that of the settings, if it is kept.
     pub fn is_idle(&self) -> bool {
-        self.is_complete() && !self.keep_balanced.is_due(&self.settings)
+        self.is_complete() && !self.first_lights.is_due() && !self.keep_balanced.is_due(&self.settings)
     }
 
     /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
@@ -328,7 +331,7 @@ impl eframe::App for App {
         self.palette.ui(&ctx, self.settings.camera.up, &mut commands);
         self.surroundings(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);
-        commands::from_keys(&ctx, &mut commands);
+        shortcuts::from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
         self.ask_for_volume(frame, &ctx);
@@ -336,6 +339,7 @@ impl eframe::App for App {
         for command in commands {
             self.execute(command, frame, &ctx);
         }
+        self.finish_first_look(&ctx);
         self.keep_balanced(&ctx);
         self.keep_look();
         let ui_ms = start.elapsed().as_secs_f64() * 1000.0;

@@ -10,6 +10,8 @@ use super::outputs::print_line;
 use super::scene::LoadArgs;
 use crate::data::load::LoadControl;
 use crate::data::{DataKind, Dataset, Hints, ValueRange, open};
+use crate::gpu::small_volume;
+use crate::model::auto;
 
 /// Percentiles that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
@@ -56,6 +58,8 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "gpu_bytes_with_one_light": gpu_bytes,
     });
     if args.json {
+        let mut facts = facts;
+        facts["looks"] = looks(&loaded)?;
         print_line(&format!("{facts:#}"))?;
         return Ok(());
     }
@@ -128,4 +132,14 @@ fn hint_lines(hints: &Hints) -> Vec<String> {
         add("label", Some(&format!("and {} more", hints.labels.len() - LISTED_LABELS)));
     }
     lines
+}
+
+/// The looks that are proposed, for `--look`.
+fn looks(loaded: &Dataset) -> Result<Value, CliError> {
+    let first = auto::first_settings(loaded.volume(), loaded.histogram());
+    let small = small_volume(loaded)?;
+    let looks = auto::looks(&first, small.volume(), small.histogram()).into_iter().enumerate();
+    let listed =
+        looks.map(|(at, look)| json!({"number": at + 1, "name": look.name, "differs": look.differs}));
+    Ok(listed.collect())
 }

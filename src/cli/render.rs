@@ -81,7 +81,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             "splats": renderer.splats()?,
             "peak_gpu_bytes": took.peak_gpu_bytes,
             "mean_luminance": mean_luminance(&picture.light),
-            "dark_share": dark_share(&picture.light),
+            "dark_share": dark_share(&picture.light, settings.output.exposure),
             "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(&settings).unwrap_or_default())),
             "settings": settings,
         }));

@@ -5,6 +5,7 @@
 
 mod context;
 mod eye;
+mod first_look;
 mod frame;
 mod light;
 mod output;
@@ -22,9 +23,10 @@ pub use crate::plan::RenderOptions;
 pub(crate) use context::check_room_for_drivers;
 pub use context::error::GpuError;
 pub use context::{Context, device_descriptor};
-pub use frame::first_look::{
-    balance, balance_quickly, dark_share, first_look, first_look_upright, mean_luminance, seen_share,
-    shadowed_share,
+pub use first_look::{
+    Found, LightSearch, Open, Score, SmallLook, Sought, Suggestion, balance, balance_quickly, dark_share,
+    exposure_for, finish_look, first_look, first_look_upright, mean_luminance, seen_share, shadowed_share,
+    small_volume,
 };
 pub use frame::fit::fitted;
 pub use frame::job::Job;

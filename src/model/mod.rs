@@ -6,6 +6,7 @@
 pub mod auto;
 mod exchange;
 mod image_spec;
+mod light_place;
 mod object_turn;
 mod rig;
 mod settings;
@@ -42,9 +43,13 @@ pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear};
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
+pub use light_place::LightPlace;
 pub use object_turn::{ObjectTurn, RoomTurn};
-pub use rig::Rig;
-pub use settings::{Background, LightingTransfer, Output, SCHEMA, Settings, Shading, Sides, ToneMap};
+pub use rig::{Rig, key_and_fill};
+pub use settings::{
+    Background, LightingTransfer, MAX_EXPOSURE, MIN_EXPOSURE, Output, SCHEMA, Settings, Shading, Sides,
+    ToneMap,
+};
 pub use transfer::{
     ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, MAX_POINTS, Mixing, STEPS, TransferFunction,
     linear_from_srgb, srgb_from_linear,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Camera, Light, LightLock};
+use super::{Camera, Light, LightLock, LightPlace};
 
 /// Distance of the lights from the middle of the volume: outside its half diagonal of at most √3.
 const DISTANCE: f64 = 3.0;
@@ -52,24 +52,7 @@ impl Rig {
         let view = camera.scene_from_view();
         // Right, up and towards the eye.
         let at = |place: [f64; 3]| (view * (DVec3::from(place).normalize_or(DVec3::Z) * DISTANCE)).into();
-        // 54° from the line of sight, and more to the side than up. Of places between 20° and 70°, those about 55° have
-        // one and a half to two times the shadows of 40° in pictures that are as rich in tones and no blacker; and
-        // shape is read best from light 20° to 30° above the eye, a little to the left (O'Shea, Agrawala & Banks 2010).
-        let (left, up) = (50f64.to_radians(), 25f64.to_radians());
-        let key = Light {
-            name: "Key".to_owned(),
-            position: at([-left.sin() * up.cos(), up.sin(), left.cos() * up.cos()]),
-            color: [1.0, 0.95, 0.87],
-            ..Light::default()
-        };
-        let fill = Light {
-            name: "Fill".to_owned(),
-            position: at([0.8, 0.1, 0.6]),
-            color: [0.74, 0.85, 1.0],
-            intensity: 0.18,
-            casts_shadows: false,
-            ..Light::default()
-        };
+        let [key, fill] = key_and_fill(camera, LightPlace::USUAL);
         let named = |name: &str, position, intensity| Light {
             name: name.to_owned(),
             position,
@@ -104,6 +87,28 @@ impl Rig {
     }
 }
 
+/// A warm key from a place of one's own, and the cool fill on the other side of the viewer.
+pub fn key_and_fill(camera: &Camera, place: LightPlace) -> [Light; 2] {
+    let view = camera.scene_from_view();
+    let at = |way: DVec3| (view * (way.normalize_or(DVec3::Z) * DISTANCE)).into();
+    let key = Light {
+        name: "Key".to_owned(),
+        position: at(place.in_view()),
+        color: [1.0, 0.95, 0.87],
+        ..Light::default()
+    };
+    let across = if place.is_right() { -1.0 } else { 1.0 };
+    let fill = Light {
+        name: "Fill".to_owned(),
+        position: at(DVec3::new(0.8 * across, 0.1, 0.6)),
+        color: [0.74, 0.85, 1.0],
+        intensity: 0.18,
+        casts_shadows: false,
+        ..Light::default()
+    };
+    [key, fill]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,6 +119,17 @@ mod tests {
             let sun = Rig::FromAbove.lights(&Camera { up, ..Camera::default() })[0].position;
             // 0.35 towards the viewer for 1 upwards.
             assert!(DVec3::from(sun).normalize().dot(up.direction()) > 0.94, "{up:?}");
+        }
+    }
+
+    #[test]
+    fn the_fill_is_across_from_the_key() {
+        let camera = Camera { azimuth_deg: 33.0, ..Camera::default() };
+        let view = camera.scene_from_view().transpose();
+        for place in LightPlace::to_try() {
+            let [key, fill] = key_and_fill(&camera, place).map(|light| view * DVec3::from(light.position));
+            assert!(key.x * fill.x < 0.0, "{place:?}");
+            assert!((key.normalize() - place.in_view()).length() < 1e-9);
         }
     }
 

@@ -33,16 +33,25 @@ pub(crate) fn window_with(mut options: Options, size: Vec2) -> Harness<'static, 
             settings
         })
     });
+    let mut harness = untouched_window_of(options, size);
+    wait_until_idle(&mut harness);
+    harness
+}
+
+/// A window that does with the first look all that it does by itself; its picture is not there yet.
+pub(crate) fn untouched_window(options: Options) -> Harness<'static, App> {
+    untouched_window_of(options, Vec2::new(760.0, 1100.0))
+}
+
+fn untouched_window_of(options: Options, size: Vec2) -> Harness<'static, App> {
     let mut setup = wgpu_setup();
     // As the tests of the renderer: the first adapter that there is, software included.
     setup.power_preference = wgpu::PowerPreference::None;
-    let mut harness = Harness::builder()
+    Harness::builder()
         .with_size(size)
         .with_step_dt(0.1)
         .wgpu_setup(setup.into())
-        .build_eframe(|cc| App::new(cc, options).expect("a window"));
-    wait_until_idle(&mut harness);
-    harness
+        .build_eframe(|cc| App::new(cc, options).expect("a window"))
 }
 
 /// A window without marks over the picture, whose bytes can be compared.

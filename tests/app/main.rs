@@ -7,6 +7,7 @@ mod gestures;
 mod harness;
 mod keep_balanced;
 mod lights;
+mod looks;
 mod names;
 mod orientation;
 mod panels;

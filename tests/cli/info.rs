@@ -1,4 +1,4 @@
-//! What is said of a volume.
+//! What is known about a volume, the looks that are proposed for it, and what is decided where nobody else does.
 
 use serde_json::Value;
 
@@ -50,4 +50,64 @@ fn info_says_what_kind_of_data_it_is_and_what_the_file_says_of_it() {
         serde_json::from_str(&folder.succeed("info builtin:sphere:24 --json")).expect("valid JSON");
     assert_eq!(ball["kind"]["name"], "scalar");
     assert_eq!(ball["hints"]["modality"], Value::Null);
+}
+
+const RENDER: &str = "render builtin:chair:24 --size 64x48 -o p.png --report r.json";
+
+#[test]
+fn looks_are_listed_and_taken_by_their_numbers() {
+    let folder = Folder::new();
+    let facts: serde_json::Value =
+        serde_json::from_str(&folder.succeed("info builtin:chair:24 --json")).expect("JSON");
+    let looks = facts["looks"].as_array().expect("a list");
+    assert!((6..=9).contains(&looks.len()), "{looks:?}");
+    let number = |name: &str| {
+        let look = looks.iter().find(|look| look["name"] == name).expect("a look");
+        look["number"].as_u64().expect("a number")
+    };
+    let settings = |arguments: &str| {
+        folder.succeed(&format!("{RENDER} {arguments}"));
+        folder.json("r.json")["settings"].clone()
+    };
+    let first = settings("");
+    assert_eq!(settings("--look 1"), first);
+    let rim = settings(&format!("--look {}", number("Rim light")));
+    assert_eq!(rim["lights"][0]["name"], "Rim left");
+    assert_eq!(rim["camera"], first["camera"]);
+    let above = settings(&format!("--look {} --set shading.ambient=0.3", number("From above")));
+    assert_eq!((&above["floor"]["on"], &above["shading"]["ambient"]), (&true.into(), &0.3.into()));
+    for wrong in ["0", "10"] {
+        let outcome = folder.run(&format!("{RENDER} --look {wrong}"));
+        assert!(outcome.code == Some(2) && outcome.stderr.contains("expected 1 to"), "{outcome:?}");
+    }
+}
+
+#[test]
+fn what_is_named_is_not_decided() {
+    let folder = Folder::new();
+    let settings = |arguments: &str| {
+        folder.succeed(&format!("{RENDER} {arguments}"));
+        folder.json("r.json")["settings"].clone()
+    };
+    let first = settings("");
+    assert!(first["output"]["exposure"].as_f64().expect("a number") > 0.0);
+    assert_eq!(settings("--set output.exposure=3")["output"]["exposure"], 3.0);
+    assert_eq!(settings("--set floor.on=true")["floor"]["on"], true);
+    // Whatever moves, lights that are named stay, and the rest is as it was.
+    let moved = settings("--set lights.0.position=[0,0,3]");
+    assert_eq!(moved["lights"][0]["position"], serde_json::json!([0.0, 0.0, 3.0]));
+    // A picture without shadows is of the same look.
+    let mut flat = settings("--shadows off");
+    assert_eq!(flat["shadows"]["algorithm"], "off");
+    flat["shadows"]["algorithm"] = first["shadows"]["algorithm"].clone();
+    assert_eq!(flat, first, "lights, balance and exposure do not depend on it");
+}
+
+#[test]
+fn exposed_pictures_are_made_again_from_themselves() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:chair:16 -o p.png --size 48x36 --set output.exposure=1.7");
+    assert!(folder.succeed("replay p.png --check").contains("identical"));
+    folder.succeed("render builtin:chair:16 -o q.png --size 48x36 --session p.png");
+    assert!(folder.read("p.png") == folder.read("q.png"));
 }

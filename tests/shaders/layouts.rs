@@ -249,7 +249,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 rows,
                 first_column,
                 dither_step,
-                pad0
+                floor_exposure
             }),
         ),
         ("volume/prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),

@@ -2,9 +2,7 @@
 
 use std::borrow::Cow;
 
-use eframe::egui::{self, Key, KeyboardShortcut};
-
-use super::commands::{Command, SHORTCUTS};
+use super::commands::Command;
 use crate::app::text;
 use crate::model::{COLOR_MAPS, ObjectTurn, SceneAxis};
 
@@ -63,6 +61,9 @@ impl Command {
             Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
             Self::ShowPalette => text::commands::SHOW_PALETTE,
             Self::UseLights(_) => text::commands::USE_LIGHTS,
+            Self::UseLook(_) => text::commands::USE_LOOK,
+            Self::TryLooks => text::commands::TRY_LOOKS,
+            Self::SuggestLight => text::commands::SUGGEST_LIGHT,
             Self::TryLights => text::commands::TRY_LIGHTS,
             Self::TryPresets => text::commands::TRY_PRESETS,
             Self::NextLight => text::commands::NEXT_LIGHT,
@@ -99,28 +100,4 @@ impl Command {
         };
         label.into()
     }
-
-    /// The command's key, for menus.
-    pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
-        match self {
-            Self::StoreView(slot) => return text::commands::store_view_keys(*slot),
-            Self::RecallView(slot) => return text::commands::recall_view_keys(*slot),
-            _ => {}
-        }
-        let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);
-        found.map_or_else(String::new, |(shortcut, _)| key_text(ctx, shortcut))
-    }
-}
-
-/// A key as it is printed on the keyboard.
-pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
-    let named = ctx.format_shortcut(&shortcut);
-    let signs = [
-        (Key::OpenBracket, "["),
-        (Key::CloseBracket, "]"),
-        (Key::Comma, ","),
-        (Key::Period, "."),
-        (Key::Questionmark, "?"),
-    ];
-    signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
 }

@@ -2,10 +2,8 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
-
 use crate::data::KindName;
-use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, StandardView};
+use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView};
 
 /// Something the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,8 +66,14 @@ pub(crate) enum Command {
     UseRig(Rig),
     /// These lights.
     UseLights(Vec<Light>),
+    /// This look, whole.
+    UseLook(Box<Settings>),
+    /// Show the contact sheet of looks.
+    TryLooks,
     /// Show the contact sheet of lights.
     TryLights,
+    /// Show the best places for the selected light.
+    SuggestLight,
     /// Show the contact sheet of presets.
     TryPresets,
     /// Select the light after the selected one.
@@ -126,65 +130,8 @@ pub(crate) enum Command {
     ShowAbout,
 }
 
-const fn plain(key: Key, command: Command) -> (KeyboardShortcut, Command) {
-    (KeyboardShortcut::new(Modifiers::NONE, key), command)
-}
-
-const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
-    (KeyboardShortcut::new(Modifiers::COMMAND, key), command)
-}
-
-/// A command with its key, as help shows it.
-pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 41] = [
-    control(Key::O, Command::OpenDialog),
-    control(Key::L, Command::OpenPath),
-    control(Key::S, Command::SaveSettings),
-    control(Key::E, Command::Export),
-    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C), Command::CopyPicture),
-    control(Key::P, Command::ShowPalette),
-    control(Key::Q, Command::Quit),
-    // The longer one first: egui lets Shift pass where it is not asked for.
-    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), Command::Redo),
-    control(Key::Z, Command::Undo),
-    plain(Key::R, Command::ResetView),
-    plain(Key::F, Command::FrameAll),
-    plain(Key::Num1, Command::LookFrom(StandardView::MinusY)),
-    plain(Key::Num2, Command::LookFrom(StandardView::PlusY)),
-    plain(Key::Num3, Command::LookFrom(StandardView::PlusX)),
-    plain(Key::Num4, Command::LookFrom(StandardView::MinusX)),
-    plain(Key::Num7, Command::LookFrom(StandardView::PlusZ)),
-    plain(Key::Num8, Command::LookFrom(StandardView::MinusZ)),
-    plain(Key::Num9, Command::LookFrom(StandardView::Isometric)),
-    plain(Key::Num5, Command::ToggleProjection),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::T), Command::TurnRound),
-    plain(Key::T, Command::TurnObject(ObjectTurn::Over)),
-    plain(Key::F11, Command::ToggleFullScreen),
-    plain(Key::Comma, Command::PreviousLight),
-    plain(Key::Period, Command::NextLight),
-    plain(Key::OpenBracket, Command::Dimmer),
-    plain(Key::CloseBracket, Command::Brighter),
-    plain(Key::S, Command::Solo),
-    plain(Key::M, Command::Mute),
-    plain(Key::B, Command::Balance),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::X), Command::FacePlane),
-    plain(Key::X, Command::TogglePlane),
-    plain(Key::K, Command::ToggleCrop),
-    plain(Key::I, Command::ToggleProbe),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleFloor),
-    plain(Key::G, Command::ToggleOverlay),
-    plain(Key::H, Command::ToggleHandles),
-    plain(Key::C, Command::ToggleCompare),
-    plain(Key::D, Command::ShowSlices),
-    plain(Key::N, Command::ToggleSide),
-    plain(Key::Questionmark, Command::ShowHelp),
-    plain(Key::F1, Command::ShowHelp),
-];
-
 /// Digits under which views are kept.
 pub(crate) const VIEW_SLOTS: std::ops::RangeInclusive<u8> = 1..=9;
-
-const DIGITS: [Key; 9] =
-    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 /// Every command that can be asked for by its name.
 pub(crate) fn listed() -> Vec<Command> {
@@ -212,7 +159,9 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::FacePlane,
         Command::ToggleFloor,
         Command::AddLight,
+        Command::TryLooks,
         Command::TryLights,
+        Command::SuggestLight,
         Command::TryPresets,
         Command::NextLight,
         Command::PreviousLight,
@@ -245,66 +194,4 @@ pub(crate) fn listed() -> Vec<Command> {
     all.extend(VIEW_SLOTS.map(Command::StoreView));
     all.extend(VIEW_SLOTS.map(Command::RecallView));
     all
-}
-
-/// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited.
-pub(crate) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
-    let typing = is_typing(ctx);
-    commands.extend(view_slots(ctx));
-    for (shortcut, command) in &SHORTCUTS {
-        let plain = !shortcut.modifiers.command;
-        if !(typing && plain) && ctx.input_mut(|input| input.consume_shortcut(shortcut)) {
-            commands.push(command.clone());
-        }
-    }
-}
-
-/// Whether letters go into a text field.
-pub(crate) fn is_typing(ctx: &egui::Context) -> bool {
-    ctx.egui_wants_keyboard_input() && ctx.memory(egui::Memory::focused).is_some_and(|id| is_text(ctx, id))
-}
-
-/// Digits with Control, and Shift. By the place of the key: with Shift its sign is another on every keyboard.
-fn view_slots(ctx: &egui::Context) -> Vec<Command> {
-    let slot = |event: &Event| {
-        let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return None };
-        let slot = DIGITS.iter().position(|digit| *digit == physical_key.unwrap_or(*key))? as u8 + 1;
-        (modifiers.command && !modifiers.alt).then_some(if modifiers.shift {
-            Command::StoreView(slot)
-        } else {
-            Command::RecallView(slot)
-        })
-    };
-    ctx.input(|input| input.events.iter().filter_map(slot).collect())
-}
-
-/// Whether a widget is a text field that is being edited.
-fn is_text(ctx: &egui::Context, id: egui::Id) -> bool {
-    egui::TextEdit::load_state(ctx, id).is_some()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_two_commands_share_a_key_or_a_name() {
-        for (at, (key, command)) in SHORTCUTS.iter().enumerate() {
-            for (other_key, other) in &SHORTCUTS[at + 1..] {
-                assert!(key != other_key, "{command:?} and {other:?}");
-            }
-        }
-        let mut names: Vec<_> = listed().iter().map(Command::label).collect();
-        let count = names.len();
-        names.sort();
-        names.dedup();
-        assert_eq!(names.len(), count);
-    }
-
-    #[test]
-    fn everything_with_a_key_can_be_found_by_its_name() {
-        for (_, command) in SHORTCUTS {
-            assert!(listed().contains(&command) || command == Command::ShowPalette, "{command:?}");
-        }
-    }
 }

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Key, Modifiers};
 use glam::{DQuat, DVec3};
 
-use super::commands::is_typing;
+use super::shortcuts::is_typing;
 use crate::model::{Camera, Light, Settings};
 
 /// Degrees per press of an arrow key.

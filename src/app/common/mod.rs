@@ -1,7 +1,8 @@
-//! What all parts of the window share: commands, colours and sizes, keys for lights, facts of the open volume.
+//! What all parts of the window share: commands and their keys, colours and sizes, keys for lights, facts of the open volume.
 
 pub(super) mod command_names;
 pub(super) mod commands;
 pub(super) mod light_keys;
+pub(super) mod shortcuts;
 pub(super) mod theme;
 pub(super) mod volume_facts;

@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
                 *panels.selected_light = index;
             }
             let Settings { camera, lights, .. } = &mut *panels.settings;
-            if selected && body(ui, &mut lights[index], camera) {
+            if selected && body(ui, &mut lights[index], camera, panels.commands) {
                 removed = Some(index);
             }
         });
@@ -58,7 +58,7 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
 }
 
 /// Everything else. Whether the light is to be removed.
-fn body(ui: &mut Ui, light: &mut Light, camera: &Camera) -> bool {
+fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Command>) -> bool {
     let fresh = Light::default();
     row(ui, text::lights::NAME, |ui| {
         let field = egui::TextEdit::singleline(&mut light.name)
@@ -88,6 +88,10 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera) -> bool {
         if ui.button(headlight.name).on_hover_text(headlight.tip).clicked() {
             light.lock = LightLock::Camera;
             light.position = [0.0, 0.0, DVec3::from(light.position).length().max(2.0)];
+        }
+        let suggest = text::lights::SUGGEST;
+        if ui.button(suggest.name).on_hover_text(suggest.tip).clicked() {
+            commands.push(Command::SuggestLight);
         }
     });
     let density = Number::new(text::lights::DENSITY, 0.01..=4.0).unit(TIMES).log();

@@ -2,10 +2,11 @@
 
 use eframe::egui::Ui;
 
+use super::super::text::common::TIMES;
 use super::super::text::{self, Named};
 use super::Panels;
 use super::controls::{Number, choice, color, row};
-use crate::model::{Sides, ToneMap};
+use crate::model::{MAX_EXPOSURE, MIN_EXPOSURE, Sides, ToneMap};
 
 const TONE_MAPS: [(ToneMap, Named); 2] =
     [(ToneMap::Neutral, text::shading::NEUTRAL), (ToneMap::Clip, text::shading::CLIP)];
@@ -30,6 +31,8 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     gradient.show(ui, &mut shading.surface_gradient, defaults.surface_gradient);
     choice(ui, text::shading::SIDES, &mut shading.sides, &SIDES);
     let output = &mut panels.settings.output;
+    let exposure = Number::new(text::shading::EXPOSURE, MIN_EXPOSURE..=MAX_EXPOSURE).unit(TIMES).log();
+    exposure.show(ui, &mut output.exposure, panels.defaults.output.exposure);
     choice(ui, text::shading::TONE_MAP, &mut output.tone_map, &TONE_MAPS);
     row(ui, text::shading::BACKGROUND, |ui| {
         color(ui, text::shading::BACKGROUND_TOP, &mut output.background.top);

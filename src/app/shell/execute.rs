@@ -18,7 +18,7 @@ use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
 use crate::gpu::{GpuError, Renderer};
-use crate::model::{COLOR_MAPS, Camera};
+use crate::model::{COLOR_MAPS, Camera, Settings};
 
 impl App {
     /// Does what the user asked for.
@@ -121,7 +121,15 @@ impl App {
                 self.selected_light = self.selected_light.min(lights.len().saturating_sub(1));
                 self.settings.lights = lights;
             }
+            Command::UseLook(look) => {
+                // Views that were kept are no part of it, nor is how truly it is drawn, nor what is cut away.
+                let Settings { cuts, sampling, views, .. } = std::mem::take(&mut self.settings);
+                self.settings = Settings { cuts, sampling, views, ..*look };
+                self.selected_light = 0;
+            }
+            Command::TryLooks => self.contact_sheet.open(Sheet::Looks),
             Command::TryLights => self.contact_sheet.open(Sheet::Lights),
+            Command::SuggestLight => self.contact_sheet.open(Sheet::Suggestions),
             Command::TryPresets => self.contact_sheet.open(Sheet::Presets),
             Command::NextLight | Command::PreviousLight => {
                 let by = if command == Command::NextLight { 1 } else { -1 };
@@ -348,6 +356,7 @@ impl App {
             context: self.viewport.context().clone(),
             dataset,
             settings: self.settings.clone(),
+            first: self.defaults.clone(),
             source: self.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
             selected_light: self.selected_light,
         })

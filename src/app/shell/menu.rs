@@ -135,6 +135,8 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 }
 
 fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    item(ui, menu, Command::TryLooks, true);
+    ui.separator();
     item(ui, menu, Command::ResetView, true);
     item(ui, menu, Command::FrameAll, true);
     item(ui, menu, Command::TurnObject(ObjectTurn::Over), true);
@@ -223,6 +225,8 @@ fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         }
     });
     item(ui, menu, Command::TryLights, true);
+    let has_light = !menu.settings.lights.is_empty();
+    item(ui, menu, Command::SuggestLight, has_light);
     item(ui, menu, Command::NextLight, true);
     item(ui, menu, Command::Solo, true);
     item(ui, menu, Command::Mute, true);

@@ -1,6 +1,7 @@
 //! What holds the window together: picture, menu, history, session, messages, the balance that is kept.
 
 pub(super) mod execute;
+pub(super) mod first_lights;
 pub(super) mod history;
 pub(super) mod keep_balanced;
 pub(super) mod menu;

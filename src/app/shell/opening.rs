@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 
+use super::first_lights::FirstLights;
 use super::history::History;
 use super::keep_balanced::KeepBalanced;
 use super::session::Session;
@@ -307,6 +308,9 @@ impl App {
         }
         // What is measured is of the volume before; a first look is balanced, a look from there is not.
         self.keep_balanced = KeepBalanced::new(&self.settings, !is_kept);
+        let has_session =
+            self.session_is_due && self.session.as_ref().is_some_and(|session| session.path().exists());
+        let is_named = is_kept || has_session || self.pending.is_some() || self.adjust.is_some();
         let range = volume.value_range();
         // Session and command line speak of the first volume.
         if std::mem::take(&mut self.session_is_due)
@@ -339,6 +343,9 @@ impl App {
             self.settings = adjust(std::mem::take(&mut self.settings));
             self.settings.sanitise();
         }
+        // What somebody has chosen stays.
+        self.first_lights = if is_named { FirstLights::default() } else { FirstLights::of(&self.settings) };
+        self.light_search = None;
         self.volume = Some(VolumeFacts::of(source, reading, &dataset));
         self.treat_as_it_is();
         self.viewport.set_scene(renderer, dataset);

@@ -7,6 +7,7 @@ use super::error::AppError;
 use super::options::Options;
 use crate::app::common::theme;
 use crate::app::memory::Memory;
+use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::History;
 use crate::app::shell::keep_balanced::KeepBalanced;
 use crate::app::shell::messages::Messages;
@@ -122,6 +123,8 @@ impl App {
             pending: None,
             balance: None,
             keep_balanced: KeepBalanced::new(&Settings::default(), true),
+            first_lights: FirstLights::default(),
+            light_search: None,
             export: Export::default(),
             files: Files::default(),
             session_is_due: false,

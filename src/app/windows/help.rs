@@ -2,8 +2,7 @@
 
 use eframe::egui;
 
-use crate::app::common::command_names::key_text;
-use crate::app::common::commands::SHORTCUTS;
+use crate::app::common::shortcuts::{SHORTCUTS, key_text};
 use crate::app::text;
 use crate::app::viewport::Facts;
 use crate::model::SceneAxis;

@@ -22,8 +22,8 @@ pub(super) struct Brightness {
     exposures: Exposures,
     /// When darkness was measured.
     measured: Instant,
-    /// Whose light was measured then.
-    measured_eye: Option<EyeKey>,
+    /// Whose light was measured then, and how it was exposed.
+    measured_eye: Option<(EyeKey, f64)>,
     /// The last preview that was measured.
     last_preview: Option<FrameRequest>,
 }
@@ -64,19 +64,20 @@ impl Brightness {
         frame_request: &FrameRequest,
         is_at_rest: bool,
     ) -> Result<Option<f64>, GpuError> {
-        let eye = &frame_request.keys().eye;
-        let is_known = scene.renderer.report().runs.eye == 0 && self.measured_eye.as_ref() == Some(eye);
+        let exposure = frame_request.looks.left.output.exposure;
+        let measured = (frame_request.keys().eye.clone(), exposure);
+        let is_known = scene.renderer.report().runs.eye == 0 && self.measured_eye.as_ref() == Some(&measured);
         if is_known || (!is_at_rest && self.measured.elapsed() < MEASURING_INTERVAL) {
             return Ok(None);
         }
         self.measured = Instant::now();
-        self.measured_eye = Some(eye.clone());
+        self.measured_eye = Some(measured);
         let light = scene.renderer.read_light()?;
         if frame_request.looks.right.is_none() {
             let is_of_last_preview = self.last_preview.as_ref() == Some(frame_request);
             self.exposures.settle(mean_luminance(&light), is_of_last_preview);
         }
-        Ok(Some(dark_share(&light)))
+        Ok(Some(dark_share(&light, exposure)))
     }
 
     /// Learns from a preview, and shows it again with the exposure that makes it as bright as the last picture at full

@@ -152,6 +152,11 @@ impl Loader {
         Ok(Self { context, shaders, options, running: None, warm_up })
     }
 
+    /// The pipelines of the device of pictures.
+    pub(crate) fn shaders(&self) -> &ShaderLibrary {
+        &self.shaders
+    }
+
     /// Makes pipelines that may be needed later, once; to be called when nothing else is to be done.
     pub(crate) fn prepare(&mut self) {
         if self.warm_up.threads.len() < 2

@@ -1,5 +1,6 @@
 //! What the first picture of a volume is like, in figures: how much of it the object covers, how bright it is, how much
-//! of it shadows darken, how much of what is shown is the volume's box, and whether a patient is seen from the front.
+//! of it shadows darken with the lights that were found, how much of what is shown is the volume's box, whether a patient
+//! is seen from the front, and what finding all that takes.
 
 use serde_json::{Value, json};
 
@@ -8,18 +9,24 @@ use super::{Bench, MOST_SIZE};
 use crate::cli::CliError;
 use crate::cli::cpu_time::process_cpu_ms;
 use crate::data::DataKind;
-use crate::gpu::{RenderOptions, dark_share, mean_luminance, seen_share, shadowed_share};
+use crate::gpu::{
+    LightSearch, RenderOptions, Sought, dark_share, first_look, mean_luminance, seen_share, shadowed_share,
+};
 use crate::model::{ShadowAlgorithm, auto};
 
 impl Bench<'_> {
     /// Figures of the first look, whatever look the benchmark has.
     pub(super) fn first_look(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let volume = self.loaded.volume();
-        let before = process_cpu_ms();
-        let first = auto::first_settings(volume, self.loaded.histogram());
-        let found_ms = process_cpu_ms().zip(before).map(|(after, before)| round(after - before));
-        let mut settings = first;
-        settings.shadows.balance = self.settings.shadows.balance;
+        let mut cpu_ms = CpuClock::start();
+        auto::first_settings(volume, self.loaded.histogram());
+        let found_ms = cpu_ms.lap();
+        let first = first_look(&mut self.renderer, self.loaded)?;
+        let first_ms = cpu_ms.lap();
+        let found =
+            LightSearch::new(self.renderer.shaders(), self.loaded, &first, Sought::KeyAndFill)?.run()?;
+        let search_ms = cpu_ms.lap();
+        let settings = found.as_ref().map_or_else(|| first.clone(), |found| found.apply(&first));
         let mut unshadowed = settings.clone();
         unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
         let size = self.args.size.map(|edge| edge.min(MOST_SIZE));
@@ -35,9 +42,14 @@ impl Bench<'_> {
             "volume": volume.name(),
             "dims": volume.dims(),
             "found_cpu_ms": found_ms,
+            "first_cpu_ms": first_ms,
+            "search_cpu_ms": search_ms,
             "seen_share": round(seen_share(&with)),
-            "mean_luminance": round(mean_luminance(&with)),
-            "dark_share": round(dark_share(&with)),
+            "exposure": round(settings.output.exposure),
+            "mean_luminance": round(settings.output.exposure * mean_luminance(&with)),
+            "dark_share": round(dark_share(&with, settings.output.exposure)),
+            "lights_moved": settings.lights != first.lights,
+            "floor": settings.floor.on,
             "shadowed_share": round(shadowed_share(&with, &without)),
             "blockness": round(auto::blockness(&settings, volume)),
             "kind": volume.kind().kind.name().key(),
@@ -50,6 +62,23 @@ impl Bench<'_> {
     }
 }
 
+/// CPU time of this process, from one call to the next.
+struct CpuClock {
+    last: Option<f64>,
+}
+
+impl CpuClock {
+    fn start() -> Self {
+        Self { last: process_cpu_ms() }
+    }
+
+    /// Milliseconds since the last call; `None` where the system does not say.
+    fn lap(&mut self) -> Option<f64> {
+        let before = std::mem::replace(&mut self.last, process_cpu_ms());
+        self.last.zip(before).map(|(after, before)| round(after - before))
+    }
+}
+
 /// Lines of the table.
 pub(super) fn lines(cases: &[Value]) -> Vec<String> {
     let looks = cases.iter().filter(|case| case["name"] == "first-look");
@@ -57,30 +86,38 @@ pub(super) fn lines(cases: &[Value]) -> Vec<String> {
         .map(|case| {
             let number =
                 |name: &str| case[name].as_f64().map_or("–".to_owned(), |value| format!("{value:.3}"));
+            let milliseconds =
+                |name: &str| case[name].as_f64().map_or("–".to_owned(), |ms| format!("{ms:.0}"));
+            let yes_no = |name: &str| if case[name] == true { "yes" } else { "no" };
             let from = match case["from_the_front"].as_bool() {
                 Some(true) => "front",
                 Some(false) => "elsewhere",
                 None => "–",
             };
             format!(
-                "{:<24} {:>6} {:>10} {:>6} {:>9} {:>10} {:>10} {:>14} {:>6} {:>9}",
+                "{:<24} {:>6} {:>8} {:>10} {:>6} {:>9} {:>6} {:>5} {:>10} {:>10} {:>14} {:>6} {:>9} {:>9}",
                 case["volume"].as_str().unwrap_or_default().chars().take(24).collect::<String>(),
                 number("seen_share"),
+                number("exposure"),
                 number("mean_luminance"),
                 number("dark_share"),
                 number("shadowed_share"),
+                yes_no("lights_moved"),
+                yes_no("floor"),
                 number("blockness"),
                 from,
                 case["kind"].as_str().unwrap_or_default(),
                 case["labels_lost"].as_u64().map_or("–".to_owned(), |lost| lost.to_string()),
-                case["found_cpu_ms"].as_f64().map_or("–".to_owned(), |ms| format!("{ms:.0}")),
+                milliseconds("found_cpu_ms"),
+                milliseconds("search_cpu_ms"),
             )
         })
         .collect();
     if !lines.is_empty() {
         lines.insert(
             0,
-            "first look                 seen  luminance   dark  shadowed  blockness       from           kind   lost  found ms"
+            "first look                 seen exposure  luminance   dark  shadowed  moved floor  blockness       \
+              from           kind   lost  found ms search ms"
                 .to_owned(),
         );
     }

@@ -15,9 +15,16 @@ impl Volume {
     pub fn reduced(self, block: [usize; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
-        if block == [1; 3] {
-            return Ok(self);
-        }
+        if block == [1; 3] { Ok(self) } else { self.averaged(block) }
+    }
+
+    /// As [`Self::reduced`], beside the volume itself, which is still needed.
+    ///
+    /// # Errors
+    /// As [`Volume::new`].
+    pub fn averaged(&self, block: [usize; 3]) -> Result<Self, VolumeError> {
+        let dims = self.dims();
+        let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
         let padding = self.padding_value();
         let samples = match self.samples() {
             Samples::U8(values) => {
@@ -51,7 +58,7 @@ impl Volume {
             Some(padding) => reduced.with_padding(padding)?,
             None => reduced,
         };
-        Ok(reduced.standing_for(&self))
+        Ok(reduced.standing_for(self))
     }
 }
 

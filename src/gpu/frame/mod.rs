@@ -1,7 +1,6 @@
 //! One picture from request to pixels: what must be computed, in which steps, and what is kept.
 
 pub(super) mod encode;
-pub(super) mod first_look;
 pub(super) mod fit;
 pub(super) mod job;
 pub(super) mod light_build;

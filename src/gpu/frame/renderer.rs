@@ -60,6 +60,11 @@ impl Renderer {
         &self.tools.context
     }
 
+    /// Its pipelines, for other renderers on the device.
+    pub fn shaders(&self) -> ShaderLibrary {
+        self.tools.shaders.clone()
+    }
+
     /// What the last picture took.
     pub fn report(&self) -> &Report {
         &self.report

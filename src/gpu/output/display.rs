@@ -37,7 +37,8 @@ impl Variant for DisplayVariant {
     }
 }
 
-/// Turns the linear picture into the shown one, with all light multiplied by the exposure.
+/// Turns the linear picture into the shown one, with all light multiplied by the exposure of the look, and that of the
+/// volume by a preview's.
 pub(crate) fn display(
     Tools { context, shaders, pool, .. }: &Tools,
     output: &Output,
@@ -59,12 +60,12 @@ pub(crate) fn display(
         bottom: opaque(bottom),
         transparent: u32::from(options.transparent),
         clip: u32::from(output.tone_map == ToneMap::Clip),
-        exposure: options.exposure,
+        exposure: options.exposure * output.exposure as f32,
         first_row: first_row as f32,
         rows: rows as f32,
         first_column: first_column as f32,
         dither_step: if is_dithered { 1.0 / 255.0 } else { 0.0 },
-        pad0: 0,
+        floor_exposure: output.exposure as f32,
     };
     let uniform = pool.buffer(context, "Display::uniform", &[uniform], wgpu::BufferUsages::UNIFORM);
     let bind_group = pool.bind(

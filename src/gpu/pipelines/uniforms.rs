@@ -367,5 +367,5 @@ pub struct Display {
     pub rows: f32,
     pub first_column: f32,
     pub dither_step: f32,
-    pub pad0: u32,
+    pub floor_exposure: f32,
 }

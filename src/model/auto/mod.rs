@@ -5,13 +5,18 @@
 //! The opacity ramp starts above it, at the value that best splits the volume in two (Otsu 1979).
 
 mod domain;
+mod floor;
 mod frame;
 mod isosurfaces;
+mod looks;
 mod object;
 mod palette;
 mod threshold;
 mod transfer;
 mod view;
+
+pub use self::floor::wants_floor;
+pub use self::looks::{Proposal, looks};
 
 use self::domain::Domain;
 use self::object::Object;
@@ -110,6 +115,19 @@ pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<Ki
 /// The labels of a label map that settings do not show.
 pub fn labels_lost(settings: &Settings, volume: &Volume) -> usize {
     transfer::lost_labels(&settings.transfer, volume)
+}
+
+/// What of a histogram lies above a density.
+fn above(histogram: &Histogram, start: f64) -> Histogram {
+    let first = ((start * histogram.counts.len() as f64) as usize).min(histogram.counts.len() - 1);
+    let counts: Vec<u64> = histogram
+        .counts
+        .iter()
+        .enumerate()
+        .map(|(bin, &count)| if bin < first { 0 } else { count })
+        .collect();
+    let total = counts.iter().sum();
+    Histogram { counts, total }
 }
 
 #[cfg(test)]

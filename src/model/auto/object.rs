@@ -190,6 +190,27 @@ impl Object {
         on_box as f64 / faces.max(1) as f64
     }
 
+    /// The share of it that its largest part is.
+    pub(super) fn largest_part(&self) -> f64 {
+        let sizes: Vec<usize> = self.parts().iter().map(|part| part.cells.len()).collect();
+        let all: usize = sizes.iter().sum();
+        sizes.into_iter().max().unwrap_or(0) as f64 / all.max(1) as f64
+    }
+
+    /// How little surface it has for its size: 1 without any, 0 where every cell stands alone.
+    pub(super) fn compactness(&self) -> f64 {
+        let (mut cells, mut faces) = (0usize, 0usize);
+        for cell in self.all_cells() {
+            cells += 1;
+            for (axis, step) in (0..3).flat_map(|axis| [-1, 1].map(|step| (axis, step))) {
+                let mut next = cell.map(|n| n as i64);
+                next[axis] += step;
+                faces += usize::from(!self.is_at(next));
+            }
+        }
+        1.0 - faces as f64 / (6 * cells.max(1)) as f64
+    }
+
     /// First and last voxels of the object in every row of cells, in index space.
     pub(super) fn outline(&self) -> Vec<DVec3> {
         let [nx, ny, nz] = self.cells;

@@ -172,14 +172,23 @@ pub struct Output {
     pub background: Background,
     /// Applied to the volume, never to the background.
     pub tone_map: ToneMap,
+    /// Multiplies the light of the volume and of the floor before the tone map, never the background:
+    /// [`MIN_EXPOSURE`] … [`MAX_EXPOSURE`]. Linear pictures have it, too; what lights and shadows are measured by does
+    /// not.
+    pub exposure: f64,
 }
+
+/// Four stops down and four up: beyond them a picture is black, or white, whatever it shows.
+pub const MIN_EXPOSURE: f64 = 1.0 / 16.0;
+/// See [`MIN_EXPOSURE`].
+pub const MAX_EXPOSURE: f64 = 16.0;
 
 impl Default for Output {
     fn default() -> Self {
         // #14161b … #262a33: dark, but not black, so that shadows can be told from it.
         let bytes = |rgb: [u8; 3]| rgb.map(|c| f32::from(c) / 255.0);
         let background = Background { top: bytes([0x14, 0x16, 0x1b]), bottom: bytes([0x26, 0x2a, 0x33]) };
-        Self { background, tone_map: ToneMap::Neutral }
+        Self { background, tone_map: ToneMap::Neutral, exposure: 1.0 }
     }
 }
 

@@ -4,8 +4,8 @@
 use crate::data::single_line;
 use crate::model::{
     Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light, MAX_BIAS_VOXELS,
-    MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_NAME, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, Output, Sampling,
-    Settings, Shading, Shadows,
+    MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_NAME, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP,
+    MIN_EXPOSURE, Output, Sampling, Settings, Shading, Shadows,
 };
 
 impl Settings {
@@ -150,9 +150,10 @@ impl Settings {
         } = &mut self.sampling;
         number(slab, 0.25, 2.0, default.sampling.slab);
         kernel(eye_kernel);
-        let Output { background: Background { top, bottom }, tone_map: _ } = &mut self.output;
+        let Output { background: Background { top, bottom }, tone_map: _, exposure } = &mut self.output;
         rgb(top);
         rgb(bottom);
+        number(exposure, MIN_EXPOSURE, MAX_EXPOSURE, default.output.exposure);
     }
 }
 

@@ -12,6 +12,7 @@ use super::bounds::{self, Bounded, MAX_LOOK_BYTES};
 use super::made_by::tells_maker;
 use super::path_text::{decode_path, encode_path};
 use super::renames::rename;
+use super::schemas::complete;
 use super::unknown;
 use crate::data::ValueRange;
 use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_relative};
@@ -194,7 +195,15 @@ impl Record {
 
     /// Whether the record says how the lights are balanced.
     pub fn names_balance(&self) -> bool {
-        self.overlay.pointer("/shadows/balance").is_some()
+        self.names("shadows.balance")
+    }
+
+    /// Whether the record says something of a setting, by its path: also by its schema alone.
+    pub fn names(&self, path: &str) -> bool {
+        let mut given = self.overlay.clone();
+        rename("", &mut given);
+        complete(&mut given);
+        given.pointer(&format!("/{}", path.replace('.', "/"))).is_some()
     }
 
     /// The settings of the record laid over others, for a volume with these values, and warnings of what was not

@@ -34,6 +34,18 @@ pub(super) fn complete(record: &mut Value) {
     if schema < 2 {
         complete_scattered(groups);
     }
+    complete_exposure(groups);
+}
+
+/// Exposes as before there was a choice what a record says of the end of a picture, if it says all that there was then:
+/// the automatic look that it is laid over may have an exposure of its own.
+fn complete_exposure(groups: &mut Map<String, Value>) {
+    if let Some(Value::Object(output)) = groups.get_mut("output")
+        && output.contains_key("tone_map")
+        && output.contains_key("background")
+    {
+        output.entry("exposure").or_insert(json!(1.0));
+    }
 }
 
 /// Takes the normals of scattered sheets from sheets, whatever was set: so they were.
@@ -96,6 +108,21 @@ mod tests {
         assert_eq!(load(r#"{"schema": 1, "shading": {"sides": "one"}}"#).shading.sides, Sides::One);
         assert_eq!(load(r#"{"shadows": {"gain": 2.0}}"#).shadows.near_field, NearField::Short);
         assert_eq!(load(r#"{"schema": 2}"#), Settings::default());
+    }
+
+    #[test]
+    fn saved_pictures_are_as_bright_as_they_were() {
+        let mut now = Settings::default();
+        now.output.exposure = 1.7;
+        let exposure = |text: &str| load_json(&now, text).expect("settings").0.output.exposure;
+        let mut saved = serde_json::to_value(Settings::default()).expect("settings");
+        saved["output"].as_object_mut().expect("an object").remove("exposure");
+        assert_eq!(exposure(&saved.to_string()), 1.0);
+        saved["output"]["exposure"] = serde_json::json!(0.5);
+        assert_eq!(exposure(&saved.to_string()), 0.5);
+        // What leaves the end of a picture open leaves its exposure, too.
+        assert_eq!(exposure(r#"{"schema": 2, "output": {"tone_map": "clip"}}"#), 1.7);
+        assert_eq!(exposure(r#"{"schema": 2}"#), 1.7);
     }
 
     #[test]

@@ -134,6 +134,7 @@ fn every_setting_causes_what_the_design_says() {
         ("output.background.top", "[0,0,0]", Effect::Display),
         ("output.background.bottom", "[0,0,0]", Effect::Display),
         ("output.tone_map", "clip", Effect::Display),
+        ("output.exposure", "2", Effect::Display),
     ];
     for (path, value, expected) in &table {
         assert_eq!(&effect_of(&request(), path, value), expected, "{path} = {value}");

@@ -137,6 +137,7 @@ fn every_setting_costs_what_it_should() {
         ("output.background.top", "[0,0,0]", Cost::Display),
         ("output.background.bottom", "[0,0,0]", Cost::Display),
         ("output.tone_map", "clip", Cost::Display),
+        ("output.exposure", "2", Cost::Display),
     ];
     let bench = Bench::new();
     for (path, value, expected) in table {

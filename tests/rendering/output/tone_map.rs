@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::common::{Dataset, context, render};
 use crate::compare::{Difference, Limit, compare};
 use crate::scenes;
-use crate::thresholds::TONE_MAP;
+use crate::thresholds::{EIGHT_BITS, TONE_MAP};
 
 const SIZE: [u32; 2] = [96, 80];
 
@@ -31,12 +31,12 @@ fn srgb(linear: f64) -> f64 {
 }
 
 /// What is shown of premultiplied light before nothing, with straight alpha.
-fn shown(light: [f32; 4], tone_map: ToneMap) -> [f64; 4] {
+fn shown(light: [f32; 4], tone_map: ToneMap, exposure: f64) -> [f64; 4] {
     let [r, g, b, alpha] = light.map(f64::from);
     if alpha <= 0.0 {
         return [0.0; 4];
     }
-    let straight = DVec3::new(r, g, b) / alpha;
+    let straight = exposure * DVec3::new(r, g, b) / alpha;
     let mapped = match tone_map {
         ToneMap::Neutral => neutral(straight),
         ToneMap::Clip => straight.clamp(DVec3::ZERO, DVec3::ONE),
@@ -47,20 +47,21 @@ fn shown(light: [f32; 4], tone_map: ToneMap) -> [f64; 4] {
 /// How bright the lights of the pictures are: from hardly anything to far beyond white.
 const INTENSITIES: [f64; 4] = [0.2, 1.0, 4.0, 200.0];
 
-fn look(intensity: f64, tone_map: ToneMap) -> Settings {
+fn look(intensity: f64, tone_map: ToneMap, exposure: f64) -> Settings {
     let mut settings = scenes::look();
     settings.lights[0].intensity = intensity;
     settings.lights[0].color = [1.0, 0.7, 0.4];
     settings.output.tone_map = tone_map;
+    settings.output.exposure = exposure;
     settings
 }
 
 /// Light of all the pictures, and what the renderer shows of it with 16 bits.
-fn sweep(mut renderer: Renderer, tone_map: ToneMap) -> (Vec<[f32; 4]>, Vec<f64>) {
+fn sweep(mut renderer: Renderer, tone_map: ToneMap, exposure: f64) -> (Vec<[f32; 4]>, Vec<f64>) {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let (mut light, mut found) = (Vec::new(), Vec::new());
     for intensity in INTENSITIES {
-        let settings = look(intensity, tone_map);
+        let settings = look(intensity, tone_map, exposure);
         light.extend(render(&mut renderer, &loaded, &settings, SIZE).light);
         let shot = ImageSpec { depth: Depth::Sixteen, transparent: true, ..ImageSpec::new(SIZE) };
         let rows = renderer.bands_of(&loaded, &settings, &shot, 4096, 1 << 20).all();
@@ -69,24 +70,26 @@ fn sweep(mut renderer: Renderer, tone_map: ToneMap) -> (Vec<[f32; 4]>, Vec<f64>)
     (light, found)
 }
 
-fn check(renderer: Renderer, tone_map: ToneMap) -> Result<Difference, String> {
-    let (light, found) = sweep(renderer, tone_map);
-    let expected: Vec<f64> = light.iter().flat_map(|&texel| shown(texel, tone_map)).collect();
-    compare(&format!("{tone_map:?}"), &found, &expected, Limit { max: TONE_MAP, rmse: TONE_MAP })
+fn check(renderer: Renderer, tone_map: ToneMap, exposure: f64) -> Result<Difference, String> {
+    let (light, found) = sweep(renderer, tone_map, exposure);
+    let expected: Vec<f64> = light.iter().flat_map(|&texel| shown(texel, tone_map, exposure)).collect();
+    compare(&format!("{tone_map:?} {exposure}"), &found, &expected, Limit { max: TONE_MAP, rmse: TONE_MAP })
 }
 
 #[test]
 fn tone_maps_are_their_formulas() {
-    for tone_map in [ToneMap::Neutral, ToneMap::Clip] {
+    for (tone_map, exposure) in
+        [(ToneMap::Neutral, 1.0), (ToneMap::Clip, 1.0), (ToneMap::Neutral, 2.5), (ToneMap::Clip, 0.3)]
+    {
         let renderer = Renderer::new(&context()).expect("a renderer");
-        check(renderer, tone_map).unwrap_or_else(|err| panic!("{err}"));
+        check(renderer, tone_map, exposure).unwrap_or_else(|err| panic!("{err}"));
     }
 }
 
 /// The comparison is worth what it compares: values before, at and far behind the shoulder.
 #[test]
 fn all_of_the_curve_is_compared() {
-    let (light, _) = sweep(Renderer::new(&context()).expect("a renderer"), ToneMap::Neutral);
+    let (light, _) = sweep(Renderer::new(&context()).expect("a renderer"), ToneMap::Neutral, 1.0);
     let peaks: Vec<f32> = light
         .iter()
         .filter(|texel| texel[3] > 0.1)
@@ -108,6 +111,7 @@ fn other_tone_maps_are_noticed() {
         ("max(max(color.r, color.g), color.b)", "max(color.r, color.g) * 0.99"),
         ("compressed / max(peak, 1e-6)", "compressed"),
         ("light.rgb / max(light.a, 1e-6)", "light.rgb"),
+        ("vec4f(vec3f(display.exposure), 1.0)", "vec4f(display.exposure)"),
     ] {
         let r16 = wgpu::TextureFormat::R16Float;
         let source =
@@ -116,6 +120,63 @@ fn other_tone_maps_are_noticed() {
         let context = context();
         let shaders = ShaderLibrary::with_mutation(&context, from, to);
         let renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
-        assert!(check(renderer, ToneMap::Neutral).is_err(), "{to} is not noticed");
+        assert!(check(renderer, ToneMap::Neutral, 1.2).is_err(), "{to} is not noticed");
     }
+}
+
+/// Linear pictures are exposed as what is shown is, so that volume and background relate as they do on the screen; the
+/// light that is read back, by which balances are measured, is not.
+#[test]
+fn linear_pictures_have_the_exposure_and_light_has_not() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let linear = |renderer: &mut Renderer, settings: &Settings| -> Vec<f32> {
+        let shot = ImageSpec { depth: Depth::Linear, transparent: true, ..ImageSpec::new(SIZE) };
+        renderer.bands_of(&loaded, settings, &shot, 4096, 1 << 20).all().expect("a picture").values()
+    };
+    let plain = look(1.0, ToneMap::Neutral, 1.0);
+    let exposed = look(1.0, ToneMap::Neutral, 3.0);
+    let (before, after) = (linear(&mut renderer, &plain), linear(&mut renderer, &exposed));
+    let wanted: Vec<f64> = before
+        .chunks_exact(4)
+        .flat_map(|texel| [3.0 * texel[0], 3.0 * texel[1], 3.0 * texel[2], texel[3]].map(f64::from))
+        .collect();
+    let found: Vec<f64> = after.into_iter().map(f64::from).collect();
+    compare("exposed", &found, &wanted, Limit { max: TONE_MAP, rmse: TONE_MAP })
+        .expect("three times the light");
+    let light =
+        |renderer: &mut Renderer, settings: &Settings| render(renderer, &loaded, settings, SIZE).light;
+    assert!(light(&mut renderer, &plain) == light(&mut renderer, &exposed));
+}
+
+#[test]
+fn the_background_is_not_exposed_and_the_floor_is() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut settings = look(1.0, ToneMap::Clip, 1.0);
+    settings.floor.on = true;
+    settings.camera.elevation_deg = 40.0;
+    let before = render(&mut renderer, &loaded, &settings, SIZE);
+    let floor = renderer.read_floor().expect("a floor");
+    settings.output.exposure = 0.5;
+    let after = render(&mut renderer, &loaded, &settings, SIZE);
+    let texel = |bytes: &[u8], at: usize| [0, 1, 2].map(|channel| bytes[4 * at + channel]);
+    let (mut bare, mut covered) = (0, 0);
+    for at in 0..floor.len() {
+        if before.light[at][3] > 0.0 {
+            continue;
+        }
+        if floor[at][3] == 0.0 {
+            assert_eq!(texel(&before.shown, at), texel(&after.shown, at));
+            bare += 1;
+        } else if floor[at][3] == 1.0 {
+            for channel in 0..3 {
+                let wanted = srgb((0.5 * f64::from(floor[at][channel])).min(1.0));
+                let found = f64::from(texel(&after.shown, at)[channel]) / 255.0;
+                assert!((found - wanted).abs() < EIGHT_BITS, "{found} instead of {wanted}");
+            }
+            covered += 1;
+        }
+    }
+    assert!(bare > 50 && covered > 300, "{bare} pixels of background, {covered} of floor");
 }

@@ -34,6 +34,8 @@ pub(crate) const HEADLIGHT: Named = named(
     "Headlight",
     "Puts this light where the eye is, and keeps it there: everything seen is lit, shadows hide",
 );
+pub(crate) const SUGGEST: Named =
+    named("Suggest…", "Seeks places for this light that make the most of shadows, and shows the best three");
 pub(crate) const DENSITY: Named = named(
     "Density",
     "Multiplies how strongly material attenuates this light alone; refills its light volume",

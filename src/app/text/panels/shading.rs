@@ -19,6 +19,8 @@ pub(crate) const SIDES: Named = named("Lit sides", "Which sides of a surface sha
 pub(crate) const ONE_SIDE: Named = named("Outer", "The side that opacity falls to: clean edges, dark backs");
 pub(crate) const BOTH_SIDES: Named = named("Both", "Light reaches through surfaces, as in the paper");
 
+pub(crate) const EXPOSURE: Named =
+    named("Exposure", "How bright the volume and its floor are shown; the background and the shadows stay");
 pub(crate) const TONE_MAP: Named =
     named("Tone map", "What happens to light that is brighter than the screen");
 pub(crate) const NEUTRAL: Named = named("Neutral", "Keeps colours up to 80 %, then rolls off smoothly");

@@ -43,6 +43,9 @@ pub(crate) const TOGGLE_FLOOR: &str = "Floor with shadows";
 
 pub(crate) const ADD_LIGHT: &str = "Add light";
 pub(crate) const USE_LIGHTS: &str = "Use lights";
+pub(crate) const USE_LOOK: &str = "Use look";
+pub(crate) const TRY_LOOKS: &str = "Try looks…";
+pub(crate) const SUGGEST_LIGHT: &str = "Suggest a light…";
 pub(crate) const TRY_LIGHTS: &str = "Try lights…";
 pub(crate) const NEXT_LIGHT: &str = "Next light";
 pub(crate) const PREVIOUS_LIGHT: &str = "Previous light";

@@ -2,7 +2,9 @@
 
 use std::fmt::Display;
 
+pub(crate) const LOOKS: &str = "Try looks";
 pub(crate) const LIGHTS: &str = "Try lights";
+pub(crate) const SUGGESTIONS: &str = "Suggested lights";
 pub(crate) const PRESETS: &str = "Try presets";
 
 pub(crate) const TRYING: &str = "trying them on your volume";
@@ -10,6 +12,19 @@ pub(crate) const AGAIN: &str = "Again, as it looks now";
 /// Why the pictures are small and coarse.
 pub(crate) const QUALITY: &str = "the picture's own size and quality come with a click";
 pub(crate) const USE_TIP: &str = "Use it";
+
+/// Why no light is suggested.
+pub(crate) const NO_LIGHT: &str = "there is no light to be placed: add one, or select one";
+
+/// A place for a light, from 1: the best first.
+pub(crate) fn suggestion(light: &str, number: usize) -> String {
+    format!("{light}, suggestion {number}")
+}
+
+/// A whole look, from 1.
+pub(crate) fn look(number: usize, name: &str) -> String {
+    format!("{number} · {name}")
+}
 
 /// What screen readers call a picture of a look.
 pub(crate) fn use_look(name: &str) -> String {

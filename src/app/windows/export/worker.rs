@@ -6,14 +6,14 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 
-use crate::data::Dataset;
+use crate::data::{Dataset, Volume};
 use crate::export::{Animation, AnimationFormat, AnimationSpec, ExportError, write_picture};
 use crate::fault::{Place, may_panic};
-use crate::gpu::{Context, GpuError, RenderOptions, Renderer};
+use crate::gpu::{Context, GpuError, RenderOptions, Renderer, ShaderLibrary, SmallLook};
 use crate::model::{ImageSpec, PictureRecord, Record, Settings, VolumeRecord};
 
 /// What is to be exported.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(in crate::app) struct Subject {
     /// The window's device.
     pub context: Context,
@@ -21,6 +21,8 @@ pub(in crate::app) struct Subject {
     pub dataset: Dataset,
     /// The whole look.
     pub settings: Settings,
+    /// The first look at the volume.
+    pub first: Settings,
     /// What was opened.
     pub source: PathBuf,
     /// The light that turns, if one is to.
@@ -111,6 +113,21 @@ impl Worker {
         let options = RenderOptions::of_shot(shot);
         let shown = self.renderer.render_shown(&subject.dataset, settings, shot.size, &options);
         shown.map_err(|err| err.to_string())
+    }
+
+    /// The pipelines of the worker's device.
+    pub(in crate::app) fn shaders(&self) -> ShaderLibrary {
+        self.renderer.shaders()
+    }
+
+    /// How bright a look of a volume is, on a small copy of it.
+    pub(in crate::app) fn measure(
+        &mut self,
+        whole: &Volume,
+        small: &Dataset,
+        settings: &Settings,
+    ) -> Result<SmallLook, String> {
+        SmallLook::measure(&mut self.renderer, whole, small, settings).map_err(|err| err.to_string())
     }
 
     /// How a picture was made, for a file in a folder.

@@ -1,5 +1,6 @@
 //! More is more of something: the object begins above what is around it.
 
+use super::super::above as histogram_above;
 use super::super::domain::Domain;
 use super::super::palette::Palette;
 use super::super::threshold::object_threshold;
@@ -21,7 +22,8 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
 
 /// Rises from a density on.
 fn rising(volume: &Volume, histogram: &Histogram, start: f64, palette: &Palette) -> TransferFunction {
-    let above = |fraction: f64| percentile_above(histogram, start, fraction);
+    let shown = histogram_above(histogram, start);
+    let above = |fraction: f64| shown.percentile(fraction);
     // The bulk of the object lies below `bulk`; its brightest part is worth a colour of its own.
     let bulk = above(0.6).max(start + 0.04);
     let bright = above(0.97).max(bulk + 0.04);
@@ -38,17 +40,4 @@ fn rising(volume: &Volume, histogram: &Histogram, start: f64, palette: &Palette)
         stops.map(|(density, place, opacity)| Stop { value: volume.value_of(density), place, opacity }),
         palette,
     )
-}
-
-/// The density below which a share of the voxels above `start` lies.
-fn percentile_above(histogram: &Histogram, start: f64, fraction: f64) -> f64 {
-    let first = ((start * histogram.counts.len() as f64) as usize).min(histogram.counts.len() - 1);
-    let counts: Vec<u64> = histogram
-        .counts
-        .iter()
-        .enumerate()
-        .map(|(bin, &count)| if bin < first { 0 } else { count })
-        .collect();
-    let total = counts.iter().sum();
-    Histogram { counts, total }.percentile(fraction)
 }

@@ -1,15 +1,19 @@
 //! Arguments that say what is rendered, common to most commands.
 
+mod look;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+pub(super) use self::look::Look;
+use self::look::{Named, proposal};
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, KindName, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
-use crate::gpu::{Context, Renderer, balance_quickly, fitted};
+use crate::gpu::{Context, fitted};
 use crate::model::auto::Wishes;
 use crate::model::{
     Engine, MAX_EDGE, ObjectTurn, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto,
@@ -198,6 +202,9 @@ impl From<KindArg> for KindName {
 /// The look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
+    /// The look that is proposed under this number instead of the first; `info --json` lists them
+    #[arg(long, value_name = "N")]
+    look: Option<usize>,
     /// Preset to lay over the automatic look: a name or a JSON file
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<PathBuf>,
@@ -305,53 +312,57 @@ impl LookArgs {
     /// The automatic look, with preset, session and single settings laid over it.
     /// All of them are checked here, before anything slow begins.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
-        let mut settings = self.first_settings(loaded);
-        let mut balanced = false;
+        let automatic = self.first_settings(loaded);
+        let (settings, named) = self.laid_over(automatic.clone(), loaded, warn_line)?;
+        let number = self.look.unwrap_or(1);
+        if number != 1 {
+            // Whether there is one, and what it is laid under; lights are found later.
+            proposal(number, &automatic, loaded)?;
+        }
+        Ok(Look::new(settings, named, automatic, self.clone()))
+    }
+
+    /// Settings with preset, session and single settings laid over them, and which open parts these name.
+    fn laid_over(
+        &self,
+        mut settings: Settings,
+        loaded: &Dataset,
+        warn: impl Fn(&str),
+    ) -> Result<(Settings, Named), CliError> {
+        let mut named = Named::default();
         let overlays = [("preset", &self.preset), ("session", &self.session)];
         for (what, path) in overlays {
             let Some(path) = path else { continue };
             let (record, name) = read_look(what, path)?;
-            balanced |= record.names_balance();
+            named.add(|part| record.names(part));
             let (next, warnings) = record
                 .apply(&settings, loaded.volume().value_range())
                 .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
             for warning in warnings {
-                warn_line(&format!("warning: {what}: {warning} ({name})"));
+                warn(&format!("warning: {what}: {warning} ({name})"));
             }
             settings = next;
         }
-        let single = self.single_settings(settings)?;
-        // Whoever names the factor means it.
-        let is_named = |assignment: &String| {
-            let path = assignment.split('=').next().unwrap_or_default().trim();
-            path == "shadows" || path == "shadows.balance"
-        };
-        Ok(Look { settings: single, balanced: balanced || self.set.iter().any(is_named) })
+        let single = self.single_settings(settings, warn)?;
+        named.add(|part| self.sets(part));
+        Ok((single, named))
     }
-}
 
-/// A look that is complete but for *Balance*, which needs the GPU.
-#[derive(Debug)]
-pub(super) struct Look {
-    settings: Settings,
-    balanced: bool,
-}
-
-impl Look {
-    /// The settings. Lights are balanced as the viewer does on load, unless preset, session or a single setting say
-    /// how.
-    pub(super) fn settings(&self, renderer: &mut Renderer, loaded: &Dataset) -> Result<Settings, CliError> {
-        let mut settings = self.settings.clone();
-        if !self.balanced {
-            settings.shadows.balance = balance_quickly(renderer, loaded, &settings)?;
-        }
-        Ok(settings)
+    /// Whether a single setting of the command line is one, or a part or the whole of it. Whoever names it means it.
+    fn sets(&self, path: &str) -> bool {
+        self.set.iter().any(|assignment| {
+            let set = assignment.split('=').next().unwrap_or_default().trim();
+            let is_within = |inner: &str, outer: &str| {
+                inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+            };
+            is_within(set, path) || is_within(path, set)
+        })
     }
 }
 
 impl LookArgs {
     /// Lays over settings what the command line says of single ones.
-    fn single_settings(&self, mut settings: Settings) -> Result<Settings, CliError> {
+    fn single_settings(&self, mut settings: Settings, warn: impl Fn(&str)) -> Result<Settings, CliError> {
         if let Some(level) = self.quality {
             Quality::from(level).apply(&mut settings);
         }
@@ -364,7 +375,7 @@ impl LookArgs {
             let (next, warning) = assign(&settings, path.trim(), value.trim())
                 .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
             if let Some(warning) = warning {
-                warn_line(&format!("warning: --set: {warning}"));
+                warn(&format!("warning: --set: {warning}"));
             }
             settings = next;
         }

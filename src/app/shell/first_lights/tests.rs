@@ -1,0 +1,159 @@
+//! Lights come to their places, in virtual time.
+
+use super::*;
+use crate::gpu::Suggestion;
+use crate::model::Rig;
+
+/// A window in virtual time, with sixty frames a second, whose searches take a tenth of a second.
+struct Window {
+    lights: FirstLights,
+    settings: Settings,
+    now_s: f64,
+    held: bool,
+    complete: bool,
+    /// When the search ends.
+    searching: Option<f64>,
+    searches: usize,
+    /// The lights after each frame in which they were set.
+    set: Vec<Vec<Light>>,
+    answer: Option<Found>,
+}
+
+impl Window {
+    fn new() -> Self {
+        let mut settings =
+            Settings { lights: Rig::KeyAndFill.lights(&Settings::default().camera), ..Settings::default() };
+        (settings.shadows.balance, settings.output.exposure) = (1.5, 1.2);
+        Self {
+            lights: FirstLights::of(&settings),
+            answer: Some(Found::of(
+                Suggestion::of(settings.lights.clone(), 5.0, [1.5, 1.2]),
+                vec![Suggestion::of(Rig::ThreeQuarter.lights(&settings.camera), 6.0, [1.8, 1.1])],
+            )),
+            settings,
+            now_s: 100.0,
+            held: false,
+            complete: true,
+            searching: None,
+            searches: 0,
+            set: Vec::new(),
+        }
+    }
+
+    fn frame(&mut self) {
+        self.now_s += 1.0 / 60.0;
+        if self.searching.take_if(|end_s| *end_s <= self.now_s).is_some() {
+            self.lights.found(self.answer.clone());
+        }
+        let Self { now_s, complete, held, .. } = *self;
+        match self.lights.act(Moment { now_s, settings: &self.settings, complete, held }) {
+            Act::Nothing => {}
+            Act::Search => {
+                assert!(complete && self.searching.is_none(), "after the picture, and once");
+                self.searches += 1;
+                self.searching = Some(now_s + 0.1);
+            }
+            Act::Set(next) => {
+                self.settings = *next;
+                self.set.push(self.settings.lights.clone());
+            }
+        }
+    }
+
+    fn run(&mut self, seconds: f64) {
+        for _ in 0..(seconds * 60.0) as usize {
+            self.frame();
+        }
+    }
+
+    fn proposed(&self) -> Vec<Light> {
+        Rig::ThreeQuarter.lights(&Window::new().settings.camera)
+    }
+}
+
+#[test]
+fn lights_move_to_their_places_in_one_short_movement() {
+    let mut window = Window::new();
+    let start = window.settings.clone();
+    window.run(2.0);
+    assert_eq!((window.searches, &window.settings.lights), (1, &window.proposed()));
+    assert!(!window.lights.is_due());
+    assert!((window.set.len() as f64 / 60.0 - EASE_S).abs() < 0.05, "{} frames", window.set.len());
+    // Never further from the end than before.
+    let end = DVec3::from(window.proposed()[0].position);
+    let left: Vec<f64> =
+        window.set.iter().map(|lights| DVec3::from(lights[0].position).angle_between(end)).collect();
+    assert!(left.windows(2).all(|pair| pair[1] <= pair[0] + 1e-9), "{left:?}");
+    assert!((window.settings.shadows.balance - 1.8).abs() < 1e-9);
+    assert!((window.settings.output.exposure - 1.1).abs() < 1e-9);
+    assert_eq!(Settings { lights: start.lights.clone(), ..start.clone() }.camera, window.settings.camera);
+}
+
+#[test]
+fn the_picture_comes_first() {
+    let mut window = Window::new();
+    window.complete = false;
+    window.run(2.0);
+    assert_eq!(window.searches, 0);
+    window.complete = true;
+    window.run(0.1);
+    assert_eq!(window.searches, 1);
+}
+
+#[test]
+fn what_somebody_has_touched_is_left_alone() {
+    let touch: [(&str, fn(&mut Settings)); 4] = [
+        ("a light", |settings| settings.lights[0].position = [3.0, 0.0, 0.0]),
+        ("its brightness", |settings| settings.lights[1].intensity = 0.5),
+        ("the exposure", |settings| settings.output.exposure = 2.0),
+        ("the floor", |settings| settings.floor.on = true),
+    ];
+    for (what, touch) in touch {
+        // While it is sought, and while lights move.
+        for after_s in [0.05, 0.3] {
+            let mut window = Window::new();
+            window.run(after_s);
+            touch(&mut window.settings);
+            let touched = window.settings.clone();
+            window.run(2.0);
+            assert!(window.settings == touched, "{what} after {after_s} s");
+            assert!(!window.lights.is_due());
+        }
+    }
+}
+
+#[test]
+fn turning_the_volume_does_not_matter_but_hands_come_first() {
+    let mut window = Window::new();
+    window.run(0.05);
+    window.held = true;
+    for _ in 0..60 {
+        window.settings.camera.orbit(3.0, 0.0);
+        window.frame();
+    }
+    assert!(window.set.is_empty(), "not while something is held");
+    window.held = false;
+    let camera = window.settings.camera.clone();
+    window.run(1.0);
+    assert_eq!(window.settings.lights, window.proposed());
+    assert_eq!(window.settings.camera, camera);
+}
+
+#[test]
+fn a_search_that_fails_or_finds_nothing_better_changes_nothing() {
+    for answer in [None, Some(Found::of(Suggestion::of(Vec::new(), 5.0, [1.0; 2]), Vec::new()))] {
+        let mut window = Window::new();
+        let mut answer = answer;
+        if let Some(found) = &mut answer {
+            found.start.lights.clone_from(&window.settings.lights);
+        }
+        window.answer = answer;
+        let before = window.settings.clone();
+        window.run(2.0);
+        assert!(window.settings == before && window.set.is_empty() && !window.lights.is_due());
+    }
+    let mut none = FirstLights::default();
+    let settings = Settings::default();
+    let moment = Moment { now_s: 1.0, settings: &settings, complete: true, held: false };
+    assert!(!none.is_due() && none.act(moment) == Act::Nothing);
+}

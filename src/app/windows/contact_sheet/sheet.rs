@@ -1,0 +1,220 @@
+//! What contact sheets try, and what it looks like.
+
+use eframe::egui::ColorImage;
+use glam::DVec3;
+
+use crate::app::common::commands::Command;
+use crate::app::text;
+use crate::app::windows::export::{Subject, Worker};
+use crate::data::ValueRange;
+use crate::gpu::{LightSearch, SmallLook, Sought, small_volume};
+use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings, Slabs, auto};
+
+/// Pixels of a picture.
+pub(super) const SIZE: [u32; 2] = [176, 132];
+/// Places for the selected light, as hours of a clock face around the line of sight.
+const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
+/// Degrees from the line of sight to those places.
+const ASIDE_DEG: f64 = 55.0;
+
+/// What is tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Sheet {
+    /// Rigs, and places for the selected light.
+    #[default]
+    Lights,
+    /// Presets of the library.
+    Presets,
+    /// Whole looks.
+    Looks,
+    /// The best places for the selected light.
+    Suggestions,
+}
+
+/// A look to try.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    pub name: String,
+    pub tip: String,
+    pub settings: Settings,
+    /// What takes it over.
+    pub command: Command,
+}
+
+/// A look, and what it looks like.
+pub(super) type Tried = (Candidate, ColorImage);
+
+impl Sheet {
+    /// The title of the window.
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Lights => text::contact_sheet::LIGHTS,
+            Self::Presets => text::contact_sheet::PRESETS,
+            Self::Looks => text::contact_sheet::LOOKS,
+            Self::Suggestions => text::contact_sheet::SUGGESTIONS,
+        }
+    }
+
+    /// Tries everything. An error says why there are no pictures.
+    pub(super) fn try_all(self, subject: &Subject) -> Result<Vec<Tried>, String> {
+        let mut worker = Worker::new(subject)?;
+        let range = subject.dataset.volume().value_range();
+        let candidates = match self {
+            Self::Lights => with_lights(&subject.settings, subject.selected_light),
+            Self::Presets => with_presets(&subject.settings, range),
+            Self::Suggestions => suggested(subject, &worker)?,
+            Self::Looks => return looks(subject, &mut worker),
+        };
+        candidates
+            .into_iter()
+            .map(|candidate| {
+                let picture = picture(&mut worker, subject, &quick(&candidate.settings))?;
+                Ok((candidate, picture))
+            })
+            .collect()
+    }
+}
+
+/// A picture of a look.
+fn picture(worker: &mut Worker, subject: &Subject, settings: &Settings) -> Result<ColorImage, String> {
+    let shown = worker.render(subject, settings, &ImageSpec::new(SIZE))?;
+    Ok(ColorImage::from_rgba_unmultiplied(SIZE.map(|n| n as usize), &shown))
+}
+
+/// The look with each preset laid over it, but for that of the benchmarks.
+fn with_presets(settings: &Settings, range: ValueRange) -> Vec<Candidate> {
+    let presets = PRESETS.into_iter().filter(|preset| preset.domain() != "bench");
+    presets
+        .filter_map(|preset| {
+            let settings = preset.apply(settings, range).ok()?;
+            let [domain, _] = preset.domain_titles();
+            let name = text::contact_sheet::preset(domain, &preset.title());
+            let tip = text::contact_sheet::USE_TIP.to_owned();
+            Some(Candidate { name, tip, settings, command: Command::UsePreset(preset) })
+        })
+        .collect()
+}
+
+/// The look with other lights.
+fn with(name: String, lights: Vec<Light>, settings: &Settings) -> Candidate {
+    let settings = Settings { lights: lights.clone(), ..settings.clone() };
+    let tip = text::contact_sheet::USE_TIP.to_owned();
+    Candidate { name, tip, settings, command: Command::UseLights(lights) }
+}
+
+/// The look with each choice of lights.
+fn with_lights(settings: &Settings, selected: usize) -> Vec<Candidate> {
+    let choices = lights_to_try(settings, selected).into_iter();
+    choices.map(|(name, lights)| with(name, lights, settings)).collect()
+}
+
+/// The look with the selected light at the places that do most for it, the best first.
+fn suggested(subject: &Subject, worker: &Worker) -> Result<Vec<Candidate>, String> {
+    let Subject { dataset, settings, selected_light, .. } = subject;
+    let Some(light) = settings.lights.get(*selected_light) else {
+        return Err(text::contact_sheet::NO_LIGHT.to_owned());
+    };
+    let search = LightSearch::new(worker.shaders(), dataset, settings, Sought::Light(*selected_light));
+    let found = search.and_then(LightSearch::run).map_err(|err| err.to_string())?;
+    let best = found.map(|found| found.best).unwrap_or_default().into_iter().enumerate();
+    Ok(best
+        .map(|(at, suggestion)| {
+            // As bright as the picture will be when its balance is kept.
+            let mut shown = settings.clone();
+            shown.shadows.balance = suggestion.balance;
+            with(text::contact_sheet::suggestion(&light.name, at + 1), suggestion.lights, &shown)
+        })
+        .collect())
+}
+
+/// Whole looks of the volume, on a small copy of it.
+fn looks(subject: &Subject, worker: &mut Worker) -> Result<Vec<Tried>, String> {
+    let whole = subject.dataset.volume();
+    let small = small_volume(&subject.dataset).map_err(|err| err.to_string())?;
+    let proposals = auto::looks(&subject.first, small.volume(), small.histogram());
+    let on_small = Subject { dataset: small, ..subject.clone() };
+    proposals
+        .into_iter()
+        .enumerate()
+        .map(|(at, proposal)| {
+            // The brightness of the first is known.
+            let look = if at == 0 {
+                SmallLook::known(whole, &on_small.dataset, proposal.settings)
+            } else {
+                worker.measure(whole, &on_small.dataset, &proposal.settings)?
+            };
+            let picture = picture(worker, &on_small, &look.quick)?;
+            let candidate = Candidate {
+                name: text::contact_sheet::look(at + 1, proposal.name),
+                tip: proposal.differs.to_owned(),
+                command: Command::UseLook(Box::new(look.settings.clone())),
+                settings: look.settings,
+            };
+            Ok((candidate, picture))
+        })
+        .collect()
+}
+
+/// The lights that are tried, and what they are called.
+fn lights_to_try(settings: &Settings, selected: usize) -> Vec<(String, Vec<Light>)> {
+    let mut all: Vec<_> =
+        Rig::ALL.iter().map(|rig| (rig.name().to_owned(), rig.lights(&settings.camera))).collect();
+    if let Some(light) = settings.lights.get(selected) {
+        all.extend(HOURS.map(|hour| {
+            let mut lights = settings.lights.clone();
+            let world = at_hour(light, &settings.camera, hour);
+            lights[selected].set_scene_position(world, &settings.camera);
+            (text::contact_sheet::at_hour(&light.name, hour), lights)
+        }));
+    }
+    all
+}
+
+/// A place on a clock face around the line of sight, as far from the middle as the light is.
+fn at_hour(light: &Light, camera: &Camera, hour: u32) -> DVec3 {
+    let view = camera.scene_from_view();
+    let (sin, cos) = (f64::from(hour) / 12.0 * std::f64::consts::TAU).sin_cos();
+    let (aside, along) = ASIDE_DEG.to_radians().sin_cos();
+    let distance = DVec3::from(light.position).length().max(1.0);
+    (view.x_axis * (sin * aside) + view.y_axis * (cos * aside) + view.z_axis * along) * distance
+}
+
+/// Quick settings for a small picture.
+fn quick(settings: &Settings) -> Settings {
+    let mut quick = settings.clone();
+    quick.shadows.resolution = Resolution::Half;
+    (quick.shadows.kernel, quick.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
+    quick.sampling.slab = quick.sampling.slab.max(1.0);
+    quick.sampling.slabs = Slabs::Even;
+    quick
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hours_are_where_a_clock_has_them() {
+        let settings = Settings::default();
+        let view = settings.camera.scene_from_view().transpose();
+        let seen = |hour| view * at_hour(&settings.lights[0], &settings.camera, hour);
+        assert!(seen(12).y > 0.0 && seen(12).x.abs() < 1e-9, "above");
+        assert!(seen(2).x > 0.0 && seen(2).y > 0.0 && seen(8).x < 0.0 && seen(8).y < 0.0);
+        let distance = DVec3::from(settings.lights[0].position).length();
+        assert!((seen(4).length() - distance).abs() < 1e-9 && seen(4).z > 0.0, "on the viewer's side");
+    }
+
+    #[test]
+    fn all_candidates_have_names_of_their_own() {
+        let mut names: Vec<_> =
+            lights_to_try(&Settings::default(), 0).into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
+        assert_eq!(lights_to_try(&Settings::default(), 9).len(), Rig::ALL.len(), "no light is selected");
+        let presets = with_presets(&Settings::default(), ValueRange::new(0.0, 255.0));
+        assert_eq!(presets.len(), PRESETS.len() - 1);
+        assert!(presets.iter().all(|look| look.settings.transfer != Settings::default().transfer));
+    }
+}

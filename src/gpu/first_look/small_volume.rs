@@ -1,0 +1,93 @@
+//! A volume with so few voxels that many looks of it can be tried at once.
+
+use crate::data::{Dataset, Volume, reduced_dims};
+use crate::gpu::GpuError;
+use crate::model::{Engine, Kernel, Length, Resolution, Settings, Slabs};
+use crate::plan::preview_slab;
+
+use super::balance::{MEASURED_SIZE, with_quick_shadows};
+
+/// Most voxels: 96³, of which a software adapter fills a light volume in a few hundredths of a second.
+const MOST_VOXELS: usize = 96 * 96 * 96;
+
+/// The volume itself if it is small, else blocks of its voxels averaged, which are about as long along every axis.
+///
+/// # Errors
+/// When what is left cannot be a volume.
+pub fn small_volume(dataset: &Dataset) -> Result<Dataset, GpuError> {
+    let volume = dataset.volume();
+    let block = block_for(volume.dims(), volume.spacing_mm().into());
+    if block == [1; 3] {
+        return Ok(dataset.clone());
+    }
+    let small = volume.averaged(block).map_err(|err| GpuError::Refused(err.to_string()))?;
+    Ok(Dataset::new(small))
+}
+
+/// Voxels along the edges of the smallest blocks of which there are few enough.
+fn block_for(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
+    let shortest = spacing_mm.into_iter().fold(f64::INFINITY, f64::min);
+    let mut edge = 1.0;
+    loop {
+        let block = [0, 1, 2].map(|axis| {
+            let count = (edge * shortest / spacing_mm[axis]).round() as usize;
+            count.clamp(1, dims[axis].max(1))
+        });
+        let left: usize = reduced_dims(dims, block).iter().product();
+        if left <= MOST_VOXELS {
+            return block;
+        }
+        edge += 1.0;
+    }
+}
+
+/// The settings for a volume with averaged voxels, quick: as previews are.
+pub(super) fn quick(settings: &Settings, whole: &Volume, small: &Volume) -> Settings {
+    let mut quick = with_quick_shadows(settings);
+    // Opacities refer to the same thickness, however many voxels that has.
+    if let Length::Voxels(_) = quick.opacity_unit {
+        let scene = whole.scene();
+        quick.opacity_unit = Length::Mm(quick.opacity_unit.in_scene(&scene) * scene.mm_per_unit);
+    }
+    quick.shadows.resolution = Resolution::Full;
+    (quick.shadows.kernel, quick.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
+    quick.sampling.engine = Engine::Gather;
+    let slab = quick.mean_slab();
+    quick.sampling.slabs = Slabs::Even;
+    quick.sampling.slab = preview_slab(&quick.camera, &small.scene(), MEASURED_SIZE, slab);
+    // It is no part of what is measured.
+    quick.floor.on = false;
+    quick
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_cubes_of_the_world() {
+        for (dims, spacing_mm, expected) in [
+            ([96; 3], [1.0; 3], [1; 3]),
+            ([128; 3], [1.0; 3], [2; 3]),
+            ([512; 3], [0.3; 3], [6; 3]),
+            ([301, 324, 56], [1.0, 1.0, 1.4], [3, 3, 2]),
+            ([512, 512, 40], [0.5, 0.5, 5.0], [4, 4, 1]),
+            ([1 << 20, 1, 1], [1.0; 3], [2, 1, 1]),
+        ] {
+            assert_eq!(block_for(dims, spacing_mm), expected, "{dims:?} {spacing_mm:?}");
+        }
+    }
+
+    #[test]
+    fn every_volume_becomes_small() {
+        for n in [1usize, 7, 100, 333, 1024, 4096] {
+            for flat in [1usize, 30, n] {
+                for thick in [0.01, 1.0, 100.0] {
+                    let dims = [n, n, flat];
+                    let block = block_for(dims, [1.0, 1.0, thick]);
+                    assert!(reduced_dims(dims, block).iter().product::<usize>() <= MOST_VOXELS, "{dims:?}");
+                }
+            }
+        }
+    }
+}

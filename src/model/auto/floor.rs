@@ -1,0 +1,187 @@
+//! Whether a floor helps: shadows make a picture worth looking at, and some objects cast none on themselves.
+
+use glam::DVec3;
+
+use super::object::Object;
+use crate::data::Volume;
+use crate::model::Settings;
+
+/// Share of the object in shadow below which its own shadows hardly show.
+const HARDLY_SHADOWED: f64 = 0.04;
+
+/// Compactness from which an object is one: a ball of twenty cells has 0.93, a wall of one cell 0.5, haze less.
+const COMPACT: f64 = 0.7;
+
+/// Degrees from which an eye looks down onto a floor, and not along it.
+const LOOKING_DOWN_DEG: f64 = 8.0;
+
+/// Whether the first look has a floor.
+///
+/// Under what stands on something, and under what is compact and has hardly a shadow itself (`shadowed`: its share). Not
+/// under what goes on where the data end, as heads do below the neck: that would
+/// stand on its cut.
+pub fn wants_floor(settings: &Settings, volume: &Volume, shadowed: f64) -> bool {
+    if settings.camera.elevation_deg < LOOKING_DOWN_DEG || volume.is_anatomical() {
+        return false;
+    }
+    let object = Object::shown_by(settings, volume);
+    if object.compactness() < COMPACT {
+        return false;
+    }
+    match Base::of(&object, volume, DVec3::Z) {
+        Base::Cut => false,
+        Base::Narrow => shadowed < HARDLY_SHADOWED,
+        // What stands is one thing: pieces would fall apart.
+        Base::Broad => shadowed < HARDLY_SHADOWED || object.largest_part() > ONE_THING,
+    }
+}
+
+/// Share of an object that its largest part is if it is one thing, with some noise.
+const ONE_THING: f64 = 0.9;
+
+/// The lowest part of an object: this share of its height.
+const LOWEST: f64 = 0.03;
+
+/// An object stands if its lowest part is as wide as this share of it, both ways: the legs of a chair, not the cap of a
+/// ball, which has a third, and a half of twenty cells.
+const BASE: f64 = 0.6;
+
+/// Share of an object's lowest part that lies on the volume's face if the data end there and the object does not.
+const CUT: f64 = 0.3;
+
+/// What of an object is at its lower end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Base {
+    /// It goes on below, where there are no data.
+    Cut,
+    /// It would fall over, or roll.
+    Narrow,
+    /// It stands.
+    Broad,
+}
+
+impl Base {
+    /// Of an object in a volume; `up` is in scene space.
+    fn of(object: &Object, volume: &Volume, up: DVec3) -> Self {
+        let scene_from_index = volume.scene().scene_from_index;
+        // Towards the face of the volume that is below, in index space.
+        let index_up = scene_from_index.inverse().transform_vector3(up);
+        let axis = if index_up.x.abs() > index_up.y.abs().max(index_up.z.abs()) {
+            0
+        } else if index_up.y.abs() > index_up.z.abs() {
+            1
+        } else {
+            2
+        };
+        let is_on_face = |cell: [usize; 3]| {
+            if index_up[axis] > 0.0 { cell[axis] == 0 } else { cell[axis] + 1 == object.cells[axis] }
+        };
+        let (side, ahead) = up.any_orthonormal_pair();
+        let places: Vec<(DVec3, bool)> = object
+            .all_cells()
+            .map(|cell| {
+                let place = scene_from_index.transform_point3(object.middle(cell));
+                (DVec3::new(place.dot(side), place.dot(ahead), place.dot(up)), is_on_face(cell))
+            })
+            .collect();
+        let [low, high] = box_around(places.iter().map(|(place, _)| *place));
+        let edge = volume.scene().smallest_edge();
+        let top = low.z + (LOWEST * (high.z - low.z)).max(edge);
+        let lowest: Vec<_> = places.iter().filter(|(place, _)| place.z <= top).collect();
+        let [base_low, base_high] = box_around(lowest.iter().map(|(place, _)| *place));
+        let on_face = lowest.iter().filter(|(_, is_on_face)| *is_on_face).count();
+        if on_face as f64 > CUT * lowest.len() as f64 {
+            return Self::Cut;
+        }
+        let share = (base_high - base_low + edge) / (high - low + edge);
+        if share.x.min(share.y) >= BASE { Self::Broad } else { Self::Narrow }
+    }
+}
+
+/// The corners of the box around some points.
+fn box_around(points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+    points.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Samples;
+    use crate::model::{ControlPoint, TransferFunction};
+
+    const N: usize = 40;
+
+    /// Looks down onto what is above 100.
+    fn look() -> Settings {
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
+        let mut settings = Settings {
+            transfer: TransferFunction { points, ..TransferFunction::default() },
+            ..Settings::default()
+        };
+        settings.camera.elevation_deg = 25.0;
+        settings
+    }
+
+    fn volume(is_there: impl Fn(DVec3) -> bool) -> Volume {
+        let value = |at: usize| {
+            let place = [at % N, at / N % N, at / N / N].map(|n| n as f64 - 19.5);
+            if is_there(DVec3::from(place)) { 255u8 } else { 0 }
+        };
+        let voxels = (0..N * N * N).map(value).collect();
+        Volume::with_spacing("t", [N; 3], DVec3::ONE, Samples::U8(voxels)).unwrap()
+    }
+
+    fn ball(p: DVec3) -> bool {
+        p.length() < 12.0
+    }
+
+    fn block(p: DVec3) -> bool {
+        p.abs().max_element() < 12.0
+    }
+
+    fn table(p: DVec3) -> bool {
+        let is_leg = p.x.abs() > 8.0 && p.y.abs() > 8.0;
+        block(p) && (p.z > 4.0 || is_leg)
+    }
+
+    fn pieces(p: DVec3) -> bool {
+        block(p) && p.x.abs() > 2.0 && p.y.abs() > 2.0
+    }
+
+    #[test]
+    fn what_stands_stands_on_a_floor() {
+        for (name, is_there, shadowed, expected) in [
+            ("block", block as fn(DVec3) -> bool, 0.5, true),
+            ("table", table, 0.5, true),
+            ("ball", ball, 0.5, false),
+            ("ball without shadows", ball, 0.01, true),
+            ("pieces", pieces, 0.5, false),
+        ] {
+            assert_eq!(wants_floor(&look(), &volume(is_there), shadowed), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_goes_on_below_does_not() {
+        // A bust whose neck the data cut off.
+        let bust =
+            |p: DVec3| (p - DVec3::new(0.0, 0.0, 4.0)).length() < 12.0 || p.z < 0.0 && p.x.hypot(p.y) < 9.0;
+        assert!(!wants_floor(&look(), &volume(bust), 0.01));
+    }
+
+    #[test]
+    fn haze_and_shells_do_not() {
+        let shell = |p: DVec3| (11.0..12.0).contains(&p.length());
+        assert!(!wants_floor(&look(), &volume(shell), 0.01));
+        let specks = |p: DVec3| block(p) && (p.x + 2.0 * p.y + 3.0 * p.z).rem_euclid(5.0) < 1.0;
+        assert!(!wants_floor(&look(), &volume(specks), 0.01));
+    }
+
+    #[test]
+    fn an_eye_that_does_not_look_down_sees_none() {
+        let mut settings = look();
+        settings.camera.elevation_deg = 2.0;
+        assert!(!wants_floor(&settings, &volume(block), 0.01));
+    }
+}

@@ -1,0 +1,243 @@
+//! More than one proposal: whole looks of a volume, each another answer to what it is made of, how it is lit and from
+//! where it is seen.
+
+use glam::DVec3;
+
+use super::object::Object;
+use super::threshold::otsu;
+use super::{above, frame};
+use crate::data::{Histogram, Volume};
+use crate::model::{
+    Background, Camera, ControlPoint, Easing, Interpolation, Light, Rig, Settings, TransferFunction,
+};
+
+/// A look to be tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proposal {
+    /// What menus call it.
+    pub name: &'static str,
+    /// How it differs from the first look.
+    pub differs: &'static str,
+    /// All of it but its brightness, which is measured.
+    pub settings: Settings,
+}
+
+/// Opacity per unit from which something is there.
+const SHOWN: f64 = 0.05;
+
+/// What share of what a first look shows its inner structure may be: not a few specks, nor nearly all of it.
+const INSIDE: std::ops::RangeInclusive<f64> = 0.01..=0.7;
+
+/// How much of the opacity of what is outside a veil keeps: the eye goes through it, and sees that it is there.
+const VEIL: f64 = 0.06;
+
+/// How much of its opacity the whole keeps where no inner structure is known.
+const TRANSLUCENT: f64 = 0.3;
+
+/// Degrees above the floor from which it is looked down upon.
+const FROM_ABOVE_DEG: f64 = 48.0;
+
+/// Degrees to the other side: behind it; of patients, who are seen from their right front, to the left profile.
+const BEHIND_DEG: f64 = 180.0;
+const LEFT_PROFILE_DEG: f64 = 120.0;
+
+/// Fired clay, as modellers use it to judge form by light alone.
+const CLAY: [f32; 3] = [0.80, 0.76, 0.72];
+
+/// A floor that is darker than what lies on it, so that the eye stays with that.
+const FLOOR: [f32; 3] = [0.36; 3];
+
+/// Looks of a volume, the first one first: six to nine. It need not have all of its voxels.
+pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Proposal> {
+    let proposal = |name, differs, settings| Proposal { name, differs, settings };
+    let mut all = vec![proposal("First look", "as the volume is opened", first.clone())];
+    if let Some(start) = inner_start(&first.transfer, volume, histogram) {
+        let inner = Settings { transfer: inner(&first.transfer, start), ..first.clone() };
+        all.push(proposal("Inner structure", "only the densest material", framed(inner, first, volume)));
+        let veil = Settings { transfer: veil(&first.transfer, start), ..first.clone() };
+        all.push(proposal("Veil", "the outside is a veil around the densest material", veil));
+    } else {
+        let mut thin = first.clone();
+        scale_opacity(&mut thin.transfer, TRANSLUCENT);
+        all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
+    }
+    let lit = |rig: Rig| Settings { lights: rig.lights(&first.camera), ..first.clone() };
+    all.push(proposal("Rim light", "lit from behind: outlines shine", lit(Rig::Rim)));
+    all.push(proposal("Relief", "one hard light from the side", lit(Rig::ThreeQuarter)));
+    all.push(proposal("Clay", "one neutral colour: form by light alone", clay(first)));
+    let mut above = first.clone();
+    above.camera.elevation_deg = FROM_ABOVE_DEG;
+    above.floor.on = true;
+    above.floor.color = FLOOR;
+    let above = framed(above, first, volume);
+    all.push(proposal("From above", "looked down upon, on a floor that takes the shadow", above));
+    let mut other = first.clone();
+    other.camera.azimuth_deg += if volume.is_anatomical() { LEFT_PROFILE_DEG } else { BEHIND_DEG };
+    all.push(proposal("Other side", "seen from the other side", framed(other, first, volume)));
+    let mut paper = first.clone();
+    paper.output.background = Background { top: [1.0; 3], bottom: [0.94; 3] };
+    paper.floor.shadow_only = true;
+    all.push(proposal("On paper", "before white, as in print", paper));
+    for Proposal { settings, .. } in &mut all {
+        settings.sanitise();
+    }
+    all
+}
+
+/// The settings with the camera as near as what they show of the volume allows, and the lights where they were as seen
+/// from there.
+fn framed(mut settings: Settings, first: &Settings, volume: &Volume) -> Settings {
+    let object = Object::shown_by(&settings, volume);
+    frame::frame(&mut settings, volume, &object);
+    settings.lights = carried(&settings.lights, &first.camera, &settings.camera);
+    settings
+}
+
+/// Lights that are seen from a camera where they were seen from another.
+fn carried(lights: &[Light], from: &Camera, to: &Camera) -> Vec<Light> {
+    let turn = to.scene_from_view() * from.scene_from_view().transpose();
+    let moved = |light: &Light| {
+        let mut light = light.clone();
+        let place = turn * DVec3::from(light.in_scene(from).position);
+        light.set_scene_position(place, to);
+        light
+    };
+    lights.iter().map(moved).collect()
+}
+
+/// The value from which what a function shows is its inner structure; `None` where values are no densities, of which more
+/// is more opaque, or where there is no more to be shown inside.
+fn inner_start(function: &TransferFunction, volume: &Volume, histogram: &Histogram) -> Option<f64> {
+    let points = &function.points;
+    let is_ramp = points.windows(2).all(|pair| pair[0].opacity <= pair[1].opacity)
+        && points.iter().all(|point| point.easing != Easing::Step);
+    let bins = histogram.counts.len();
+    let shown = (0..bins)
+        .map(|bin| bin as f64 / bins as f64)
+        .find(|&density| function.opacity_at(volume.value_of(density)) > SHOWN)?;
+    // What is shown falls into two again.
+    let above = above(histogram, shown);
+    let start = otsu(&above);
+    let first = (start * bins as f64) as usize;
+    let inside = above.counts.iter().skip(first).sum::<u64>() as f64 / above.total.max(1) as f64;
+    (is_ramp && INSIDE.contains(&inside)).then(|| volume.value_of(start))
+}
+
+/// A function that shows what is above a value alone, in ivory.
+fn inner(function: &TransferFunction, start: f64) -> TransferFunction {
+    let end = function.points.last().map_or(start, |point| point.value).max(start);
+    let at = |share: f64| start + share * (end - start);
+    let points = vec![
+        ControlPoint::new(at(0.0), [0.72, 0.60, 0.48], 0.0),
+        ControlPoint::new(at(0.15), [0.87, 0.78, 0.64], 0.6),
+        ControlPoint::new(at(0.5), [0.96, 0.91, 0.82], 0.9),
+        ControlPoint::new(at(1.0), [1.0, 0.98, 0.95], 0.96),
+    ];
+    TransferFunction { points, interpolation: Interpolation::Opacity, ..function.clone() }
+}
+
+/// A function with a veil below a value, and what is above as [`inner`] shows it.
+fn veil(function: &TransferFunction, start: f64) -> TransferFunction {
+    let mut thin = function.clone();
+    scale_opacity(&mut thin, VEIL);
+    let before = thin.points.iter().copied().filter(|point| point.value < start);
+    let edge = thin.point_at(start);
+    let within = inner(function, start).points.into_iter().skip(1);
+    let points = before.chain([edge]).chain(within).collect();
+    TransferFunction { points, ..function.clone() }
+}
+
+fn scale_opacity(function: &mut TransferFunction, share: f64) {
+    for point in &mut function.points {
+        point.opacity *= share;
+    }
+}
+
+/// All in one colour, a little rough, between three lights.
+fn clay(first: &Settings) -> Settings {
+    let mut clay = Settings { lights: Rig::KeyFillBack.lights(&first.camera), ..first.clone() };
+    for point in &mut clay.transfer.points {
+        point.color = CLAY;
+    }
+    clay.shading.specular = 0.08;
+    clay
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::synthetic::builtin;
+    use crate::model::auto::first_settings;
+    use crate::model::auto::tests::ball;
+
+    fn proposals(volume: &Volume) -> Vec<Proposal> {
+        let histogram = Histogram::of(volume);
+        looks(&first_settings(volume, &histogram), volume, &histogram)
+    }
+
+    #[test]
+    fn looks_are_six_to_nine_that_differ() {
+        for volume in
+            [ball(200.0, 0.0), builtin("chair", Some(32)).unwrap(), builtin("cloud", Some(32)).unwrap()]
+        {
+            let all = proposals(&volume);
+            assert!((6..=9).contains(&all.len()), "{}", all.len());
+            assert_eq!(all[0].settings, first_settings(&volume, &Histogram::of(&volume)));
+            for (at, one) in all.iter().enumerate() {
+                let others = &all[at + 1..];
+                assert!(others.iter().all(|other| other.name != one.name && other.settings != one.settings));
+                let mut sane = one.settings.clone();
+                sane.sanitise();
+                assert_eq!(sane, one.settings, "{}", one.name);
+                let points = &one.settings.transfer.points;
+                assert!(points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{}", one.name);
+            }
+        }
+    }
+
+    #[test]
+    fn lights_stay_beside_the_eye() {
+        for Proposal { name, settings, .. } in proposals(&builtin("chair", Some(32)).unwrap()) {
+            let view = settings.camera.scene_from_view().transpose();
+            let key = view * DVec3::from(settings.lights[0].position);
+            assert!(key.x < 0.0 && key.y > 0.0, "{name}: {key}");
+        }
+    }
+
+    #[test]
+    fn the_inside_is_what_is_densest() {
+        // A dense core in a ball.
+        let n = 32usize;
+        let value = |at: usize| {
+            let p = DVec3::from([at % n, at / n % n, at / n / n].map(|c| c as f64 - 15.5));
+            if p.length() < 8.0 {
+                220u8
+            } else if p.length() < 12.0 {
+                90
+            } else {
+                0
+            }
+        };
+        let voxels = crate::data::Samples::U8((0..n * n * n).map(value).collect());
+        let volume = Volume::with_spacing("core", [n; 3], DVec3::ONE, voxels).unwrap();
+        let all = proposals(&volume);
+        let of = |name: &str| &all.iter().find(|one| one.name == name).expect("a look").settings;
+        let (inner, veil) = (of("Inner structure"), of("Veil"));
+        assert_eq!(inner.transfer.opacity_at(90.0), 0.0);
+        assert!(inner.transfer.opacity_at(220.0) > 0.5 && veil.transfer.opacity_at(220.0) > 0.5);
+        assert!((0.001..0.1).contains(&veil.transfer.opacity_at(90.0)));
+        assert!(inner.camera.distance < all[0].settings.camera.distance, "nearer to what is smaller");
+    }
+
+    #[test]
+    fn values_that_are_no_densities_have_no_inside() {
+        let volume = ball(200.0, 0.0);
+        let histogram = Histogram::of(&volume);
+        let mut first = first_settings(&volume, &histogram);
+        // Opaque at both ends, as signed fields are.
+        let opaque = ControlPoint::new(first.transfer.points[0].value - 1.0, [0.2, 0.3, 0.9], 0.9);
+        first.transfer.points.insert(0, opaque);
+        let all = looks(&first, &volume, &histogram);
+        assert!(all.iter().any(|one| one.name == "Translucent") && all.iter().all(|one| one.name != "Veil"));
+    }
+}

@@ -1,0 +1,87 @@
+//! What the program proposes: lights that come after the first picture, places for a light, whole looks.
+
+use std::time::{Duration, Instant};
+
+use chiaroscuro::app::{App, Options};
+use chiaroscuro::gpu::{LightSearch, Open, Sought, finish_look, first_look};
+use chiaroscuro::model::Settings;
+use eframe::egui::{self, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{PATIENCE, SCENE, beside, click, untouched_window, wait_until_idle, window};
+
+/// Waits for a picture of a contact sheet.
+fn wait_for(harness: &mut Harness<'_, App>, label: &str) {
+    let begin = Instant::now();
+    while harness.query_by_label(label).is_none() {
+        assert!(begin.elapsed() < PATIENCE, "no {label}: {:?}", harness.state().errors());
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // The window grows around them.
+    harness.run_steps(5);
+}
+
+#[test]
+fn the_light_of_a_first_look_is_sought_and_is_no_step_to_undo() {
+    let options = Options { source: Some(SCENE.into()), ..Options::default() };
+    let mut harness = untouched_window(options);
+    wait_until_idle(&mut harness);
+    let (dataset, mut renderer) = beside();
+    let first = first_look(&mut renderer, &dataset).expect("a first look");
+    let search =
+        LightSearch::new(renderer.shaders(), &dataset, &first, Sought::KeyAndFill).expect("a search");
+    let found = search.run().expect("a search").expect("something is seen");
+    let Settings { lights, floor, .. } = found.apply(&first);
+    let shown = harness.state().settings().clone();
+    assert_eq!((&shown.lights, &shown.floor), (&lights, &floor), "what the search finds by itself");
+    // The command line waits for it, and comes to the same look; its brightness is measured with all voxels.
+    let open = [Open::Lights, Open::Floor, Open::Balance, Open::Exposure];
+    let waited = finish_look(&mut renderer, &dataset, &first, &open).expect("a look");
+    assert_eq!((&waited.lights, &waited.floor), (&lights, &floor));
+    let apart = |a: f64, b: f64| (a / b - 1.0).abs();
+    assert!(apart(waited.output.exposure, shown.output.exposure) < 0.1, "{shown:?}");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    wait_until_idle(&mut harness);
+    assert_eq!(harness.state().settings(), &shown, "there is nothing to undo");
+}
+
+#[test]
+fn lights_are_suggested() {
+    let mut harness = window();
+    let before = harness.state().settings().clone();
+    click(&mut harness, "Suggest…");
+    wait_for(&mut harness, "Use Key, suggestion 1");
+    assert_eq!(harness.state().settings(), &before, "trying changes nothing");
+    click(&mut harness, "Use Key, suggestion 2");
+    let after = harness.state().settings().clone();
+    assert_ne!(after.lights[0].position, before.lights[0].position);
+    assert_eq!(after.lights[1..], before.lights[1..], "the others stay");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings(), &before);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn looks_are_tried_on_the_volume() {
+    let mut harness = window();
+    let before = harness.state().settings().clone();
+    harness.key_press(egui::Key::L);
+    harness.run_steps(3);
+    wait_for(&mut harness, "Use 1 · First look");
+    let count = harness.query_all_by_label_contains("Use ").count();
+    assert!((6..=9).contains(&count), "{count} looks");
+    assert_eq!(harness.state().settings(), &before, "trying changes nothing");
+    harness.query_all_by_label_contains("Rim light").next().expect("a look").click();
+    harness.run_steps(3);
+    let after = harness.state().settings().clone();
+    assert_eq!(after.lights[0].name, "Rim left");
+    assert_eq!(after.views, before.views);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings(), &before, "one key goes back");
+    wait_until_idle(&mut harness);
+}
