@@ -292,6 +292,16 @@ impl App {
         if let Err(err) = result {
             self.rendering_failed(&err, ui.ctx());
         }
+        self.follow_range();
+    }
+
+    /// Editor and panels show the values that the picture does.
+    fn follow_range(&mut self) {
+        if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
+            && dataset.volume().shown_range() != facts.range
+        {
+            facts.follow(&dataset);
+        }
     }
 }
 

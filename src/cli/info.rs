@@ -31,6 +31,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let loaded = Dataset::new(open(&args.file, &args.load.load_options()?, &LoadControl::new())?);
     let volume = loaded.volume();
     let ValueRange { low, high } = volume.value_range();
+    let shown = volume.shown_range();
     let percentile = |p: u32| volume.value_of(loaded.histogram().percentile(f64::from(p) / 100.0));
     let percentiles: serde_json::Map<_, _> =
         PERCENTILES.iter().map(|&p| (format!("p{p}"), json!(percentile(p)))).collect();
@@ -44,6 +45,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "type": volume.samples().voxel_type().name(),
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
         "range": [low, high],
+        "robust_range": [shown.low, shown.high],
         "non_finite_voxels": volume.non_finite_voxels(),
         "percentiles": percentiles,
         "cpu_bytes": voxels * volume.samples().voxel_type().bytes() as u64,
@@ -58,6 +60,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
     print_line(&format!("  spacing      {} × {} × {} mm", spacing.x, spacing.y, spacing.z))?;
     print_line(&format!("  values       {low} … {high}"))?;
+    print_line(&format!("  robust       {} … {}", shown.low, shown.high))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
     print_line(&format!("  percentiles  {}", listed.join(", ")))?;
     if volume.non_finite_voxels() > 0 {

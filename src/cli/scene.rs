@@ -253,7 +253,7 @@ impl LookArgs {
             let (record, name) = read_look(what, path)?;
             balanced |= record.names_balance();
             let (next, warnings) = record
-                .apply(&settings, loaded.volume().value_range())
+                .apply(&settings, &loaded.volume().ranges())
                 .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
             for warning in warnings {
                 warn_line(&format!("warning: {what}: {warning} ({name})"));

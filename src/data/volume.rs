@@ -1,160 +1,34 @@
 //! A scalar volume on a regular grid, with its place in the world and its values in data units.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{ValueRange, VolumeError};
+use super::values::samples::with_samples;
+use super::{Samples, ValueRange, ValueRanges, VolumeError};
 use crate::math::SceneSpace;
 
-/// The number types that a voxel can have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it all")]
-pub enum VoxelType {
-    U8,
-    I8,
-    U16,
-    I16,
-    U32,
-    I32,
-    F32,
-    F64,
+/// Identifies a volume, and says what its values are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeId {
+    /// See [`Volume::content_id`].
+    pub content_id: u64,
+    /// See [`Volume::ranges`].
+    pub ranges: ValueRanges,
 }
 
-impl VoxelType {
-    /// Every type, in the order of the declaration.
-    pub const ALL: [Self; 8] =
-        [Self::U8, Self::I8, Self::U16, Self::I16, Self::U32, Self::I32, Self::F32, Self::F64];
-
-    /// Size of one voxel in bytes.
-    pub const fn bytes(self) -> usize {
-        match self {
-            Self::U8 | Self::I8 => 1,
-            Self::U16 | Self::I16 => 2,
-            Self::U32 | Self::I32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    /// The name used in file names and on the command line: `uint8` … `float64`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::U8 => "uint8",
-            Self::I8 => "int8",
-            Self::U16 => "uint16",
-            Self::I16 => "int16",
-            Self::U32 => "uint32",
-            Self::I32 => "int32",
-            Self::F32 => "float32",
-            Self::F64 => "float64",
-        }
-    }
-}
-
-/// The voxels' values as the file has them, x fastest, z slowest.
-#[derive(Debug, Clone, PartialEq)]
-#[expect(missing_docs, reason = "one variant per voxel type")]
-pub enum Samples {
-    U8(Vec<u8>),
-    I8(Vec<i8>),
-    U16(Vec<u16>),
-    I16(Vec<i16>),
-    U32(Vec<u32>),
-    I32(Vec<i32>),
-    F32(Vec<f32>),
-    F64(Vec<f64>),
-}
-
-/// Calls `$body` with `$values` bound to the vector inside, whatever its type.
-macro_rules! with_samples {
-    ($samples:expr, $values:ident => $body:expr) => {
-        match $samples {
-            Samples::U8($values) => $body,
-            Samples::I8($values) => $body,
-            Samples::U16($values) => $body,
-            Samples::I16($values) => $body,
-            Samples::U32($values) => $body,
-            Samples::I32($values) => $body,
-            Samples::F32($values) => $body,
-            Samples::F64($values) => $body,
-        }
-    };
-}
-
-impl Samples {
-    /// Number of voxels.
-    pub fn len(&self) -> usize {
-        with_samples!(self, values => values.len())
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The number type.
-    pub fn voxel_type(&self) -> VoxelType {
-        match self {
-            Self::U8(_) => VoxelType::U8,
-            Self::I8(_) => VoxelType::I8,
-            Self::U16(_) => VoxelType::U16,
-            Self::I16(_) => VoxelType::I16,
-            Self::U32(_) => VoxelType::U32,
-            Self::I32(_) => VoxelType::I32,
-            Self::F32(_) => VoxelType::F32,
-            Self::F64(_) => VoxelType::F64,
-        }
-    }
-
-    /// One value in data units.
-    #[expect(
-        trivial_numeric_casts,
-        clippy::unnecessary_cast,
-        reason = "one of the eight types is f64 already"
-    )]
-    pub fn value(&self, voxel: usize) -> f64 {
-        with_samples!(self, values => values[voxel] as f64)
-    }
-
-    /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
-    fn finite_range(&self) -> Option<(ValueRange, usize)> {
-        #[expect(
-            trivial_numeric_casts,
-            clippy::unnecessary_cast,
-            reason = "one of the eight types is f64 already"
-        )]
-        let (low, high, non_finite) = with_samples!(self, values => values.iter().fold(
-            (f64::INFINITY, f64::NEG_INFINITY, 0),
-            |(low, high, non_finite), &value| {
-                let value = value as f64;
-                if value.is_finite() { (low.min(value), high.max(value), non_finite) } else { (low, high, non_finite + 1) }
-            },
-        ));
-        (low <= high).then_some((ValueRange::new(low, high), non_finite))
-    }
-
-    /// A 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
-    fn fingerprint(&self) -> u64 {
-        const PRIME: u64 = 0x0000_0100_0000_01b3;
-        #[expect(
-            trivial_numeric_casts,
-            clippy::unnecessary_cast,
-            reason = "one of the eight types is f64 already"
-        )]
-        let hash = with_samples!(self, values => values.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
-            (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
-        }));
-        hash
-    }
-}
-
-/// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range.
+/// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range. Copies share the
+/// voxels.
 #[derive(Debug, Clone)]
 pub struct Volume {
     name: String,
     dims: [usize; 3],
     file_dims: [usize; 3],
     world_from_index: DAffine3,
-    samples: Samples,
-    value_range: ValueRange,
+    samples: Arc<Samples>,
+    ranges: ValueRanges,
+    /// What densities from 0 to 1 stand for.
+    shown_range: ValueRange,
     non_finite_voxels: usize,
     unit_mm: Option<f64>,
     is_anatomical: bool,
@@ -192,6 +66,7 @@ impl Volume {
             let range = format!("from {:e} to {:e}", value_range.low, value_range.high);
             return Err(VolumeError::TooWide { range });
         }
+        let ranges = ValueRanges::of(&samples, value_range);
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
@@ -202,8 +77,9 @@ impl Volume {
             dims,
             file_dims: dims,
             world_from_index,
-            samples,
-            value_range,
+            samples: Arc::new(samples),
+            ranges,
+            shown_range: ranges.robust,
             non_finite_voxels,
             unit_mm: None,
             is_anatomical: false,
@@ -301,9 +177,26 @@ impl Volume {
         &self.samples
     }
 
-    /// The smallest and the largest finite value, in data units.
+    /// The smallest and the largest finite value of the file, in data units.
     pub fn value_range(&self) -> ValueRange {
-        self.value_range
+        self.ranges.all
+    }
+
+    /// All values of the file, and those that matter.
+    pub fn ranges(&self) -> ValueRanges {
+        self.ranges
+    }
+
+    /// The values that have densities from 0 to 1, in data units: those that matter, unless others were asked for by
+    /// [`Self::showing`].
+    pub fn shown_range(&self) -> ValueRange {
+        self.shown_range
+    }
+
+    /// The same voxels with other values at densities 0 and 1.
+    #[must_use]
+    pub fn showing(&self, range: ValueRange) -> Self {
+        Self { shown_range: range, ..self.clone() }
     }
 
     /// How many voxels hold NaN or an infinity; they count as the smallest value.
@@ -316,22 +209,27 @@ impl Volume {
         self.content_id
     }
 
-    /// One voxel in data units.
+    /// What pictures are asked for by.
+    pub fn id(&self) -> VolumeId {
+        VolumeId { content_id: self.content_id, ranges: self.ranges }
+    }
+
+    /// One voxel in data units, as the file has it.
     pub fn value(&self, x: usize, y: usize, z: usize) -> f64 {
         self.samples.value(x + self.dims[0] * (y + self.dims[1] * z))
     }
 
-    /// A value in data units as a density in [0, 1]: 0 at the smallest value of the volume, 1 at
-    /// the largest. What lies outside the grid has density 0; so do values that are not finite.
+    /// A value in data units as a density in [0, 1]: 0 at the lowest value that is shown and below, 1 at the highest and
+    /// above. What lies outside the grid has density 0; so do values that are not finite.
     pub fn density_of(&self, value: f64) -> f64 {
-        let ValueRange { low, .. } = self.value_range;
-        let span = self.value_range.span();
+        let ValueRange { low, .. } = self.shown_range;
+        let span = self.shown_range.span();
         if value.is_finite() && span > 0.0 { ((value - low) / span).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// The inverse of [`Self::density_of`].
+    /// The inverse of [`Self::density_of`], for values that are shown.
     pub fn value_of(&self, density: f64) -> f64 {
-        self.value_range.at(density)
+        self.shown_range.at(density)
     }
 
     /// Densities in [0, 1] of the voxels of one z-slice, x fastest.
@@ -343,7 +241,7 @@ impl Volume {
     pub fn slice_densities(&self, z: usize) -> Vec<f32> {
         let count = self.dims[0] * self.dims[1];
         let range = z * count..(z + 1) * count;
-        with_samples!(&self.samples, values => values[range]
+        with_samples!(&*self.samples, values => values[range]
             .iter()
             .map(|&value| self.density_of(value as f64) as f32)
             .collect())

@@ -3,8 +3,8 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::Panels;
 use super::controls::{choice, row};
+use super::{Panels, range};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{ValueRange, plain};
@@ -20,12 +20,13 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         return;
     };
     facts(ui, volume);
+    range::show(ui, panels.settings, volume);
     averaging(ui, volume, panels.commands);
     opacity_unit(ui, panels.settings, panels.defaults, volume);
 }
 
 fn facts(ui: &mut Ui, volume: &VolumeFacts) {
-    let ValueRange { low, high } = volume.range;
+    let ValueRange { low, high } = volume.ranges.all;
     let mut rows = vec![
         (text::data::NAME, volume.name.clone()),
         (text::data::SOURCE, plain(&volume.source.to_string_lossy(), LONGEST_PATH)),
@@ -56,7 +57,7 @@ fn averaging(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
 }
 
 /// A number with as many digits as it needs.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     let digits = format!("{value:.4}");
     if value.abs() >= 1e6 || (value != 0.0 && value.abs() < 1e-3) {
         return format!("{value:.3e}");

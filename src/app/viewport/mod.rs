@@ -242,7 +242,8 @@ impl Viewport {
 
     /// Puts a finished picture on screen.
     fn show(&mut self, frame: Frame, ctx: &egui::Context) {
-        let Frame { request: frame_request, quality, image, other } = frame;
+        let Frame { request: frame_request, quality, dataset, image, other } = frame;
+        self.dataset = Some(dataset);
         // Pixel for pixel where there are enough of them.
         let exact = image.size == frame_request.size.map(|n| n as usize);
         // A preview of the same fades away; anything else is replaced at once.

@@ -9,7 +9,7 @@ use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
-use crate::data::ValueRange;
+use crate::data::ValueRanges;
 use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings, Slabs};
 
 /// Pixels of a picture.
@@ -61,17 +61,17 @@ impl Sheet {
     fn candidates(self, subject: &Subject) -> Vec<Candidate> {
         match self {
             Self::Lights => with_lights(&subject.settings, subject.selected_light),
-            Self::Presets => with_presets(&subject.settings, subject.dataset.volume().value_range()),
+            Self::Presets => with_presets(&subject.settings, &subject.dataset.volume().ranges()),
         }
     }
 }
 
 /// The look with each preset laid over it, but for that of the benchmarks.
-fn with_presets(settings: &Settings, range: ValueRange) -> Vec<Candidate> {
+fn with_presets(settings: &Settings, ranges: &ValueRanges) -> Vec<Candidate> {
     let presets = PRESETS.into_iter().filter(|preset| preset.domain() != "bench");
     presets
         .filter_map(|preset| {
-            let settings = preset.apply(settings, range).ok()?;
+            let settings = preset.apply(settings, ranges).ok()?;
             let [domain, _] = preset.domain_titles();
             let name = text::contact_sheet::preset(domain, &preset.title());
             Some(Candidate { name, settings, command: Command::UsePreset(preset) })
@@ -261,7 +261,7 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
         assert_eq!(lights_to_try(&Settings::default(), 9).len(), Rig::ALL.len(), "no light is selected");
-        let presets = with_presets(&Settings::default(), ValueRange::new(0.0, 255.0));
+        let presets = with_presets(&Settings::default(), &ValueRanges::UNIT);
         assert_eq!(presets.len(), PRESETS.len() - 1);
         assert!(presets.iter().all(|look| look.settings.transfer != Settings::default().transfer));
     }

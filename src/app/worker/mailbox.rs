@@ -7,6 +7,7 @@ use eframe::egui::ColorImage;
 use super::difference::Difference;
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, Scene};
+use crate::data::Dataset;
 use crate::gpu::{GpuError, LightFigures, Stage};
 use crate::model::Settings;
 
@@ -15,6 +16,8 @@ pub(crate) struct Frame {
     /// What it shows.
     pub(crate) request: FrameRequest,
     pub(crate) quality: QualityLevel,
+    /// The volume, with the values at densities 0 and 1 that it shows.
+    pub(crate) dataset: Dataset,
     pub(crate) image: ColorImage,
     /// The picture that it is compared with, and what lies between them.
     pub(crate) other: Option<(ColorImage, Difference)>,

@@ -61,7 +61,8 @@ pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
         (1.0f64.max(bright + 0.01), [1.0, 0.97, 0.92], 0.96),
     ];
     let points = stops
-        .map(|(density, color, opacity)| ControlPoint::new(volume.value_of(density), color, opacity))
+        // Beyond the range there is nothing else.
+        .map(|(density, color, opacity)| ControlPoint::new(volume.value_of(density.min(1.0)), color, opacity))
         .to_vec();
     TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() }
 }

@@ -50,6 +50,7 @@ impl Object {
 
     /// All that is shown.
     pub(super) fn of_shown(settings: &Settings, volume: &Volume) -> Self {
+        let volume = &volume.showing(settings.shown_range(&volume.ranges()));
         let dims = volume.dims();
         let edge = dims.map(|n| n.div_ceil(MOST_CELLS));
         let cells = [0, 1, 2].map(|axis| dims[axis].div_ceil(edge[axis]));
