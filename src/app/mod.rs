@@ -273,6 +273,7 @@ impl App {
     fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let inputs = PictureInputs {
             settings: &mut self.settings,
+            defaults: &self.defaults,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
             cut_handles: &mut self.cut_handles,

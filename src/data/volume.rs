@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::values::robust::quantile;
 use super::values::samples::with_samples;
 use super::{Samples, ValueRange, ValueRanges, VolumeError};
 use crate::math::SceneSpace;
@@ -191,6 +192,11 @@ impl Volume {
     /// [`Self::showing`].
     pub fn shown_range(&self) -> ValueRange {
         self.shown_range
+    }
+
+    /// The value below which about that share of the voxels lies.
+    pub fn quantile(&self, share: f64) -> f64 {
+        quantile(&self.samples, share)
     }
 
     /// The same voxels with other values at densities 0 and 1.

@@ -12,6 +12,7 @@ pub(super) mod hints;
 pub(super) mod light_chips;
 pub(super) mod light_handles;
 pub(super) mod light_probe;
+pub(super) mod nothing_seen;
 pub(super) mod orbit;
 pub(super) mod overlay;
 pub(super) mod paint_callback;

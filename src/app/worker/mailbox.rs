@@ -40,6 +40,8 @@ pub(crate) struct Figures {
     pub(crate) splats: u64,
     /// Share of what the last full-quality picture shows that is nearly black.
     pub(crate) dark_share: Option<f64>,
+    /// The last picture, or the left one of two, shows nothing of the volume.
+    pub(crate) shows_nothing: bool,
     /// A refinement under way: what is done now, and the share that is done.
     pub(crate) refining: Option<(Stage, f32)>,
 }

@@ -37,6 +37,7 @@ struct Task {
 struct Made {
     image: ColorImage,
     dataset: Dataset,
+    shows_nothing: bool,
     request: Request,
     total_ms: f64,
 }
@@ -281,16 +282,17 @@ impl RenderWorker {
             scene.dataset = dataset.clone();
         }
         let dataset = scene.dataset.clone();
+        let shows_nothing = scene.renderer.shows_nothing();
         let mut mailbox = self.shared.mailbox();
         mailbox.figures.dark_share = dark_share.or(mailbox.figures.dark_share);
         mailbox.figures.splats = splats.unwrap_or(mailbox.figures.splats);
-        Ok(Some(Made { image, dataset, request, total_ms }))
+        Ok(Some(Made { image, dataset, shows_nothing, request, total_ms }))
     }
 
     /// Leaves what is complete in the mailbox.
     fn publish(&mut self, scene: &Scene, task: Task, left: Made, right: Option<Made>) {
         let Task { frame_request, quality, .. } = task;
-        let Made { image, dataset, request, total_ms } = left;
+        let Made { image, dataset, shows_nothing, request, total_ms } = left;
         let total_ms = right.as_ref().map_or(total_ms, |right| right.total_ms);
         let other = right.map(|right| {
             let difference = Difference::of(&image, &right.image);
@@ -307,6 +309,7 @@ impl RenderWorker {
         figures.light_bytes = renderer.light_bytes();
         figures.light_volumes = renderer.light_figures(&request);
         figures.gpu_bytes = renderer.gpu_bytes();
+        figures.shows_nothing = shows_nothing;
         figures.refining = None;
         mailbox.frame = Some(Frame { request: frame_request, quality, dataset, image, other });
         drop(mailbox);

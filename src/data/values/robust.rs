@@ -85,6 +85,13 @@ impl ValueRanges {
     }
 }
 
+/// The value below which a share of the finite ones lies, as far as evenly spread voxels tell; 0 where none is finite.
+pub(in crate::data) fn quantile(samples: &Samples, share: f64) -> f64 {
+    let values = sorted(samples);
+    let at = (share.clamp(0.0, 1.0) * values.len() as f64) as usize;
+    values.get(at).or(values.last()).copied().unwrap_or_default()
+}
+
 /// The finite values of evenly spread voxels, in order.
 fn sorted(samples: &Samples) -> Vec<f64> {
     let stride = samples.len().div_ceil(MOST_SAMPLED).max(1);

@@ -20,6 +20,8 @@ pub(crate) struct Table {
     pub occupied: Arc<BrickSet>,
     /// Distances to cells with any.
     distances: Arc<CellDistances>,
+    /// There is none.
+    pub is_empty: bool,
 }
 
 impl Table {
@@ -44,8 +46,9 @@ impl Table {
         } else {
             occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
         };
+        let is_empty = masks.iter().all(|mask: &u64| *mask == 0);
         let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
-        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances }
+        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances, is_empty }
     }
 
     /// Whether the lowest density has any extinction.

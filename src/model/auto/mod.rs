@@ -7,11 +7,15 @@
 mod frame;
 mod isosurfaces;
 mod object;
+#[cfg(test)]
+mod robustness;
 mod threshold;
 mod view;
+mod visible;
 
 use self::object::Object;
 use self::threshold::object_threshold;
+pub use self::visible::{densest, show_something};
 use super::{ControlPoint, Interpolation, Length, Quality, Rig, Settings, Shadows, TransferFunction};
 use crate::data::{Histogram, Volume};
 
@@ -26,11 +30,16 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
         ..Settings::default()
     };
     Quality::Standard.apply(&mut settings);
-    let object = Object::shown_by(&settings, volume);
+    aim(&mut settings, volume);
+    visible::or_another(settings, volume, histogram)
+}
+
+/// Points camera and lights at what settings show.
+fn aim(settings: &mut Settings, volume: &Volume) {
+    let object = Object::shown_by(settings, volume);
     view::choose(&mut settings.camera, volume, &object);
-    frame::frame(&mut settings, volume, &object);
+    frame::frame(settings, volume, &object);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
-    settings
 }
 
 /// The share of what settings show of a volume's surface that is not where material ends, but where the data do.
@@ -46,7 +55,11 @@ fn voxels_of_file(volume: &Volume) -> f64 {
 
 /// A transfer function that shows the object and hides what is around it.
 pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
-    let start = object_threshold(volume, histogram);
+    ramp(volume, histogram, object_threshold(volume, histogram))
+}
+
+/// A transfer function that shows what begins at the density `start`.
+fn ramp(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction {
     let above = |fraction: f64| percentile_above(histogram, start, fraction);
     // The bulk of the object lies below `bulk`; its brightest part is worth a colour of its own.
     let bulk = above(0.6).max(start + 0.04);

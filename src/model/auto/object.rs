@@ -5,6 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::data::{HISTOGRAM_BINS, Volume};
+use crate::math::SceneSpace;
 use crate::model::Settings;
 
 /// Opacity per voxel from which a voxel counts as shown.
@@ -87,6 +88,15 @@ impl Object {
         let inside = |n: i64, axis: usize| usize::try_from(n).ok().filter(|&n| n < self.cells[axis]);
         let (Some(x), Some(y), Some(z)) = (inside(x, 0), inside(y, 1), inside(z, 2)) else { return false };
         self.is_there[(z * self.cells[1] + y) * self.cells[0] + x]
+    }
+
+    /// Half of the longest edge of a cell, in scene units.
+    pub(super) fn half_edge(&self, scene: &SceneSpace) -> f64 {
+        let edges = DVec3::AXES
+            .into_iter()
+            .zip(self.edge)
+            .map(|(axis, edge)| scene.scene_from_index.transform_vector3(axis * edge as f64).length());
+        edges.fold(0.0, f64::max) / 2.0
     }
 
     /// The cells in which the object is.
