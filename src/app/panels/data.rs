@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::controls::{choice, row};
+use super::controls::{choice, row, short};
 use super::{Panels, range};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
@@ -54,15 +54,6 @@ fn averaging(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     if choice(ui, text::data::AVERAGING, &mut reduce, &options) {
         commands.push(Command::Average(reduce));
     }
-}
-
-/// A number with as many digits as it needs.
-pub(super) fn short(value: f64) -> String {
-    let digits = format!("{value:.4}");
-    if value.abs() >= 1e6 || (value != 0.0 && value.abs() < 1e-3) {
-        return format!("{value:.3e}");
-    }
-    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {

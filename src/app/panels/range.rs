@@ -3,8 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::controls::{choice, row, unlabelled};
-use super::data::short;
+use super::controls::{choice, row, short, unlabelled};
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::ValueRange;
 use crate::model::{DensityRange, Settings};
