@@ -9,7 +9,7 @@ use super::CliError;
 use super::outputs::print_line;
 use super::scene::LoadArgs;
 use crate::data::load::LoadControl;
-use crate::data::{Dataset, ValueRange, open};
+use crate::data::{ValueRange, open};
 
 /// Percentiles that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
@@ -28,11 +28,10 @@ pub(super) struct InfoArgs {
 
 /// Prints what is known about a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
-    let loaded = Dataset::new(open(&args.file, &args.load.load_options()?, &LoadControl::new())?);
-    let volume = loaded.volume();
+    let volume = open(&args.file, &args.load.load_options()?, &LoadControl::new())?;
     let ValueRange { low, high } = volume.value_range();
     let shown = volume.shown_range();
-    let percentile = |p: u32| volume.value_of(loaded.histogram().percentile(f64::from(p) / 100.0));
+    let percentile = |p: u32| volume.quantile(f64::from(p) / 100.0);
     let percentiles: serde_json::Map<_, _> =
         PERCENTILES.iter().map(|&p| (format!("p{p}"), json!(percentile(p)))).collect();
     let spacing = volume.spacing_mm();
