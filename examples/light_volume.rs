@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut renderer = Renderer::new(&Context::headless()?)?;
     let (size, options) = ([8, 8], RenderOptions { fill_everything: true, ..RenderOptions::default() });
     renderer.draw(&dataset, &settings, size, &options)?;
-    let request = Request { volume: dataset.volume().content_id(), settings, size, coarse: None };
+    let request = Request { volume: dataset.volume().id(), settings, size, coarse: None };
     let light = renderer.attenuation(&request, 0)?.ok_or("the light casts no shadows")?;
 
     // 0 is dark, 1 fully lit, x fastest. Every `divisor` voxels of the array along an axis share one.

@@ -78,7 +78,7 @@ impl Soak {
             settings.shadows.kernel = Kernel::Prefiltered;
         }
         let request = Request {
-            volume: self.dataset.volume().content_id(),
+            volume: self.dataset.volume().id(),
             settings,
             size: if is_rest { [96, 72] } else { [48, 36] },
             coarse: (!is_rest).then_some(Resolution::Quarter),

@@ -281,6 +281,7 @@ impl App {
     fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let inputs = PictureInputs {
             settings: &mut self.settings,
+            defaults: &self.defaults,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
             cut_handles: &mut self.cut_handles,
@@ -299,6 +300,16 @@ impl App {
         self.canvas = Some(canvas);
         if let Err(err) = result {
             self.rendering_failed(&err, ui.ctx());
+        }
+        self.follow_range();
+    }
+
+    /// Editor and panels show the values that the picture does.
+    fn follow_range(&mut self) {
+        if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
+            && dataset.volume().shown_range() != facts.range
+        {
+            facts.follow(&dataset);
         }
     }
 }

@@ -33,10 +33,10 @@ pub(super) struct InfoArgs {
 
 /// Prints what is known about a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
-    let loaded = Dataset::new(open(&args.file, &args.load.load_options()?, &LoadControl::new())?);
-    let volume = loaded.volume();
+    let volume = open(&args.file, &args.load.load_options()?, &LoadControl::new())?;
     let ValueRange { low, high } = volume.value_range();
-    let percentile = |p: u32| volume.value_of(loaded.histogram().percentile(f64::from(p) / 100.0));
+    let shown = volume.shown_range();
+    let percentile = |p: u32| volume.quantile(f64::from(p) / 100.0);
     let percentiles: serde_json::Map<_, _> =
         PERCENTILES.iter().map(|&p| (format!("p{p}"), json!(percentile(p)))).collect();
     let spacing = volume.spacing_mm();
@@ -49,6 +49,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "type": volume.samples().voxel_type().name(),
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
         "range": [low, high],
+        "robust_range": [shown.low, shown.high],
         "non_finite_voxels": volume.non_finite_voxels(),
         "kind": kind(&volume.kind().kind),
         "kind_why": volume.kind().why,
@@ -59,7 +60,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     });
     if args.json {
         let mut facts = facts;
-        facts["looks"] = looks(&loaded)?;
+        facts["looks"] = looks(&Dataset::new(volume))?;
         print_line(&format!("{facts:#}"))?;
         return Ok(());
     }
@@ -68,6 +69,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
     print_line(&format!("  spacing      {} × {} × {} mm", spacing.x, spacing.y, spacing.z))?;
     print_line(&format!("  values       {low} … {high}"))?;
+    print_line(&format!("  robust       {} … {}", shown.low, shown.high))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
     print_line(&format!("  percentiles  {}", listed.join(", ")))?;
     print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().why))?;

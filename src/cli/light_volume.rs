@@ -63,7 +63,7 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let size = [16, 16];
     renderer.draw(&loaded, &settings, size, &options)?;
     let lights = settings.lights.len();
-    let request = Request { volume: loaded.volume().content_id(), settings, size, coarse: None };
+    let request = Request { volume: loaded.volume().id(), settings, size, coarse: None };
     let attenuation = renderer.attenuation(&request, args.light)?.ok_or_else(|| {
         CliError::Usage(format!(
             "--light: light {} has no attenuation volume: it must be one of {lights}, be on and cast shadows, and shadows must be on (command line, --light)",

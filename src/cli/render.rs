@@ -98,6 +98,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         Ok(bands.next_rows()?)
     };
     write_picture(output.path(), &shot, Some(&record), &mut rows)?;
+    if renderer.shows_nothing() {
+        warn_line(
+            "warning: nothing of the volume is visible; --set range=full, another --preset, or none, may help",
+        );
+    }
     // A report without its picture would mislead.
     let is_told = report_to.as_ref().is_some_and(Destination::is_standard_output);
     if let Some((to, report)) = report_to.zip(report) {

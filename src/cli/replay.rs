@@ -78,7 +78,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if stated.is_some_and(|of| !of.is_of(volume.content_id())) {
         return Err(unusable(format!("{} is another volume than the one that it shows", source.display())));
     }
-    let (settings, warnings) = record.apply(&Settings::default(), volume.value_range()).map_err(preset)?;
+    let (settings, warnings) = record.apply(&Settings::default(), &volume.ranges()).map_err(preset)?;
     for warning in warnings {
         warn_line(&format!("warning: {warning} ({path})"));
     }

@@ -78,6 +78,11 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
             warn_line(&format!("{} of {}", frame + 1, args.frames));
         }
     }
+    if renderer.shows_nothing() {
+        warn_line(
+            "warning: nothing of the volume is visible; --set range=full, another --preset, or none, may help",
+        );
+    }
     file.finish()?;
     print_line(&format!("{}", args.output.display()))?;
     Ok(())

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Bricks, Histogram, Volume};
+use super::{Bricks, Histogram, ValueRange, Volume};
 
 /// A volume with the bounds of its bricks and its histogram, which are made from it and cannot be mixed up with
 /// those of another. Copies share the voxels.
@@ -19,6 +19,12 @@ impl Dataset {
         let volume = volume.into();
         let (bricks, histogram) = (Arc::new(Bricks::of(&volume)), Arc::new(Histogram::of(&volume)));
         Self { volume, bricks, histogram }
+    }
+
+    /// The same voxels with other values at densities 0 and 1, and bounds and histogram of these densities.
+    #[must_use]
+    pub fn showing(&self, range: ValueRange) -> Self {
+        if range == self.volume.shown_range() { self.clone() } else { Self::new(self.volume.showing(range)) }
     }
 
     /// The voxels.

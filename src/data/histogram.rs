@@ -1,6 +1,6 @@
 //! How often each value occurs.
 
-use super::Volume;
+use super::{Missing, Volume};
 
 /// Bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
 pub const HISTOGRAM_BINS: usize = 1024;
@@ -10,7 +10,7 @@ pub const HISTOGRAM_BINS: usize = 1024;
 pub struct Histogram {
     /// Voxels per bin; bin `i` of `n` holds densities in `[i/n, (i+1)/n)`, the last one also 1.
     pub counts: Vec<u64>,
-    /// All voxels.
+    /// All voxels that are there.
     pub total: u64,
 }
 
@@ -22,11 +22,15 @@ impl Histogram {
 
     fn with_bins(volume: &Volume, bins: usize) -> Self {
         use rayon::prelude::*;
+        let missing = volume.missing();
         let empty = || vec![0u64; bins];
         let counts = (0..volume.dims()[2])
             .into_par_iter()
             .fold(empty, |mut counts, z| {
-                for density in volume.slice_densities(z) {
+                let densities = volume.slice_densities(z);
+                let first = z * densities.len();
+                let is_there = |at: usize| missing.is_none_or(|missing| !missing.contains(first + at));
+                for (_, density) in densities.into_iter().enumerate().filter(|(at, _)| is_there(*at)) {
                     counts[((density * bins as f32) as usize).min(bins - 1)] += 1;
                 }
                 counts
@@ -35,7 +39,7 @@ impl Histogram {
                 a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
                 a
             });
-        Self { counts, total: volume.voxel_count() as u64 }
+        Self { counts, total: (volume.voxel_count() - missing.map_or(0, Missing::count)) as u64 }
     }
 
     /// The density below which a share of `fraction` (0 … 1) of the voxels lies, to one bin.

@@ -13,7 +13,7 @@ pub mod load;
 mod open;
 mod small_file;
 pub mod synthetic;
-mod value_range;
+mod values;
 mod volume;
 
 pub(crate) use attempt::address_bytes_left;
@@ -26,5 +26,7 @@ pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use kind::{DataKind, KindFound, KindName};
 pub use open::open;
 pub use small_file::read_small;
-pub use value_range::ValueRange;
-pub use volume::{Missing, Samples, Volume, VolumeError, VoxelType, reduced_dims};
+pub use values::range::ValueRange;
+pub use values::robust::ValueRanges;
+pub use values::samples::{Samples, VoxelType};
+pub use volume::{Missing, Volume, VolumeError, VolumeId, reduced_dims};

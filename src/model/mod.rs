@@ -20,6 +20,7 @@ pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::length::Length;
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, SceneLight};
 pub use self::settings::quality::Quality;
+pub use self::settings::range::DensityRange;
 pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
 };

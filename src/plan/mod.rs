@@ -29,4 +29,4 @@ pub use keys::{
     LitLights, OpacityKey, TablesKey,
 };
 pub use probe::{Arrival, Probe, probe};
-pub use request::{RenderOptions, Request};
+pub use request::{RenderOptions, Request, VolumeKey};

@@ -53,14 +53,17 @@ struct Rays<'a> {
 
 /// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
+    let range = settings.shown_range(&volume.ranges());
+    let volume = &volume.showing(range);
     let rays = Rays { volume, scene: volume.scene() };
     let scene = &rays.scene;
-    let eye = settings.baked_eye(volume.value_range(), scene);
+    let eye = settings.baked_eye(range, scene);
     let seen = settings.cuts.seen().region(scene);
     let point = rays.first_seen(&eye, &seen, origin, direction)?;
     let index = scene.index_from_scene.transform_point3(point);
-    let value = volume.value_of(rays.density(index));
-    let lighting = settings.baked_lighting(volume.value_range(), scene);
+    // As the file has it, beyond what is shown, too.
+    let value = rays.value(index);
+    let lighting = settings.baked_lighting(range, scene);
     let is_one_sided = settings.shading.sides == Sides::One;
     // Opacity falls towards high densities: the outside is there.
     let is_turned = is_one_sided && eye.side(rays.density(index)) < 0.0;
@@ -175,6 +178,16 @@ impl Rays<'_> {
 
     /// The density between voxels, linearly; that of the border beyond it.
     fn density(&self, index: DVec3) -> f64 {
+        self.between_voxels(index, |value| self.volume.density_of(value))
+    }
+
+    /// The value between voxels, linearly; what is not finite is the lowest that is shown.
+    fn value(&self, index: DVec3) -> f64 {
+        self.between_voxels(index, |value| if value.is_finite() { value } else { self.volume.value_of(0.0) })
+    }
+
+    /// What voxels are, between them.
+    fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> f64 {
         let dims = self.volume.dims();
         let last = DVec3::from(dims.map(|n| (n - 1) as f64));
         let at = index.clamp(DVec3::ZERO, last);
@@ -187,7 +200,7 @@ impl Rays<'_> {
             };
             let weight: f64 =
                 (0..3).map(|axis| if side >> axis & 1 == 1 { f[axis] } else { 1.0 - f[axis] }).product();
-            weight * self.volume.density_of(self.volume.value(place(0), place(1), place(2)))
+            weight * of(self.volume.value(place(0), place(1), place(2)))
         };
         (0..8).map(voxel).sum()
     }

@@ -1,19 +1,37 @@
 //! What is asked of the renderer: which volume, which look, how large, and how it is to be computed.
 
 use super::PixelWindow;
+use crate::data::{ValueRange, VolumeId};
 use crate::model::{Depth, ImageSpec, Resolution, Settings};
 
 /// A picture to be made: of which volume, how, and how large.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// `Volume::content_id`, which changes with its voxels and its geometry.
-    pub volume: u64,
+    /// `Volume::id`, which changes with its voxels and its geometry.
+    pub volume: VolumeId,
     /// The whole look.
     pub settings: Settings,
     /// Pixels per row and column.
     pub size: [u32; 2],
     /// Previews: light volumes that are not there yet may be filled at this resolution.
     pub coarse: Option<Resolution>,
+}
+
+/// A volume as pictures show it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeKey {
+    /// `Volume::content_id`.
+    pub content_id: u64,
+    /// The values that have densities from 0 to 1.
+    pub shown: ValueRange,
+}
+
+impl Request {
+    /// The volume as this picture shows it.
+    pub fn shown_volume(&self) -> VolumeKey {
+        let VolumeId { content_id, ranges } = self.volume;
+        VolumeKey { content_id, shown: self.settings.shown_range(&ranges) }
+    }
 }
 
 /// Ways of rendering that are no part of the look.

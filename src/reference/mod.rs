@@ -113,6 +113,8 @@ pub struct Reference<'a> {
 impl<'a> Reference<'a> {
     /// A reference for a volume with some settings.
     pub fn new(volume: &Volume, settings: &'a Settings, options: Options) -> Self {
+        let range = settings.shown_range(&volume.ranges());
+        let volume = &volume.showing(range);
         let field = Field::with_rounding(volume, options.rounding.unwrap_or(|density| density));
         let pyramid = Pyramid::of(&field, kernel_width(options.fault), options.rounding);
         // Stored in eight bits.
@@ -120,15 +122,7 @@ impl<'a> Reference<'a> {
             let presence = Pyramid::of(&field, kernel_width(options.fault), None);
             if options.rounding.is_some() { presence.in_steps(255.0) } else { presence }
         });
-        Self {
-            settings,
-            options,
-            scene: volume.scene(),
-            range: volume.value_range(),
-            field,
-            pyramid,
-            presence,
-        }
+        Self { settings, options, scene: volume.scene(), range, field, pyramid, presence }
     }
 
     /// The density at an index-space point as the GPU gathers it, with the kernel stretched

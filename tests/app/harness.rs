@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use chiaroscuro::app::{App, Options, wgpu_setup};
 use chiaroscuro::data::Dataset;
 use chiaroscuro::data::load::{LoadControl, LoadOptions};
-use chiaroscuro::data::{ValueRange, open};
+use chiaroscuro::data::{ValueRanges, open};
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
 use chiaroscuro::model::{Record, Settings};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
@@ -180,5 +180,5 @@ pub(crate) fn kept_look(folder: &std::path::Path) -> Option<Settings> {
     let files = std::fs::read_dir(folder.join("runs")).ok()?.map(|file| file.expect("an entry").path());
     let latest = files.filter(|file| file.extension().is_some_and(|ending| ending == "json")).max()?;
     let record = Record::read(&std::fs::read_to_string(latest).expect("a text")).expect("a record");
-    Some(record.apply(&Settings::default(), ValueRange::UNIT).expect("settings").0)
+    Some(record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings").0)
 }

@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use chiaroscuro::data::load::{LoadControl, LoadOptions};
-use chiaroscuro::data::{ValueRange, open};
+use chiaroscuro::data::{ValueRange, ValueRanges, open};
 use chiaroscuro::export::{ExportError, Rows};
 use chiaroscuro::export::{export_png, picture_size, read_picture, read_record, write_picture};
 use chiaroscuro::model::{
@@ -34,7 +34,7 @@ fn look(text: Option<String>) -> bool {
     let record = text.and_then(|text| Record::read(&text).ok());
     record.is_some_and(|record| {
         record.unknown();
-        record.apply(&Settings::default(), ValueRange::UNIT).is_ok()
+        record.apply(&Settings::default(), &ValueRanges::UNIT).is_ok()
     })
 }
 
@@ -86,7 +86,8 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     write_picture(&exr, &shot, Some(&record), &mut || Ok::<_, ExportError>(rows.take())).expect("a picture");
     add("picture.exr", std::fs::read(&exr).expect("it was just written"), picture);
 
-    let with_preset = PRESETS[0].apply(&Settings::default(), range()).expect("a preset of ours");
+    let with_preset =
+        PRESETS[0].apply(&Settings::default(), &ValueRanges::same(range())).expect("a preset of ours");
     for ending in EXPORTED {
         let name = format!("function.{ending}");
         let bytes = export(Path::new(&name), &with_preset.transfer, range());

@@ -29,7 +29,7 @@ pub(crate) fn attenuation(
     let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
     renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
     let request = chiaroscuro::plan::Request {
-        volume: loaded.volume().content_id(),
+        volume: loaded.volume().id(),
         settings: settings.clone(),
         size: [8, 8],
         coarse: None,

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::worker::loader::Reading;
-use crate::data::{DataKind, Dataset, Histogram, ValueRange, VoxelType};
+use crate::data::{DataKind, Dataset, Histogram, ValueRange, ValueRanges, VoxelType};
 use crate::math::SceneSpace;
 
-/// Facts about a volume; all of them fixed.
+/// Facts about a volume; all of them fixed, but for what of its values is shown.
 #[derive(Debug, Clone)]
 pub(crate) struct VolumeFacts {
     /// What the user calls it.
@@ -24,7 +24,9 @@ pub(crate) struct VolumeFacts {
     pub voxel_type: &'static str,
     /// Millimetres between voxel centres along x, y, z.
     pub spacing_mm: [f64; 3],
-    /// Smallest and largest value.
+    /// All values of the file, and those that matter.
+    pub ranges: ValueRanges,
+    /// The values that the picture shows, which the histogram counts.
     pub range: ValueRange,
     /// How many different values there can be, for integers.
     pub levels: Option<usize>,
@@ -47,7 +49,7 @@ impl VolumeFacts {
     pub(crate) fn of(source: PathBuf, reading: Reading, dataset: &Dataset) -> Self {
         let volume = dataset.volume();
         let voxel_type = volume.samples().voxel_type();
-        let range = volume.value_range();
+        let range = volume.shown_range();
         let whole = !matches!(voxel_type, VoxelType::F32 | VoxelType::F64);
         Self {
             name: volume.name().to_owned(),
@@ -57,6 +59,7 @@ impl VolumeFacts {
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
             spacing_mm: volume.spacing_mm().into(),
+            ranges: volume.ranges(),
             range,
             levels: whole.then_some(range.span() as usize + 1),
             non_finite_voxels: volume.non_finite_voxels(),
@@ -66,5 +69,11 @@ impl VolumeFacts {
             is_anatomical: volume.is_anatomical(),
             histogram: Arc::clone(dataset.histogram()),
         }
+    }
+
+    /// Takes over what of the values is shown from now on.
+    pub(crate) fn follow(&mut self, dataset: &Dataset) {
+        let fresh = Self::of(std::mem::take(&mut self.source), self.reading, dataset);
+        *self = fresh;
     }
 }

@@ -130,6 +130,15 @@ pub(super) fn choice<T: PartialEq + Copy>(
     })
 }
 
+/// A number with as many digits as it needs.
+pub(super) fn short(value: f64) -> String {
+    let digits = format!("{value:.4}");
+    if value.abs() >= 1e6 || (value != 0.0 && value.abs() < 1e-3) {
+        return format!("{value:.3e}");
+    }
+    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// A switch.
 pub(super) fn switch(ui: &mut Ui, named: Named, value: &mut bool) -> Response {
     ui.checkbox(value, named.name).on_hover_text(named.tip)

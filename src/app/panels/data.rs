@@ -3,8 +3,8 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::Panels;
-use super::controls::{choice, row};
+use super::controls::{choice, row, short};
+use super::{Panels, range};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{KindName, ValueRange, plain};
@@ -21,12 +21,13 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     };
     facts(ui, volume);
     treatment(ui, panels.treated_as, panels.commands);
+    range::show(ui, panels.settings, volume);
     averaging(ui, volume, panels.commands);
     opacity_unit(ui, panels.settings, panels.defaults, volume);
 }
 
 fn facts(ui: &mut Ui, volume: &VolumeFacts) {
-    let ValueRange { low, high } = volume.range;
+    let ValueRange { low, high } = volume.ranges.all;
     let mut rows = vec![
         (text::data::NAME, volume.name.clone()),
         (text::data::SOURCE, plain(&volume.source.to_string_lossy(), LONGEST_PATH)),
@@ -75,15 +76,6 @@ fn averaging(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     if choice(ui, text::data::AVERAGING, &mut reduce, &options) {
         commands.push(Command::Average(reduce));
     }
-}
-
-/// A number with as many digits as it needs.
-fn short(value: f64) -> String {
-    let digits = format!("{value:.4}");
-    if value.abs() >= 1e6 || (value != 0.0 && value.abs() < 1e-3) {
-        return format!("{value:.3e}");
-    }
-    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {

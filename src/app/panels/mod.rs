@@ -7,6 +7,7 @@ mod cuts;
 mod data;
 mod floor;
 mod lights;
+mod range;
 mod sampling;
 mod shading;
 mod shadows;

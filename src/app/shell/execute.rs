@@ -68,7 +68,7 @@ impl App {
             Command::TreatAs(kind) => self.treat_as(kind),
             Command::UsePreset(preset) => {
                 if let Some(volume) = &self.volume {
-                    match preset.apply(&self.settings, volume.range) {
+                    match preset.apply(&self.settings, &volume.ranges) {
                         Ok(settings) => self.settings = settings,
                         Err(err) => self.messages.error(text::messages::PRESET_NOT_APPLIED, err.to_string()),
                     }
@@ -286,19 +286,22 @@ impl App {
                 }
             }
             Purpose::LoadSettings => self.load_settings(path),
-            Purpose::ImportTransfer => match files::import_transfer(path, self.value_range()) {
-                Ok(function) => self.settings.transfer = function,
-                Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
-            },
+            Purpose::ImportTransfer => {
+                match files::import_transfer(path, self.settings.range.of(&self.value_ranges())) {
+                    Ok(function) => self.settings.transfer = function,
+                    Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
+                }
+            }
             Purpose::ExportTransfer => {
-                match files::export_transfer(path, &self.settings.transfer, self.value_range()) {
+                let range = self.settings.shown_range(&self.value_ranges());
+                match files::export_transfer(path, &self.settings.transfer, range) {
                     Ok(()) => self.messages.note(text::messages::wrote(path)),
                     Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
             }
             Purpose::CompareSettings => {
                 let read = files::load_record(path);
-                match read.and_then(|read| self.with_record(&read, self.value_range())) {
+                match read.and_then(|read| self.with_record(&read, &self.value_ranges())) {
                     Ok(look) => self.compare.with(look),
                     Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
                 }

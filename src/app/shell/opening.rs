@@ -15,7 +15,7 @@ use crate::app::windows::foreign_path::Answer;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
 use crate::app::{App, text};
-use crate::data::ValueRange;
+use crate::data::ValueRanges;
 use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, VolumeRecord, made_by};
 
 /// What is opened when nothing is named.
@@ -134,7 +134,7 @@ impl App {
                 VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
                 VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
             },
-            Some(_) => drop(self.apply_record(&record, self.value_range())),
+            Some(_) => drop(self.apply_record(&record, &self.value_ranges())),
             None => self.use_look(record, ctx),
         }
     }
@@ -162,7 +162,7 @@ impl App {
         } else if self.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
         } else {
-            self.apply_record(&record, self.value_range());
+            self.apply_record(&record, &self.value_ranges());
         }
     }
 
@@ -203,20 +203,20 @@ impl App {
                 if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
                     self.messages.note(text::opening::OF_ANOTHER_VOLUME);
                 }
-                self.apply_record(&record, self.value_range());
+                self.apply_record(&record, &self.value_ranges());
             }
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         }
     }
 
-    /// Smallest and largest value of the open volume.
-    pub(crate) fn value_range(&self) -> ValueRange {
-        self.volume.as_ref().map_or(ValueRange::UNIT, |volume| volume.range)
+    /// The values of the open volume.
+    pub(crate) fn value_ranges(&self) -> ValueRanges {
+        self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
     }
 
     /// The settings with a record laid over them, for a volume with these values.
-    pub(crate) fn with_record(&mut self, record: &Record, range: ValueRange) -> Result<Settings, String> {
-        let (settings, warnings) = record.apply(&self.settings, range).map_err(|err| err.to_string())?;
+    pub(crate) fn with_record(&mut self, record: &Record, ranges: &ValueRanges) -> Result<Settings, String> {
+        let (settings, warnings) = record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
         if !warnings.is_empty() {
             self.messages.note(warnings.join("; "));
         }
@@ -224,8 +224,8 @@ impl App {
     }
 
     /// Lays a record over the settings; whether that could be done.
-    fn apply_record(&mut self, record: &Record, range: ValueRange) -> bool {
-        match self.with_record(record, range) {
+    fn apply_record(&mut self, record: &Record, ranges: &ValueRanges) -> bool {
+        match self.with_record(record, ranges) {
             Ok(settings) => {
                 self.settings = settings;
                 if record.names_balance() {
@@ -311,7 +311,7 @@ impl App {
         let has_session =
             self.session_is_due && self.session.as_ref().is_some_and(|session| session.path().exists());
         let is_named = is_kept || has_session || self.pending.is_some() || self.adjust.is_some();
-        let range = volume.value_range();
+        let ranges = volume.ranges();
         // Session and command line speak of the first volume.
         if std::mem::take(&mut self.session_is_due)
             && let Some(mut session) = self.session.take_if(|session| session.path().exists())
@@ -319,7 +319,7 @@ impl App {
             let found = files::load_record(session.path());
             session.found(found.as_ref());
             match found {
-                Ok(record) if !self.apply_record(&record, range) => session.not_understood(),
+                Ok(record) if !self.apply_record(&record, &ranges) => session.not_understood(),
                 Ok(_) => {}
                 Err(err) => self.messages.error(text::opening::SESSION_NOT_LOADED, err),
             }
@@ -336,7 +336,7 @@ impl App {
                 if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
                     self.messages.note(text::opening::OF_OTHER_VALUES);
                 }
-                self.apply_record(&record, range);
+                self.apply_record(&record, &ranges);
             }
         }
         if let Some(adjust) = self.adjust.take() {

@@ -14,7 +14,7 @@ use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
 use crate::app::viewport::overlay::Overlay;
 use crate::app::viewport::view_projection::ViewProjection;
-use crate::app::viewport::{Facts, Viewport, light_chips, light_probe, orbit};
+use crate::app::viewport::{Facts, Viewport, light_chips, light_probe, nothing_seen, orbit};
 use crate::app::windows::slices::Slices;
 use crate::gpu::GpuError;
 use crate::model::Settings;
@@ -23,6 +23,8 @@ use crate::model::Settings;
 pub(crate) struct PictureInputs<'a> {
     /// The look; camera and lights may be changed by the mouse.
     pub settings: &'a mut Settings,
+    /// What the volume was opened with.
+    pub defaults: &'a Settings,
     /// The renderer's side.
     pub viewport: &'a mut Viewport,
     /// The handles of the lights.
@@ -53,6 +55,7 @@ pub(crate) struct PictureInputs<'a> {
 pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Result<(), GpuError>) {
     let PictureInputs {
         settings,
+        defaults,
         viewport,
         handles,
         cut_handles,
@@ -79,7 +82,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         settings,
         *selected_light,
         !(handles.takes_wheel || cut_handles.takes_wheel),
-        viewport.dataset().map(|dataset| dataset.volume().value_range()),
+        viewport.dataset().map(|dataset| dataset.volume().shown_range()),
     );
     if response.double_clicked()
         && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
@@ -112,6 +115,9 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on) {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         probe.show(ui, canvas.rect, settings, dataset.volume(), pointer);
+    }
+    if let Some(dataset) = viewport.dataset() {
+        nothing_seen::show(ui, canvas.rect, settings, defaults, dataset.volume(), facts);
     }
     settings.sanitise();
     let result = if canvas.size.contains(&0) {

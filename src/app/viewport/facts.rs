@@ -42,6 +42,8 @@ pub(in crate::app) struct Facts {
     pub cached_light_volumes: usize,
     /// Share of what the last full-quality picture shows that is nearly black.
     pub dark_share: Option<f64>,
+    /// The picture, or the left one of two, shows nothing of the volume.
+    pub shows_nothing: bool,
     /// Footprints that the last full-quality picture has splatted; 0 of one that gathers.
     pub splats: u64,
     /// Mebibytes of light volumes.
@@ -70,6 +72,7 @@ impl Viewport {
             preview_ms: figures.preview_ms,
             light_rebuilds: figures.light_rebuilds,
             cached_light_volumes: figures.cached_light_volumes,
+            shows_nothing: figures.shows_nothing && self.dataset.is_some(),
             splats: figures.splats,
             light_mebibytes: figures.light_bytes as f64 / f64::from(1 << 20),
             dark_share: figures.dark_share,

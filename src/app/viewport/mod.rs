@@ -12,6 +12,7 @@ pub(super) mod hints;
 pub(super) mod light_chips;
 pub(super) mod light_handles;
 pub(super) mod light_probe;
+pub(super) mod nothing_seen;
 pub(super) mod orbit;
 pub(super) mod overlay;
 pub(super) mod paint_callback;
@@ -243,7 +244,8 @@ impl Viewport {
 
     /// Puts a finished picture on screen.
     fn show(&mut self, frame: Frame, ctx: &egui::Context) {
-        let Frame { request: frame_request, quality, image, other } = frame;
+        let Frame { request: frame_request, quality, dataset, image, other } = frame;
+        self.dataset = Some(dataset);
         // Pixel for pixel where there are enough of them.
         let exact = image.size == frame_request.size.map(|n| n as usize);
         // A preview of the same fades away; anything else is replaced at once.

@@ -246,6 +246,7 @@ pub(crate) fn is_record(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::ValueRanges;
     use crate::model::Settings;
 
     #[test]
@@ -253,7 +254,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.json");
         std::fs::write(&path, "{\"shadows\": {\"gain\": 2.0}}").unwrap();
-        let settings = load_record(&path).unwrap().apply(&Settings::default(), ValueRange::UNIT).unwrap().0;
+        let settings = load_record(&path).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0;
         assert_eq!(settings.shadows.gain, 2.0);
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(load_record(&path).unwrap_err().contains("no text"));

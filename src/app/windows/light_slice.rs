@@ -150,7 +150,7 @@ impl LightSlice {
             self.light = (0..scene.settings.lights.len()).find(|&index| is_there(index)).unwrap_or(0);
         }
         let mut request = Request {
-            volume: dataset.volume().content_id(),
+            volume: dataset.volume().id(),
             settings: scene.settings.clone(),
             size: [16, 16],
             coarse: None,

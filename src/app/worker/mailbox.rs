@@ -7,6 +7,7 @@ use eframe::egui::ColorImage;
 use super::difference::Difference;
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, Scene};
+use crate::data::Dataset;
 use crate::gpu::{GpuError, LightFigures, Stage};
 use crate::model::Settings;
 
@@ -15,6 +16,8 @@ pub(crate) struct Frame {
     /// What it shows.
     pub(crate) request: FrameRequest,
     pub(crate) quality: QualityLevel,
+    /// The volume, with the values at densities 0 and 1 that it shows.
+    pub(crate) dataset: Dataset,
     pub(crate) image: ColorImage,
     /// The picture that it is compared with, and what lies between them.
     pub(crate) other: Option<(ColorImage, Difference)>,
@@ -37,6 +40,8 @@ pub(crate) struct Figures {
     pub(crate) splats: u64,
     /// Share of what the last full-quality picture shows that is nearly black.
     pub(crate) dark_share: Option<f64>,
+    /// The last picture, or the left one of two, shows nothing of the volume.
+    pub(crate) shows_nothing: bool,
     /// A refinement under way: what is done now, and the share that is done.
     pub(crate) refining: Option<(Stage, f32)>,
 }

@@ -15,6 +15,7 @@ use super::difference::Difference;
 use super::mailbox::{Figures, Frame, Measurement, Shared};
 use super::quality::{Missing, QualityController, QualityLevel};
 use super::request::{FrameRequest, Scene};
+use crate::data::Dataset;
 use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, RenderOptions, Stage, balance_quickly};
 use crate::model::Settings;
@@ -35,6 +36,8 @@ struct Task {
 /// A finished picture of one look.
 struct Made {
     image: ColorImage,
+    dataset: Dataset,
+    shows_nothing: bool,
     request: Request,
     total_ms: f64,
 }
@@ -274,16 +277,22 @@ impl RenderWorker {
         if is_full && is_left {
             self.last_full = Some((request.clone(), FrameKeys::of(&request, &options)));
         }
+        if let Some(dataset) = scene.renderer.dataset() {
+            // For the next picture nothing of it must be found again.
+            scene.dataset = dataset.clone();
+        }
+        let dataset = scene.dataset.clone();
+        let shows_nothing = scene.renderer.shows_nothing();
         let mut mailbox = self.shared.mailbox();
         mailbox.figures.dark_share = dark_share.or(mailbox.figures.dark_share);
         mailbox.figures.splats = splats.unwrap_or(mailbox.figures.splats);
-        Ok(Some(Made { image, request, total_ms }))
+        Ok(Some(Made { image, dataset, shows_nothing, request, total_ms }))
     }
 
     /// Leaves what is complete in the mailbox.
     fn publish(&mut self, scene: &Scene, task: Task, left: Made, right: Option<Made>) {
         let Task { frame_request, quality, .. } = task;
-        let Made { image, request, total_ms } = left;
+        let Made { image, dataset, shows_nothing, request, total_ms } = left;
         let total_ms = right.as_ref().map_or(total_ms, |right| right.total_ms);
         let other = right.map(|right| {
             let difference = Difference::of(&image, &right.image);
@@ -300,8 +309,9 @@ impl RenderWorker {
         figures.light_bytes = renderer.light_bytes();
         figures.light_volumes = renderer.light_figures(&request);
         figures.gpu_bytes = renderer.gpu_bytes();
+        figures.shows_nothing = shows_nothing;
         figures.refining = None;
-        mailbox.frame = Some(Frame { request: frame_request, quality, image, other });
+        mailbox.frame = Some(Frame { request: frame_request, quality, dataset, image, other });
         drop(mailbox);
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
@@ -319,7 +329,7 @@ impl RenderWorker {
 fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: QualityLevel) -> Request {
     let volume = scene.dataset.volume();
     Request {
-        volume: volume.content_id(),
+        volume: volume.id(),
         settings: quality.settings(settings, &volume.scene(), size),
         size: quality.size(size),
         coarse: quality.coarse,

@@ -41,7 +41,7 @@ impl PartialEq for FrameRequest {
 impl FrameRequest {
     /// A request for a volume.
     pub(in crate::app) fn new(generation: u64, dataset: &Dataset, looks: Looks, size: [u32; 2]) -> Self {
-        let volume = dataset.volume().content_id();
+        let volume = dataset.volume().id();
         let keys_of = |settings: &Settings| {
             let request = Request { volume, settings: settings.clone(), size, coarse: None };
             FrameKeys::of(&request, &RenderOptions::default())

@@ -17,7 +17,7 @@ impl Bench<'_> {
     /// All control points move a little, to and fro: tables, visible cells, light and picture are made anew.
     pub(super) fn transfer_edit(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let mut samples = Samples::default();
-        let span = self.loaded.volume().value_range().span();
+        let span = self.loaded.volume().shown_range().span();
         let before: u64 = self.renderer.light_rebuilds().iter().sum();
         for frame in 0..WARM_UP + usize::from(self.args.frames) {
             let mut settings = self.settings.clone();

@@ -336,7 +336,7 @@ impl LookArgs {
             let (record, name) = read_look(what, path)?;
             named.add(|part| record.names(part));
             let (next, warnings) = record
-                .apply(&settings, loaded.volume().value_range())
+                .apply(&settings, &loaded.volume().ranges())
                 .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
             for warning in warnings {
                 warn(&format!("warning: {what}: {warning} ({name})"));

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use rayon::prelude::*;
 
 use super::{Volume, VolumeError};
+use crate::data::ValueRanges;
 
 /// Which voxels of a grid hold nothing, and what stands in for them.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,7 +109,8 @@ impl Volume {
         // Beside the values, it decides what is shown.
         self.content_id = self.content_id.rotate_left(9) ^ padding_value.to_bits();
         self.padding_value = Some(padding_value);
-        self.value_range = value_range;
+        self.ranges = ValueRanges::without(&self.samples, value_range, padding_value);
+        self.shown_range = self.ranges.robust;
         self.kind = OnceLock::new();
         Ok(self.with_missing())
     }

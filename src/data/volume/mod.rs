@@ -3,30 +3,41 @@
 mod error;
 mod missing;
 mod reduce;
-mod samples;
 
 pub use error::VolumeError;
 pub use missing::Missing;
 pub use reduce::reduced_dims;
-pub use samples::{Samples, VoxelType};
 
 use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use self::samples::with_samples;
-use super::{Hints, KindFound, ValueRange};
+use super::values::robust::quantile;
+use super::values::samples::with_samples;
+use super::{Hints, KindFound, Samples, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
-/// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range.
+/// Identifies a volume, and says what its values are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeId {
+    /// See [`Volume::content_id`].
+    pub content_id: u64,
+    /// See [`Volume::ranges`].
+    pub ranges: ValueRanges,
+}
+
+/// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range. Copies share the
+/// voxels.
 #[derive(Debug, Clone)]
 pub struct Volume {
     name: String,
     dims: [usize; 3],
     file_dims: [usize; 3],
     world_from_index: DAffine3,
-    samples: Samples,
-    value_range: ValueRange,
+    samples: Arc<Samples>,
+    ranges: ValueRanges,
+    /// What densities from 0 to 1 stand for.
+    shown_range: ValueRange,
     missing: Option<Arc<Missing>>,
     non_finite_voxels: usize,
     padding_value: Option<f64>,
@@ -69,6 +80,7 @@ impl Volume {
             let range = format!("from {:e} to {:e}", value_range.low, value_range.high);
             return Err(VolumeError::TooWide { range });
         }
+        let ranges = ValueRanges::of(&samples, value_range);
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
@@ -79,8 +91,9 @@ impl Volume {
             dims,
             file_dims: dims,
             world_from_index,
-            samples,
-            value_range,
+            samples: Arc::new(samples),
+            ranges,
+            shown_range: ranges.robust,
             missing: None,
             non_finite_voxels,
             padding_value: None,
@@ -201,9 +214,31 @@ impl Volume {
         &self.samples
     }
 
-    /// The smallest and the largest finite value, in data units.
+    /// The smallest and the largest finite value of the file, in data units.
     pub fn value_range(&self) -> ValueRange {
-        self.value_range
+        self.ranges.all
+    }
+
+    /// All values of the file, and those that matter.
+    pub fn ranges(&self) -> ValueRanges {
+        self.ranges
+    }
+
+    /// The values that have densities from 0 to 1, in data units: those that matter, unless others were asked for by
+    /// [`Self::showing`].
+    pub fn shown_range(&self) -> ValueRange {
+        self.shown_range
+    }
+
+    /// The value below which about that share of the voxels lies.
+    pub fn quantile(&self, share: f64) -> f64 {
+        quantile(&self.samples, self.padding_value.unwrap_or(f64::NAN), share)
+    }
+
+    /// The same voxels with other values at densities 0 and 1.
+    #[must_use]
+    pub fn showing(&self, range: ValueRange) -> Self {
+        Self { shown_range: range, ..self.clone() }
     }
 
     /// How many voxels hold NaN or an infinity: nothing is there.
@@ -216,22 +251,27 @@ impl Volume {
         self.content_id
     }
 
-    /// One voxel in data units.
+    /// What pictures are asked for by.
+    pub fn id(&self) -> VolumeId {
+        VolumeId { content_id: self.content_id, ranges: self.ranges }
+    }
+
+    /// One voxel in data units, as the file has it.
     pub fn value(&self, x: usize, y: usize, z: usize) -> f64 {
         self.samples.value(x + self.dims[0] * (y + self.dims[1] * z))
     }
 
-    /// A value in data units as a density in [0, 1]: 0 at the smallest value of the volume, 1 at
-    /// the largest. Values that are not finite have density 0.
+    /// A value in data units as a density in [0, 1]: 0 at the lowest value that is shown and below, 1 at the highest and
+    /// above. Values that are not finite have density 0.
     pub fn density_of(&self, value: f64) -> f64 {
-        let ValueRange { low, .. } = self.value_range;
-        let span = self.value_range.span();
+        let ValueRange { low, .. } = self.shown_range;
+        let span = self.shown_range.span();
         if value.is_finite() && span > 0.0 { ((value - low) / span).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// The inverse of [`Self::density_of`].
+    /// The inverse of [`Self::density_of`], for values that are shown.
     pub fn value_of(&self, density: f64) -> f64 {
-        self.value_range.at(density)
+        self.shown_range.at(density)
     }
 
     /// Densities in [0, 1] of the voxels of one z-slice, x fastest. Those that hold nothing have the mean of what is
@@ -244,7 +284,7 @@ impl Volume {
     pub fn slice_densities(&self, z: usize) -> Vec<f32> {
         let count = self.dims[0] * self.dims[1];
         let range = z * count..(z + 1) * count;
-        let mut densities: Vec<f32> = with_samples!(&self.samples, values => values[range]
+        let mut densities: Vec<f32> = with_samples!(&*self.samples, values => values[range]
             .iter()
             .map(|&value| self.density_of(value as f64) as f32)
             .collect());

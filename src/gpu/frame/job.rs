@@ -16,7 +16,7 @@ use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::scatter::voxels::Scattering;
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::ShadowAlgorithm;
-use crate::plan::{FrameKeys, LitLights, Request};
+use crate::plan::{FrameKeys, LitLights, Request, VolumeKey};
 
 /// How many times longer a picture takes whose samples cast rays themselves, roughly: rows of a band
 /// are fewer by so much.
@@ -30,7 +30,7 @@ const DIRECT_COST: u32 = 16;
 pub struct Job<'r> {
     pub(super) tools: &'r Tools,
     pub(super) gpu_clock: Option<&'r Clock>,
-    pub(super) loaded: &'r mut Cached<u64, Loaded>,
+    pub(super) loaded: &'r mut Cached<VolumeKey, Loaded>,
     pub(super) targets: &'r mut Targets,
     pub(super) fills: &'r mut Vec<u64>,
     pub(super) report: &'r mut Report,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::data::{Dataset, VoxelType};
+use crate::data::Dataset;
 use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::cached::Cached;
@@ -18,8 +18,8 @@ use crate::plan::{CombinedKey, LightKey, TablesKey};
 pub(crate) struct Loaded {
     /// Density, pyramid and gradients.
     pub volume: GpuVolume,
-    /// What the voxels were: the same numbers of another type are stored otherwise.
-    voxel_type: VoxelType,
+    /// What was uploaded: the voxels, and the values that they show.
+    pub dataset: Dataset,
     /// Both transfer functions, and where they show anything.
     pub tables: Cached<TablesKey, Tables>,
     /// Attenuation volumes, most recently used first.
@@ -44,13 +44,14 @@ impl Loaded {
         let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks())?;
         let (tables, _) = Tables::new(context, &volume, settings, tables_key, None)?;
         let tables = Cached::complete(tables_key.clone(), tables);
-        let voxel_type = dataset.volume().samples().voxel_type();
-        Ok(Self { volume, voxel_type, tables, lights: Vec::new(), combined: None, voxels: None })
+        let dataset = dataset.clone();
+        Ok(Self { volume, dataset, tables, lights: Vec::new(), combined: None, voxels: None })
     }
 
-    /// Whether it was made from voxels of the type of these.
+    /// Whether it was made from voxels of the type of these: the same numbers of another type are stored otherwise.
     pub(crate) fn has_type_of(&self, dataset: &Dataset) -> bool {
-        self.voxel_type == dataset.volume().samples().voxel_type()
+        let voxel_type = |dataset: &Dataset| dataset.volume().samples().voxel_type();
+        voxel_type(&self.dataset) == voxel_type(dataset)
     }
 
     /// Brings the tables up to date. Returns how many were baked.

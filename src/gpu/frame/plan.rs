@@ -54,13 +54,21 @@ impl Renderer {
         let loaded = match self.loaded.take() {
             Some(known) if known.holds(&keys.volume) && known.value.has_type_of(dataset) => known,
             other => {
-                if other.is_some_and(|known| known.holds(&keys.volume)) {
+                if other.as_ref().is_some_and(|known| known.holds(&keys.volume)) {
                     // The same numbers in another type, which differ in the last bits.
                     self.targets.forget();
                 }
                 self.tools.pool.clear();
                 let start = Instant::now();
-                let fresh = Loaded::new(&self.tools.context, dataset, &request.settings, &keys.tables)?;
+                // What was made for a picture that was given up serves the next.
+                let known = other.map(|known| known.value.dataset).filter(|known| {
+                    let [known, dataset] = [known, dataset].map(Dataset::volume);
+                    known.content_id() == dataset.content_id()
+                        && known.samples().voxel_type() == dataset.samples().voxel_type()
+                        && known.shown_range() == keys.volume.shown
+                });
+                let dataset = known.unwrap_or_else(|| dataset.showing(keys.volume.shown));
+                let fresh = Loaded::new(&self.tools.context, &dataset, &request.settings, &keys.tables)?;
                 steps.extend(upload_steps(&fresh.volume));
                 self.report.runs.tables = 2;
                 self.report.bricks_ms = start.elapsed().as_secs_f64() * 1000.0;

@@ -11,15 +11,15 @@ use crate::gpu::resources::cached::Cached;
 use crate::gpu::resources::tools::Tools;
 use crate::gpu::{Context, GpuError, RenderOptions, ShaderLibrary};
 use crate::model::Settings;
-use crate::plan::Request;
+use crate::plan::{Request, VolumeKey};
 
 /// Renders volumes on one device. Every product is kept with the key of what it was made from, and serves all
 /// pictures that need the same.
 #[derive(Debug)]
 pub struct Renderer {
     pub(crate) tools: Tools,
-    /// The volume on the GPU by its content, complete when it is uploaded.
-    pub(crate) loaded: Option<Cached<u64, Loaded>>,
+    /// The volume on the GPU by its content and the values that it shows, complete when it is uploaded.
+    pub(crate) loaded: Option<Cached<VolumeKey, Loaded>>,
     pub(crate) targets: Targets,
     /// How often the light volume of each light of the settings was filled.
     pub(crate) fills: Vec<u64>,
@@ -63,6 +63,11 @@ impl Renderer {
     /// Its pipelines, for other renderers on the device.
     pub fn shaders(&self) -> ShaderLibrary {
         self.tools.shaders.clone()
+    }
+
+    /// The volume of the last picture, with the values at densities 0 and 1 that it showed.
+    pub fn dataset(&self) -> Option<&Dataset> {
+        self.loaded.as_ref().map(|loaded| &loaded.value.dataset)
     }
 
     /// What the last picture took.
@@ -133,7 +138,7 @@ impl Renderer {
         options: &RenderOptions,
     ) -> Result<(), GpuError> {
         let context = self.tools.context.clone();
-        let volume = dataset.volume().content_id();
+        let volume = dataset.volume().id();
         let request = Request { volume, settings: settings.clone(), size, coarse: None };
         let mut job = self.begin(dataset, request, options)?;
         // A quarter of a megapixel per submission stays below driver watchdogs on slow GPUs.

@@ -32,6 +32,11 @@ impl Renderer {
         (0..request.settings.lights.len()).map(|light| figures(&LightKey::of(request, light))).collect()
     }
 
+    /// Whether the last picture shows nothing of its volume: all of it is transparent.
+    pub fn shows_nothing(&self) -> bool {
+        self.loaded.as_ref().is_some_and(|loaded| loaded.value.tables.value.eye.is_empty)
+    }
+
     /// How often the light volume of each light of the settings was filled; counted where its first
     /// march is submitted.
     pub fn light_rebuilds(&self) -> &[u64] {

@@ -65,7 +65,7 @@ impl Renderer {
         let size = [8, 8];
         self.draw(dataset, settings, size, &RenderOptions::default())?;
         let request =
-            Request { volume: dataset.volume().content_id(), settings: settings.clone(), size, coarse: None };
+            Request { volume: dataset.volume().id(), settings: settings.clone(), size, coarse: None };
         let none = || GpuError::NothingDrawn("light volume");
         let target = self.light_volume(&request, light).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.value;

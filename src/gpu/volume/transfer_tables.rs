@@ -24,6 +24,8 @@ pub(crate) struct Table {
     distances: Arc<CellDistances>,
     /// How many cells are at least between those and the cells at the faces of the grid.
     clearance: u8,
+    /// There is none.
+    pub is_empty: bool,
 }
 
 impl Table {
@@ -48,9 +50,10 @@ impl Table {
         } else {
             occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
         };
+        let is_empty = masks.iter().all(|mask: &u64| *mask == 0);
         let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
         let clearance = distances.least_at_faces(volume.volume.dims().map(|n| (n - 1) / CELL_EDGE));
-        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances, clearance }
+        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances, clearance, is_empty }
     }
 
     /// Where what it shows ends with the data, for samples that see `dilation` cells around theirs, with kernels stretched
@@ -118,7 +121,7 @@ impl Tables {
         key: &TablesKey,
         previous: Option<(&TablesKey, &Self)>,
     ) -> Result<(Self, u32), GpuError> {
-        let range = volume.volume.value_range();
+        let range = volume.volume.shown_range();
         let bounded = key.cells_are_bounds;
         let previous = previous.filter(|(known, _)| known.cells_are_bounds == bounded);
         let known = || previous.into_iter().flat_map(|(_, tables)| [&tables.eye, &tables.lighting]);

@@ -181,6 +181,12 @@ impl Isosurfaces {
         if self.blockness(first) <= MOST_BLOCKY {
             return start;
         }
+        self.best().unwrap_or(start)
+    }
+
+    /// The density whose isosurface is the best that is not mainly the volume's box.
+    pub(super) fn best(&self) -> Option<f64> {
+        let bins = HISTOGRAM_BINS;
         let largest = self.area.iter().copied().fold(0.0, f64::max);
         let best_below = |most: f64| {
             let allowed = (1..bins).filter(|&bin| self.blockness(bin) <= most);
@@ -190,7 +196,7 @@ impl Isosurfaces {
                 .max_by(|(a, _), (b, _)| a.total_cmp(b))
         };
         let best = best_below(HARDLY_BLOCKY).or_else(|| best_below(MOST_BLOCKY));
-        best.map_or(start, |(_, bin)| bin as f64 / bins as f64)
+        best.map(|(_, bin)| bin as f64 / bins as f64)
     }
 }
 

@@ -11,15 +11,19 @@ mod isosurfaces;
 mod looks;
 mod object;
 mod palette;
+#[cfg(test)]
+mod robustness;
 mod threshold;
 mod transfer;
 mod view;
+mod visible;
 
 pub use self::floor::wants_floor;
 pub use self::looks::{Proposal, looks};
 
 use self::domain::Domain;
 use self::object::Object;
+pub use self::visible::{densest, show_something};
 use super::{
     Camera, Classification, Length, Quality, Rig, SceneAxis, Settings, Shading, Shadows, TransferFunction,
 };
@@ -59,11 +63,20 @@ pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishe
         // Between two labels there is none of the numbers between them.
         settings.sampling.classification = Classification::Pre;
     }
-    let object = Object::shown_by(&settings, volume);
+    aim(&mut settings, volume);
+    match kind {
+        // Every number is shown already.
+        DataKind::LabelMap { .. } | DataKind::Mask => settings,
+        _ => visible::or_another(settings, volume, histogram),
+    }
+}
+
+/// Points camera and lights at what settings show.
+fn aim(settings: &mut Settings, volume: &Volume) {
+    let object = Object::shown_by(settings, volume);
     view::choose(&mut settings.camera, volume, &object);
-    frame::frame(&mut settings, volume, &object);
+    frame::frame(settings, volume, &object);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
-    settings
 }
 
 /// The kind of that name, or what the volume's own is.
@@ -105,6 +118,11 @@ fn voxels_of_file(volume: &Volume) -> f64 {
 /// A transfer function that shows the object and hides what is around it.
 pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
     transfer_as(volume, histogram, None)
+}
+
+/// A transfer function that shows what begins at the density `start`.
+fn ramp(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction {
+    transfer::beginning_at(volume, histogram, start)
 }
 
 /// A transfer function as if the volume held data of that kind; of its own where none is named.

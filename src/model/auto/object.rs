@@ -5,6 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::data::{HISTOGRAM_BINS, Volume};
+use crate::math::SceneSpace;
 use crate::model::Settings;
 
 /// Opacity per voxel from which a voxel counts as shown.
@@ -50,6 +51,7 @@ impl Object {
 
     /// All that is shown.
     pub(super) fn of_shown(settings: &Settings, volume: &Volume) -> Self {
+        let volume = &volume.showing(settings.shown_range(&volume.ranges()));
         let dims = volume.dims();
         let edge = dims.map(|n| n.div_ceil(MOST_CELLS));
         let cells = [0, 1, 2].map(|axis| dims[axis].div_ceil(edge[axis]));
@@ -64,9 +66,13 @@ impl Object {
             .flat_map_iter(|layer| {
                 let mut counts = vec![0usize; cells[0] * cells[1]];
                 for z in layer * edge[2]..((layer + 1) * edge[2]).min(dims[2]) {
+                    let is_there = |at: usize| {
+                        let voxel = z * dims[0] * dims[1] + at;
+                        volume.missing().is_none_or(|missing| !missing.contains(voxel))
+                    };
                     for (at, density) in volume.slice_densities(z).into_iter().enumerate() {
                         let (x, y) = (at % dims[0], at / dims[0]);
-                        let is_shown = shown[(density * HISTOGRAM_BINS as f32) as usize];
+                        let is_shown = shown[(density * HISTOGRAM_BINS as f32) as usize] && is_there(at);
                         counts[y / edge[1] * cells[0] + x / edge[0]] += usize::from(is_shown);
                     }
                 }
@@ -86,6 +92,15 @@ impl Object {
         let inside = |n: i64, axis: usize| usize::try_from(n).ok().filter(|&n| n < self.cells[axis]);
         let (Some(x), Some(y), Some(z)) = (inside(x, 0), inside(y, 1), inside(z, 2)) else { return false };
         self.is_there[(z * self.cells[1] + y) * self.cells[0] + x]
+    }
+
+    /// Half of the longest edge of a cell, in scene units.
+    pub(super) fn half_edge(&self, scene: &SceneSpace) -> f64 {
+        let edges = DVec3::AXES
+            .into_iter()
+            .zip(self.edge)
+            .map(|(axis, edge)| scene.scene_from_index.transform_vector3(axis * edge as f64).length());
+        edges.fold(0.0, f64::max) / 2.0
     }
 
     /// The cells in which the object is.

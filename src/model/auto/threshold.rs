@@ -29,7 +29,11 @@ fn above_surroundings(volume: &Volume, histogram: &Histogram) -> f64 {
     (margin + TOWARDS_SPLIT * (split - margin)).max(margin + 0.02).min(ceiling)
 }
 
-/// The density that splits the histogram into the two most compact classes (Otsu's method).
+/// Voxels that never decide where Otsu's split lies, of the smaller class.
+const FEW_VOXELS: f64 = 4.0;
+
+/// The density that splits the histogram into the two most compact classes (Otsu's method). Of splits that are as good
+/// but for a few voxels, as those between two classes far apart, the lowest.
 pub(super) fn otsu(histogram: &Histogram) -> f64 {
     let bins = histogram.counts.len() as f64;
     let (total, sum) = histogram
@@ -37,7 +41,8 @@ pub(super) fn otsu(histogram: &Histogram) -> f64 {
         .iter()
         .enumerate()
         .fold((0.0, 0.0), |(n, s), (bin, &count)| (n + count as f64, s + bin as f64 * count as f64));
-    let (mut below, mut sum_below, mut best, mut best_bin) = (0.0, 0.0, -1.0, 0);
+    let (mut below, mut sum_below) = (0.0, 0.0);
+    let (mut best, mut smaller, mut splits) = (0.0, 1.0, Vec::new());
     for (bin, &count) in histogram.counts.iter().enumerate() {
         below += count as f64;
         sum_below += bin as f64 * count as f64;
@@ -47,11 +52,14 @@ pub(super) fn otsu(histogram: &Histogram) -> f64 {
         }
         let difference = sum_below / below - (sum - sum_below) / above;
         let between = below * above * difference * difference;
+        splits.push((bin, between));
         if between > best {
-            (best, best_bin) = (between, bin);
+            (best, smaller) = (between, f64::min(below, above));
         }
     }
-    (best_bin as f64 + 1.0) / bins
+    let enough = best * (1.0 - (FEW_VOXELS / smaller).min(1.0));
+    let first = splits.into_iter().find(|(_, between)| *between >= enough).map_or(0, |(bin, _)| bin);
+    (first as f64 + 1.0) / bins
 }
 
 /// What the volume's border looks like, in what `level` makes of densities: of the six faces, the median of their 98th percentiles. One

@@ -3,13 +3,13 @@
 use serde_json::{Value, json};
 
 use super::{ExchangeError, form};
-use crate::data::ValueRange;
+use crate::data::{ValueRange, ValueRanges};
 use crate::model::{Settings, TransferFunction, apply_relative};
 
 /// Reads the transfer function of a preset or a session.
 pub(crate) fn from_own(tree: &mut Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let overlay = json!({ "transfer": tree["transfer"].take(), "_values": tree["_values"].take() });
-    let applied = apply_relative(&Settings::default(), &overlay, range);
+    let applied = apply_relative(&Settings::default(), &overlay, &ValueRanges::same(range));
     let (settings, _) = applied.map_err(|err| form(&err.to_string()))?;
     Ok(settings.transfer)
 }

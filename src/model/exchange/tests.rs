@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::*;
+use crate::data::ValueRanges;
 use crate::model::{Interpolation, Preset, Settings};
 
 const RANGE: ValueRange = ValueRange::new(-1000.0, 1000.0);
@@ -209,7 +210,7 @@ fn other_xml_and_json_are_refused_in_words() {
 fn maps_of_paraview_are_read_back() {
     for name in ["ct/bone", "mr/head", "simulation/signed"] {
         let preset = Preset::find(name).unwrap();
-        let before = preset.apply(&Settings::default(), ValueRange::UNIT).unwrap().transfer;
+        let before = preset.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().transfer;
         let after = read("a.json", &export(Path::new("a.json"), &before, RANGE).unwrap()).unwrap();
         assert_eq!(after.points.len(), before.points.len());
         for (a, b) in after.points.iter().zip(&before.points) {

@@ -6,6 +6,7 @@ pub(super) mod floor;
 pub(super) mod length;
 pub(super) mod light;
 pub(super) mod quality;
+pub(super) mod range;
 pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod scene_axis;
@@ -18,8 +19,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    BakedTransfer, Camera, Classification, Cuts, Engine, Floor, Gradients, Kernel, Length, Light,
-    LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
+    BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kernel, Length,
+    Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
     TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE, ValueRange};
@@ -39,6 +40,8 @@ pub struct Settings {
     pub camera: Camera,
     /// At most [`super::MAX_LIGHTS`].
     pub lights: Vec<Light>,
+    /// The values that densities are spent on.
+    pub range: DensityRange,
     /// What the eye sees: colour and opacity of every value.
     pub transfer: TransferFunction,
     /// What the light meets.
@@ -67,6 +70,7 @@ impl Default for Settings {
             schema: SCHEMA,
             camera: Camera::default(),
             lights: vec![Light::default()],
+            range: DensityRange::Robust,
             transfer: TransferFunction::default(),
             lighting: LightingTransfer::default(),
             opacity_unit: Length::Voxels(1.0),
@@ -285,12 +289,12 @@ impl Settings {
         self.opacity_unit.in_scene(scene).max(1e-9)
     }
 
-    /// The eye's transfer function as a table for a volume of that value range.
+    /// The eye's transfer function as a table over a range of values, which are those that a volume shows.
     pub fn baked_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         self.transfer.bake(range, self.unit_in_scene(scene), 1.0)
     }
 
-    /// The lighting transfer function as a table for a volume of that value range.
+    /// The lighting transfer function as a table over a range of values, which are those that a volume shows.
     pub fn baked_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
         function.bake(range, self.unit_in_scene(scene), self.lighting.scale)

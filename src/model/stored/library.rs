@@ -1,11 +1,11 @@
 //! Presets that come with the program: transfer functions and materials by domain.
 //!
-//! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the volume's
-//! own range (`"_values": "relative"`). Camera, lights and shadows stay as they are.
+//! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the range
+//! that the look shows (`"_values": "relative"`). Camera, lights and shadows stay as they are.
 
 use serde_json::Value;
 
-use crate::data::ValueRange;
+use crate::data::ValueRanges;
 use crate::model::{PresetError, Settings, apply_json};
 
 /// A preset of the library.
@@ -86,22 +86,23 @@ impl Preset {
     ///
     /// # Errors
     /// As [`apply_json`]; a test proves that it does not happen.
-    pub fn apply(&self, settings: &Settings, range: ValueRange) -> Result<Settings, PresetError> {
+    pub fn apply(&self, settings: &Settings, ranges: &ValueRanges) -> Result<Settings, PresetError> {
         let overlay: Value = serde_json::from_str(self.text).map_err(PresetError::Syntax)?;
-        apply_relative(settings, &overlay, range).map(|(settings, _)| settings)
+        apply_relative(settings, &overlay, ranges).map(|(settings, _)| settings)
     }
 }
 
-/// As [`apply_json`], for presets whose values may be shares of the volume's range.
+/// As [`apply_json`], for presets whose values may be shares of the range that the look chooses of a volume's values.
 ///
 /// # Errors
 /// As [`apply_json`].
 pub fn apply_relative(
     settings: &Settings,
     overlay: &Value,
-    range: ValueRange,
+    ranges: &ValueRanges,
 ) -> Result<(Settings, Vec<String>), PresetError> {
     let (mut applied, warnings) = apply_json(settings, overlay)?;
+    let range = applied.range.of(ranges);
     if overlay.get("_values").and_then(Value::as_str) == Some("relative") {
         let has = |path: &str| overlay.pointer(path).is_some();
         let curves = [
@@ -120,15 +121,17 @@ pub fn apply_relative(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::ValueRange;
+    use crate::model::DensityRange;
 
     #[test]
     fn presets_are_valid_understood_and_show_something() {
         for preset in PRESETS {
             let overlay: Value = serde_json::from_str(preset.text).unwrap();
-            let range = ValueRange::new(-1000.0, 3000.0);
-            let (settings, warnings) = apply_relative(&Settings::default(), &overlay, range).unwrap();
+            let ranges = ValueRanges::same(ValueRange::new(-1000.0, 3000.0));
+            let (settings, warnings) = apply_relative(&Settings::default(), &overlay, &ranges).unwrap();
             assert!(warnings.is_empty(), "{}: {warnings:?}", preset.name);
-            assert_eq!(preset.apply(&Settings::default(), range).unwrap(), settings);
+            assert_eq!(preset.apply(&Settings::default(), &ranges).unwrap(), settings);
             let points = &settings.transfer.points;
             assert!(points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{}", preset.name);
             assert!(points.iter().any(|point| point.opacity > 0.05), "{}", preset.name);
@@ -155,10 +158,14 @@ mod tests {
 
     #[test]
     fn relative_values_follow_the_range_and_others_do_not() {
-        let (over, range) = (Settings::default(), ValueRange::new(100.0, 300.0));
-        let head = Preset::find("mr/head").unwrap().apply(&over, range).unwrap();
+        let ranges = ValueRanges { all: ValueRange::new(0.0, 1000.0), robust: ValueRange::new(100.0, 300.0) };
+        let over = Settings::default();
+        let head = Preset::find("mr/head").unwrap().apply(&over, &ranges).unwrap();
         assert!((head.transfer.points[0].value - 112.0).abs() < 1e-9);
-        let bone = Preset::find("ct/bone").unwrap().apply(&over, range).unwrap();
+        let all = Settings { range: DensityRange::Full, ..over.clone() };
+        let head = Preset::find("mr/head").unwrap().apply(&all, &ranges).unwrap();
+        assert!((head.transfer.points[0].value - 60.0).abs() < 1e-9);
+        let bone = Preset::find("ct/bone").unwrap().apply(&over, &ranges).unwrap();
         assert_eq!(bone.transfer.points[0].value, 150.0);
         assert_eq!((&bone.lights, &bone.camera, &bone.shadows), (&over.lights, &over.camera, &over.shadows));
     }

@@ -86,7 +86,11 @@ pub fn assign(
     let mut node = &mut tree;
     let mut walked: Vec<&str> = Vec::new();
     let current = current_path(path);
-    for key in current.split('.') {
+    let mut keys = current.split('.').peekable();
+    while let Some(key) = keys.next() {
+        if keys.peek().is_none() && is_other_variant(node, key) {
+            *node = Value::Object(std::iter::once((key.to_owned(), Value::Null)).collect());
+        }
         let known = match &*node {
             Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
             Value::Array(items) => format!("0 … {}", items.len().saturating_sub(1)),
@@ -119,6 +123,16 @@ pub fn assign(
         format!("`{path}` is out of its range: {asked} was asked for, {used} is used")
     });
     Ok((result, warning))
+}
+
+/// Whether a value is that of an enum, as it seems, and a key names another variant, which has numbers: one that is
+/// none is refused when the settings are made.
+fn is_other_variant(value: &Value, key: &str) -> bool {
+    match value {
+        Value::String(_) => key.parse::<usize>().is_err(),
+        Value::Object(fields) => fields.len() == 1 && !fields.contains_key(key),
+        _ => false,
+    }
 }
 
 /// What a setting is, by its path.
@@ -169,7 +183,8 @@ fn list_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut Vec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Kernel, Length, LightLock, LightStorage, MAX_LIGHTS};
+    use crate::data::ValueRange;
+    use crate::model::{DensityRange, Kernel, Length, LightLock, LightStorage, MAX_LIGHTS};
 
     #[test]
     fn round_trip() {
@@ -222,6 +237,21 @@ mod tests {
         let err = apply_path(&settings, "shadows.strenght", "1").unwrap_err().to_string();
         assert!(err.contains("shadows") && err.contains("strength"), "{err}");
         assert!(apply_path(&settings, "shadows.strength", "much").is_err());
+    }
+
+    #[test]
+    fn paths_reach_variants_with_numbers() {
+        let set = |path: &str, text: &str| apply_path(&Settings::default(), path, text);
+        let typed = DensityRange::Typed(ValueRange::new(-100.0, 300.0));
+        assert_eq!(set("range.typed", "[-100, 300]").unwrap().range, typed);
+        assert_eq!(set("range", r#"{"typed": [-100, 300]}"#).unwrap().range, typed);
+        assert_eq!(set("range", "full").unwrap().range, DensityRange::Full);
+        assert_eq!(set("opacity_unit.mm", "2").unwrap().opacity_unit, Length::Mm(2.0));
+        let told = assign(&Settings::default(), "range.typed", "[300, -100]").unwrap();
+        assert_eq!((told.0.range, told.1.is_some()), (typed, true));
+        for (path, text) in [("range.robuster", "1"), ("range.typed", "3"), ("lights.0.name.x", "1")] {
+            assert!(set(path, text).is_err(), "{path}");
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use super::path_text::{decode_path, encode_path};
 use super::renames::rename;
 use super::schemas::complete;
 use super::unknown;
-use crate::data::ValueRange;
+use crate::data::ValueRanges;
 use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_relative};
 
 /// The volume of a look.
@@ -162,7 +162,7 @@ impl Record {
     /// Whether all settings of the record are understood: nothing was cut, none is unknown or of a wrong form, and it
     /// is not of a newer version. What is not understood is lost where the record is written again.
     pub fn is_understood(&self) -> bool {
-        let applied = self.apply(&Settings::default(), ValueRange::UNIT);
+        let applied = self.apply(&Settings::default(), &ValueRanges::UNIT);
         applied.is_ok_and(|(_, warnings)| warnings.is_empty())
     }
 
@@ -179,7 +179,7 @@ impl Record {
 
     /// What the record says that this version does not know, and remarks of others; null if there is nothing.
     pub fn unknown(&self) -> Value {
-        let understood = self.apply(&Settings::default(), ValueRange::UNIT).map(|(settings, _)| settings);
+        let understood = self.apply(&Settings::default(), &ValueRanges::UNIT).map(|(settings, _)| settings);
         let Ok(tree) = understood.map(|settings| serde_json::to_value(settings).unwrap_or_default()) else {
             return Value::Null;
         };
@@ -211,8 +211,12 @@ impl Record {
     ///
     /// # Errors
     /// As [`apply_relative`].
-    pub fn apply(&self, over: &Settings, range: ValueRange) -> Result<(Settings, Vec<String>), PresetError> {
-        let (settings, warnings) = apply_relative(over, &self.overlay, range)?;
+    pub fn apply(
+        &self,
+        over: &Settings,
+        ranges: &ValueRanges,
+    ) -> Result<(Settings, Vec<String>), PresetError> {
+        let (settings, warnings) = apply_relative(over, &self.overlay, ranges)?;
         Ok((settings, [self.cuts.clone(), warnings].concat()))
     }
 }
@@ -246,7 +250,7 @@ mod tests {
         let text = Record::text(&settings, Some(&volume), Some(&picture));
         let record = Record::read(&text).unwrap();
         assert_eq!((record.volume.as_ref(), record.picture.as_ref()), (Some(&volume), Some(&picture)));
-        let (read, warnings) = record.apply(&Settings::default(), ValueRange::UNIT).unwrap();
+        let (read, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
         assert_eq!((read, warnings), (settings, vec![]));
         assert!(volume.is_of(0x1234) && !volume.is_of(0x1235));
     }
@@ -263,7 +267,7 @@ mod tests {
     fn presets_are_records_of_nothing_and_nonsense_is_refused() {
         let record = Record::read(r#"{"shadows": {"gain": 2.0}}"#).unwrap();
         assert_eq!((&record.volume, &record.picture), (&None, &None));
-        assert_eq!(record.apply(&Settings::default(), ValueRange::UNIT).unwrap().0.shadows.gain, 2.0);
+        assert_eq!(record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0.shadows.gain, 2.0);
         assert!(Record::read("[1]").is_err() && Record::read("{").is_err());
         assert!(Record::read(r#"{"_volume": {"source": 3}}"#).is_err());
     }
@@ -273,12 +277,12 @@ mod tests {
         let text =
             r#"{"schema": 2, "_notes": "mine", "shadows": {"gain": 2.0, "glow": 3}, "ground": {"on": true}}"#;
         let record = Record::read(text).unwrap();
-        let (settings, _) = record.apply(&Settings::default(), ValueRange::UNIT).unwrap();
+        let (settings, _) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
         let again = Record::text_with(&settings, None, None, &record.unknown());
         let read = Record::read(&again).unwrap();
         assert_eq!(read.overlay["_notes"], "mine");
         assert_eq!((&read.overlay["shadows"]["glow"], read.overlay.get("ground")), (&Value::from(3), None));
-        assert_eq!(read.apply(&Settings::default(), ValueRange::UNIT).unwrap().0, settings);
+        assert_eq!(read.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0, settings);
         assert_eq!(record.schema(), Some(2));
     }
 
@@ -291,7 +295,7 @@ mod tests {
         for text in [r#"{"schema": 999}"#, r#"{"later": 1}"#, r#"{"shadows": {"gain": "much"}}"#, &nine] {
             assert!(!is_understood(text), "{text}");
         }
-        let told = Record::read(&nine).unwrap().apply(&Settings::default(), ValueRange::UNIT).unwrap().1;
+        let told = Record::read(&nine).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().1;
         assert_eq!(told, ["9 entries of `lights` were cut to 8"]);
     }
 
@@ -302,7 +306,7 @@ mod tests {
         settings.transfer.points = (0..4096).map(point).collect();
         settings.lighting.curve.points = settings.transfer.points[..2048].to_vec();
         let read = Record::read(&Record::text(&settings, None, None)).unwrap();
-        assert_eq!(read.apply(&Settings::default(), ValueRange::UNIT).unwrap(), (settings, vec![]));
+        assert_eq!(read.apply(&Settings::default(), &ValueRanges::UNIT).unwrap(), (settings, vec![]));
     }
 
     #[test]

@@ -25,6 +25,7 @@ pub(super) fn complete(record: &mut Value) {
     if let Some(camera) = groups.get_mut("camera") {
         complete_camera(camera);
     }
+    complete_range(groups);
     for (_, group, setting, value) in added().into_iter().filter(|(since, ..)| schema < *since) {
         let group = groups.entry(group).or_insert_with(|| Value::Object(Map::new()));
         if let Value::Object(group) = group {
@@ -54,6 +55,14 @@ fn complete_scattered(groups: &mut Map<String, Value>) {
         && sampling.get("engine") == Some(&Value::from("scatter"))
     {
         sampling.insert("gradients".to_owned(), Value::from("sheets"));
+    }
+}
+
+/// Spends densities on all values of the file where a look says what is seen at which value, but not which values that
+/// is about: so all looks did before there was a choice. What has neither leaves the range.
+fn complete_range(groups: &mut Map<String, Value>) {
+    if groups.contains_key("transfer") {
+        groups.entry("range").or_insert_with(|| Value::from("full"));
     }
 }
 
@@ -87,7 +96,7 @@ pub(super) fn keep_named_balance(record: &mut Value) {
 mod tests {
     use super::*;
     use crate::model::{
-        Camera, Fit, Gradients, NearField, ReverseKernel, SCHEMA, Settings, Sides, load_json,
+        Camera, DensityRange, Fit, Gradients, NearField, ReverseKernel, SCHEMA, Settings, Sides, load_json,
     };
 
     #[test]
@@ -151,6 +160,21 @@ mod tests {
         let mut saved = serde_json::to_value(&now.camera).expect("a camera");
         saved.as_object_mut().expect("an object").remove("fit");
         assert_eq!(serde_json::from_value::<Camera>(saved).expect("a camera").fit, Fit::Height);
+    }
+
+    #[test]
+    fn saved_looks_show_all_values_as_they_did() {
+        let range = |text: &str| load_json(&Settings::default(), text).expect("settings").0.range;
+        assert_eq!(range(r#"{"schema": 2, "transfer": {"points": []}}"#), DensityRange::Full);
+        assert_eq!(range(r#"{"schema": 1, "transfer": {}}"#), DensityRange::Full);
+        // What says nothing of values, what names the range, and what is of no schema.
+        for now in [
+            r#"{"schema": 2, "shadows": {"gain": 2.0}}"#,
+            r#"{"schema": 2, "transfer": {}, "range": "robust"}"#,
+            r#"{"transfer": {}}"#,
+        ] {
+            assert_eq!(range(now), DensityRange::Robust, "{now}");
+        }
     }
 
     #[test]

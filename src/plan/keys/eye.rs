@@ -8,12 +8,12 @@ use crate::model::{
     Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
     Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
 };
-use crate::plan::{CombinedKey, PixelWindow, RenderOptions, Request};
+use crate::plan::{CombinedKey, PixelWindow, RenderOptions, Request, VolumeKey};
 
 /// Everything that the eye pass makes a linear picture from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeKey {
-    volume: u64,
+    volume: VolumeKey,
     window: PixelWindow,
     camera: Camera,
     curve: EyeTableKey,
@@ -86,11 +86,13 @@ impl EyeKey {
         volumes: &[Option<LightKey>],
         combined: Option<&CombinedKey>,
     ) -> Self {
-        let Request { volume, settings, size: _, coarse: _ } = request;
+        let Request { volume: _, settings, size: _, coarse: _ } = request;
         let Settings {
             schema: _,
             camera,
             lights: _,
+            // In the key of the volume.
+            range: _,
             transfer: _,
             lighting: _,
             opacity_unit,
@@ -111,7 +113,7 @@ impl EyeKey {
         });
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
         Self {
-            volume: *volume,
+            volume: request.shown_volume(),
             window: options.window(request),
             camera: camera.clone(),
             curve: EyeTableKey::of(settings),

@@ -5,12 +5,12 @@ use crate::model::{
     Classification, Deposit, Engine, Hood, Kernel, LightKind, Precision, Quadrature, Remains, Resolution,
     ReverseKernel, Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
 };
-use crate::plan::Request;
+use crate::plan::{Request, VolumeKey};
 
 /// Everything that one light's attenuation volume is made from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightKey {
-    volume: u64,
+    volume: VolumeKey,
     kind: LightKind,
     /// The position, or for a parallel light the direction: moving it outwards changes nothing.
     placed: [f64; 3],
@@ -56,6 +56,8 @@ impl LightKey {
             schema: _,
             camera,
             lights,
+            // In the key of the volume.
+            range: _,
             // In the key of opacities.
             transfer: _,
             lighting: _,
@@ -112,7 +114,7 @@ impl LightKey {
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
         wanted.then(|| Self {
-            volume: request.volume,
+            volume: request.shown_volume(),
             kind: *kind,
             placed: match kind {
                 LightKind::Parallel => light.direction().into(),

@@ -20,13 +20,13 @@ pub use light::LightKey;
 pub use lit_lights::{Attenuation, LitLight, LitLights};
 pub use table::{EyeTableKey, OpacityKey, TablesKey};
 
-use super::{RenderOptions, Request};
+use super::{RenderOptions, Request, VolumeKey};
 
 /// The keys of everything that a picture needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameKeys {
     /// Density, pyramid and gradients on the GPU.
-    pub volume: u64,
+    pub volume: VolumeKey,
     /// Both lookup tables, and where they show anything.
     pub tables: TablesKey,
     /// Attenuation volume of each light of the settings, at the resolution of the settings; `None` for lights
@@ -50,8 +50,8 @@ impl FrameKeys {
         let combined = CombinedKey::of(request, options);
         let eye = EyeKey::of(request, options, &lights, combined.as_ref());
         Self {
-            volume: request.volume,
-            tables: TablesKey::of(request.volume, &request.settings),
+            volume: request.shown_volume(),
+            tables: TablesKey::of(request),
             floor: FloorKey::of(request, &eye),
             display: DisplayKey::of(request, options),
             lights,

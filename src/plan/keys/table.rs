@@ -1,12 +1,13 @@
 //! What the lookup tables of the transfer functions are made from.
 
 use crate::model::{Easing, Interpolation, Length, LightingTransfer, Settings, TransferFunction};
+use crate::plan::{Request, VolumeKey};
 
 /// Everything that both lookup tables are made from, besides the volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TablesKey {
-    /// Volume whose value range and bricks they refer to.
-    pub volume: u64,
+    /// Volume whose shown range and bricks they refer to.
+    pub volume: VolumeKey,
     /// What the eye sees.
     pub eye: EyeTableKey,
     /// What the light meets.
@@ -32,10 +33,11 @@ pub struct OpacityKey {
 }
 
 impl TablesKey {
-    /// The key of both tables of a look of a volume.
-    pub(super) fn of(volume: u64, settings: &Settings) -> Self {
+    /// The key of both tables of a picture.
+    pub(super) fn of(request: &Request) -> Self {
+        let settings = &request.settings;
         Self {
-            volume,
+            volume: request.shown_volume(),
             eye: EyeTableKey::of(settings),
             lighting: OpacityKey::of(settings),
             cells_are_bounds: settings.cells_are_bounds(),

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::*;
+use crate::data::{ValueRange, ValueRanges, VolumeId};
 use crate::model::{
     Camera, ControlPoint, Light, LightKind, LightLock, Settings, TransferFunction, apply_path, to_json,
 };
@@ -18,7 +19,8 @@ fn request() -> Request {
         transfer: TransferFunction { points: vec![point(0.0, 0.0), point(1.0, 0.5)], ..Default::default() },
         ..Settings::default()
     };
-    Request { volume: 1, settings, size: [100, 80], coarse: None }
+    let ranges = ValueRanges { all: ValueRange::new(-9.0, 9.0), robust: ValueRange::UNIT };
+    Request { volume: VolumeId { content_id: 1, ranges }, settings, size: [100, 80], coarse: None }
 }
 
 fn keys(request: &Request) -> FrameKeys {
@@ -78,6 +80,10 @@ fn every_setting_causes_what_the_design_says() {
         ("lights.1.hood", r#"{"on": true}"#, Effect::Nothing),
         ("lights.2.hood", r#"{"on": true}"#, Effect::OneLight),
         ("lights.1.density_scale", "0.5", Effect::OneLight),
+        ("range", "full", Effect::AllLights),
+        ("range", r#"{"typed": [0, 2]}"#, Effect::AllLights),
+        // Beyond what the range holds: it is widened.
+        ("transfer.points.1.value", "1.2", Effect::AllLights),
         ("transfer.points.0.color", "[1,0,0]", Effect::Eye),
         ("transfer.points.1.opacity", "0.4", Effect::AllLights),
         ("transfer.points.1.value", "0.9", Effect::AllLights),
@@ -223,9 +229,33 @@ fn an_unlinked_lighting_curve_frees_the_eye() {
 
 #[test]
 fn another_volume_changes_every_key() {
-    let (before, after) = (keys(&request()), keys(&Request { volume: 2, ..request() }));
+    let mut other = request();
+    other.volume.content_id = 2;
+    let (before, after) = (keys(&request()), keys(&other));
     assert!(before.volume != after.volume && before.tables != after.tables && before.eye != after.eye);
     assert_eq!(after.lights_missing_in(&before), 3);
+}
+
+#[test]
+fn another_range_changes_every_key() {
+    let before = request();
+    let settings = apply_path(&before.settings, "range", "full").unwrap();
+    let after = keys(&Request { settings, ..before.clone() });
+    let before = keys(&before);
+    assert!(before.volume != after.volume && before.tables != after.tables && before.eye != after.eye);
+    assert_eq!((before.volume.shown, after.volume.shown.high), (ValueRange::UNIT, 9.0));
+    assert_eq!(after.lights_missing_in(&before), 3);
+}
+
+#[test]
+fn points_within_the_range_leave_the_volume_as_it_is() {
+    let volume = |value: &str| {
+        let settings = apply_path(&request().settings, "transfer.points.1.value", value).unwrap();
+        keys(&Request { settings, ..request() }).volume
+    };
+    assert_eq!(volume("0.4"), volume("1.004"));
+    assert_ne!(volume("0.4"), volume("1.1"));
+    assert_eq!(volume("1.1"), volume("1.12"));
 }
 
 #[test]

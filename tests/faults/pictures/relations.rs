@@ -1,6 +1,6 @@
 //! What must hold between pictures of whatever scene.
 
-use chiaroscuro::data::{Samples, ValueRange};
+use chiaroscuro::data::{Samples, ValueRanges};
 use chiaroscuro::gpu::{Picture, RenderOptions};
 use chiaroscuro::model::{Record, Settings};
 use chiaroscuro::plan::PixelWindow;
@@ -130,7 +130,7 @@ fn all_relations(seed: u64, studio: &mut Studio) {
 
     // P14: a look that was saved is the look.
     let record = Record::read(&Record::text(&settings, None, None)).expect("a record");
-    let (read, warnings) = record.apply(&Settings::default(), ValueRange::UNIT).expect("settings");
+    let (read, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings");
     assert_eq!((&read, warnings), (&settings, vec![]), "seed {seed}");
 
     // P7: the same world with its voxels in another order in memory.

@@ -123,7 +123,7 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let request = Request {
-        volume: loaded.volume().content_id(),
+        volume: loaded.volume().id(),
         settings: settings.clone(),
         size: SIZE.map(|n| n / 4),
         coarse: Some(Resolution::Quarter),
@@ -157,7 +157,7 @@ fn what_is_lit_around_a_light_volume_stays_so_until_it_is_filled() {
         // Filled for a fine picture, and looked up by a coarse one.
         for size in [[256, 192], [16, 12]] {
             let settings = settings.clone();
-            let volume = loaded.volume().content_id();
+            let volume = loaded.volume().id();
             let request = Request { volume, settings, size, coarse: Some(Resolution::Half) };
             let options = RenderOptions { preview: true, ..RenderOptions::default() };
             let mut job = renderer.begin(&loaded, request, &options).expect("a job");

@@ -178,7 +178,7 @@ fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     assert!(worst.fold(0.0, f32::max) <= F16_STEP);
 
     let request = |settings: &Settings| Request {
-        volume: loaded.volume().content_id(),
+        volume: loaded.volume().id(),
         settings: settings.clone(),
         size: SIZE,
         coarse: None,

@@ -21,11 +21,14 @@ enum Cost {
     Eye,
     /// So many light volumes, and the picture.
     Lights(u32),
+    /// Everything, from the upload on.
+    Volume,
 }
 
 fn cost(runs: Runs) -> Cost {
-    assert_eq!(runs.volume, 0, "the volume is there");
     match runs {
+        Runs { volume: 1.., tables: 2, light_volumes: 3, eye: 1.., .. } => Cost::Volume,
+        Runs { volume: 1.., .. } => panic!("the volume is there: {runs:?}"),
         Runs { light_volumes, eye: 1.., .. } if light_volumes > 0 => Cost::Lights(light_volumes),
         Runs { light_volumes: 0, eye: 1.., .. } => Cost::Eye,
         Runs { light_volumes: 0, eye: 0, floor: 1.., display: 1, .. } => Cost::Floor,
@@ -100,6 +103,7 @@ fn every_setting_costs_what_it_should() {
         ("lights.1.hood", r#"{"on": true}"#, Cost::Nothing),
         ("lights.2.hood", r#"{"on": true}"#, Cost::Lights(1)),
         ("lights.1.density_scale", "0.5", Cost::Lights(1)),
+        ("range", r#"{"typed": [0, 2]}"#, Cost::Volume),
         ("transfer.points.0.color", "[1,0,0]", Cost::Eye),
         ("transfer.points.1.opacity", "0.4", Cost::Lights(3)),
         ("lighting.scale", "0.5", Cost::Lights(3)),

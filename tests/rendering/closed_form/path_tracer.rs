@@ -38,8 +38,9 @@ const BORDER: usize = 3;
 
 impl Material {
     fn of(loaded: &Dataset, settings: &Settings) -> Self {
-        let volume = loaded.volume();
-        let table = settings.baked_eye(volume.value_range(), &volume.scene());
+        let range = settings.shown_range(&loaded.volume().ranges());
+        let volume = &loaded.volume().showing(range);
+        let table = settings.baked_eye(range, &volume.scene());
         let dims = volume.dims().map(|length| length + 2 * BORDER);
         let mut densities = vec![0.0; dims.iter().product()];
         for z in 0..volume.dims()[2] {

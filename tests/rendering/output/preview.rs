@@ -28,7 +28,7 @@ fn brightness(
         settings.sampling.slab = preview_slab(&settings.camera, &loaded.volume().scene(), size, slab);
         settings.shadows.kernel = Kernel::Prefiltered;
     }
-    let request = Request { volume: loaded.volume().content_id(), settings, size, coarse };
+    let request = Request { volume: loaded.volume().id(), settings, size, coarse };
     let mut job = renderer.begin(loaded, request, &options).expect("a job");
     while job.step().expect("a step") {}
     mean_luminance(&renderer.read_light().expect("light"))

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 mod kills;
 
 use super::*;
-use crate::data::ValueRange;
+use crate::data::ValueRanges;
 use crate::model::Record;
 
 pub(super) fn remember(folder: &Path) -> Memory {
@@ -23,7 +23,7 @@ pub(super) fn look(gain: f64) -> Settings {
 
 pub(super) fn gain_of(path: &Path) -> f64 {
     let record = Record::read(&fs::read_to_string(path).unwrap()).unwrap();
-    record.apply(&Settings::default(), ValueRange::UNIT).unwrap().0.shadows.gain
+    record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0.shadows.gain
 }
 
 fn wait_until(what: &str, condition: impl Fn() -> bool) -> Duration {

@@ -169,6 +169,7 @@ fn brightness(settings: &Settings) -> Settings {
         schema,
         camera: _,
         lights,
+        range,
         transfer,
         lighting,
         opacity_unit,
@@ -187,6 +188,7 @@ fn brightness(settings: &Settings) -> Settings {
     Settings {
         schema: *schema,
         lights,
+        range: *range,
         transfer: transfer.clone(),
         lighting: lighting.clone(),
         opacity_unit: *opacity_unit,

@@ -60,6 +60,24 @@ pub(crate) fn kind(kind: DataKind) -> String {
     }
 }
 
+pub(crate) const RANGE: Named = named(
+    "Range",
+    "The values among which the picture tells differences; what lies outside looks like the nearest of them. Control \
+     points beyond it widen it",
+);
+pub(crate) const ROBUST: Named =
+    named("Robust", "The values that matter: without padding and without a few outliers");
+pub(crate) const FULL: Named = named("Full", "All values of the file");
+pub(crate) const TYPED: Named = named("Typed", "From one value to another");
+pub(crate) const LOW: Named = named("Lowest value shown", "In the units of the file");
+pub(crate) const HIGH: Named = named("Highest value shown", "In the units of the file");
+pub(crate) const SHOWN: &str = "Shown";
+
+/// The values that are shown, and all of the file, in digits.
+pub(crate) fn shown([low, high]: &[String; 2], [lowest, highest]: &[String; 2]) -> String {
+    format!("{low} … {high} of {lowest} … {highest}")
+}
+
 pub(crate) const OPACITY_UNIT: Named = named(
     "Opacity unit",
     "The thickness of material to which the opacities of the transfer function refer: larger makes \

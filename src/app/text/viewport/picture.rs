@@ -1,9 +1,18 @@
 //! The picture, and two looks in it.
 
+use crate::app::text::{Named, named};
+
 /// What screen readers call the picture.
 pub(crate) const PICTURE: &str = "Picture";
 /// What screen readers call the line between two looks.
 pub(crate) const DIVIDER: &str = "Divider";
+
+/// Over a picture in which nothing is seen.
+pub(crate) const NOTHING_SEEN: &str = "Nothing of the volume is visible: all of it is transparent";
+pub(crate) const SHOW_SOMETHING: Named =
+    named("Show something", "Takes a transfer function that shows the densest twentieth of the voxels");
+pub(crate) const RESET_TRANSFER: Named =
+    named("Reset transfer function", "Takes back the transfer function with which the volume was opened");
 
 /// What is shown where two looks are subtracted.
 pub(crate) fn difference(left: &str, right: &str) -> String {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::app::common::commands::Command;
 use crate::app::text;
 use crate::app::windows::export::{Subject, Worker};
-use crate::data::ValueRange;
+use crate::data::ValueRanges;
 use crate::gpu::{LightSearch, SmallLook, Sought, small_volume};
 use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings, Slabs, auto};
 
@@ -58,10 +58,9 @@ impl Sheet {
     /// Tries everything. An error says why there are no pictures.
     pub(super) fn try_all(self, subject: &Subject) -> Result<Vec<Tried>, String> {
         let mut worker = Worker::new(subject)?;
-        let range = subject.dataset.volume().value_range();
         let candidates = match self {
             Self::Lights => with_lights(&subject.settings, subject.selected_light),
-            Self::Presets => with_presets(&subject.settings, range),
+            Self::Presets => with_presets(&subject.settings, &subject.dataset.volume().ranges()),
             Self::Suggestions => suggested(subject, &worker)?,
             Self::Looks => return looks(subject, &mut worker),
         };
@@ -82,11 +81,11 @@ fn picture(worker: &mut Worker, subject: &Subject, settings: &Settings) -> Resul
 }
 
 /// The look with each preset laid over it, but for that of the benchmarks.
-fn with_presets(settings: &Settings, range: ValueRange) -> Vec<Candidate> {
+fn with_presets(settings: &Settings, ranges: &ValueRanges) -> Vec<Candidate> {
     let presets = PRESETS.into_iter().filter(|preset| preset.domain() != "bench");
     presets
         .filter_map(|preset| {
-            let settings = preset.apply(settings, range).ok()?;
+            let settings = preset.apply(settings, ranges).ok()?;
             let [domain, _] = preset.domain_titles();
             let name = text::contact_sheet::preset(domain, &preset.title());
             let tip = text::contact_sheet::USE_TIP.to_owned();
@@ -213,7 +212,7 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
         assert_eq!(lights_to_try(&Settings::default(), 9).len(), Rig::ALL.len(), "no light is selected");
-        let presets = with_presets(&Settings::default(), ValueRange::new(0.0, 255.0));
+        let presets = with_presets(&Settings::default(), &ValueRanges::UNIT);
         assert_eq!(presets.len(), PRESETS.len() - 1);
         assert!(presets.iter().all(|look| look.settings.transfer != Settings::default().transfer));
     }

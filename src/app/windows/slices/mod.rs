@@ -17,7 +17,7 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::app::viewport::orbit::wheel_notches;
 use crate::app::viewport::view_projection::ViewProjection;
-use crate::data::Volume;
+use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
 use crate::model::TransferFunction;
 
@@ -155,8 +155,11 @@ impl Slices {
         let what = (volume.content_id(), self.cursor[axis], *grey, self.colored.then(|| transfer.clone()));
         let cut = &mut self.cuts[axis];
         if cut.drawn.as_ref() != Some(&what) {
-            let table = lookup(volume, *grey, what.3.as_ref());
-            let image = slice(volume, axis, self.cursor[axis], &table);
+            // Whatever the picture shows: beyond these all values look the same.
+            let ValueRange { low, high } = volume.shown_range();
+            let volume = volume.showing(ValueRange::new(low.min(grey.black), high.max(grey.white)));
+            let table = lookup(&volume, *grey, what.3.as_ref());
+            let image = slice(&volume, axis, self.cursor[axis], &table);
             match &mut cut.texture {
                 Some(texture) => texture.set(image, TextureOptions::LINEAR),
                 empty => *empty = Some(ui.ctx().load_texture("slice", image, TextureOptions::LINEAR)),

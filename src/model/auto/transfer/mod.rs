@@ -36,6 +36,11 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Fo
     }
 }
 
+/// A transfer function that shows what begins at a density.
+pub(super) fn beginning_at(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction {
+    scalar::beginning_at(volume, histogram, start)
+}
+
 /// A point before its value and its colour are known: how far along the scale, along the palette, and how opaque.
 struct Stop {
     value: f64,

@@ -20,6 +20,11 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
     Found { transfer: rising(volume, histogram, start, Palette::of(domain)), domain }
 }
 
+/// Shows what begins at a density, in the colours of its field.
+pub(super) fn beginning_at(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction {
+    rising(volume, histogram, start, Palette::of(Domain::of(volume, start)))
+}
+
 /// Rises from a density on.
 fn rising(volume: &Volume, histogram: &Histogram, start: f64, palette: &Palette) -> TransferFunction {
     let shown = histogram_above(histogram, start);
@@ -37,7 +42,12 @@ fn rising(volume: &Volume, histogram: &Histogram, start: f64, palette: &Palette)
         (1.0f64.max(bright + 0.01), 1.0, 0.96),
     ];
     through(
-        stops.map(|(density, place, opacity)| Stop { value: volume.value_of(density), place, opacity }),
+        // Beyond the range there is nothing else.
+        stops.map(|(density, place, opacity)| Stop {
+            value: volume.value_of(density.min(1.0)),
+            place,
+            opacity,
+        }),
         palette,
     )
 }

@@ -1,7 +1,10 @@
 //! From the smallest value to the largest.
 
-/// Values in data units from a lowest to a highest, both included.
-#[derive(Debug, Clone, Copy, PartialEq)]
+use serde::{Deserialize, Serialize};
+
+/// Values in data units from a lowest to a highest, both included; in JSON `[low, high]`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct ValueRange {
     /// The lowest value.
     pub low: f64,
@@ -42,6 +45,18 @@ impl ValueRange {
     /// Whether a value is in the range.
     pub fn contains(self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
+    }
+}
+
+impl From<[f64; 2]> for ValueRange {
+    fn from([low, high]: [f64; 2]) -> Self {
+        Self { low, high }
+    }
+}
+
+impl From<ValueRange> for [f64; 2] {
+    fn from(ValueRange { low, high }: ValueRange) -> Self {
+        [low, high]
     }
 }
 

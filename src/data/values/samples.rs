@@ -1,4 +1,4 @@
-//! The values of a volume's voxels, in the number type of the file.
+//! The values of voxels as files have them, in any number type.
 
 use crate::data::ValueRange;
 
@@ -76,7 +76,7 @@ macro_rules! with_samples {
     };
 }
 
-pub(super) use with_samples;
+pub(in crate::data) use with_samples;
 
 impl Samples {
     /// Number of voxels.
@@ -114,13 +114,13 @@ impl Samples {
     }
 
     /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
-    pub(super) fn finite_range(&self) -> Option<(ValueRange, usize)> {
+    pub(in crate::data) fn finite_range(&self) -> Option<(ValueRange, usize)> {
         self.range_without(f64::NAN)
     }
 
     /// What the finite values span that are not `left_out`, and how many voxels are not finite; `None` where there are
     /// none.
-    pub(super) fn range_without(&self, left_out: f64) -> Option<(ValueRange, usize)> {
+    pub(in crate::data) fn range_without(&self, left_out: f64) -> Option<(ValueRange, usize)> {
         #[expect(
             trivial_numeric_casts,
             clippy::unnecessary_cast,
@@ -143,7 +143,7 @@ impl Samples {
     }
 
     /// A 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
-    pub(super) fn fingerprint(&self) -> u64 {
+    pub(in crate::data) fn fingerprint(&self) -> u64 {
         const PRIME: u64 = 0x0000_0100_0000_01b3;
         #[expect(
             trivial_numeric_casts,

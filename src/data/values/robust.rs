@@ -1,0 +1,351 @@
+//! The range of the values that matter, without padding and outliers: no single voxel can move it by much.
+//!
+//! What decides are ranks among the values of at most [`MOST_SAMPLED`] voxels, so the order of the voxels, their number
+//! type, an offset and a scale play no role.
+
+use rayon::prelude::*;
+
+use super::samples::with_samples;
+use crate::data::{Samples, ValueRange, VoxelType};
+
+/// Voxels that are looked at: the 0.01 % at either end are 26 of them, whose rank is uncertain by a fifth.
+const MOST_SAMPLED: usize = 1 << 18;
+
+/// Voxels that a task looks at.
+const CHUNK: usize = 1 << 16;
+
+/// The most extreme voxels at either end that never decide: the ninth of a million normally distributed values is 0.3 %
+/// of their range below the eighth.
+const FEW: usize = 8;
+
+/// Of less than this many voxels for each of [`FEW`], fewer are passed over: of very small volumes, none.
+const VOXELS_PER_FEW: usize = 1024;
+
+/// Most different values of a mask or of a handful of labels, whose values are names: none of them is an outlier.
+const FEW_VALUES: usize = 16;
+
+/// Voxels of this many lie below the low end of what is usual, and as many above: 0.01 %.
+const VOXELS_PER_UNUSUAL: usize = 10_000;
+
+/// A lowest or highest value that more than one of so many voxels have may be padding, …
+const VOXELS_PER_PADDED: usize = 100;
+
+/// … if this share of the range of all but one of so many voxels lies between it and the others, …
+const LEAST_GAP: f64 = 0.05;
+const VOXELS_PER_RARE: usize = 1000;
+
+/// … of which there must be more than one of so many voxels, or they would be what lies between two values.
+const VOXELS_PER_REST: usize = 20;
+
+/// An end is moved out to the last value if that is less than this share of the range away.
+const WIDENED: f64 = 0.5;
+
+/// Between padding and the lowest or highest other value remains this share of the range: the padding may be what is
+/// around the object, whose border would be lost.
+const BESIDE_PADDING: f64 = 1.0 / 16.0;
+
+/// Nearer than this share of the range to the file's last value, it is the end: less than 1 %, that one voxel may do.
+const SNAP: f64 = 1.0 / 128.0;
+
+/// The values of a volume: all of them, and those that matter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ValueRanges {
+    /// From the smallest finite value of the file to the largest.
+    pub all: ValueRange,
+    /// Without padding and outliers.
+    pub robust: ValueRange,
+}
+
+impl ValueRanges {
+    /// Both from 0 to 1.
+    pub const UNIT: Self = Self::same(ValueRange::UNIT);
+
+    /// All values matter.
+    pub const fn same(all: ValueRange) -> Self {
+        Self { all, robust: all }
+    }
+
+    /// Finds the range that matters among values that span `all`.
+    pub(in crate::data) fn of(samples: &Samples, all: ValueRange) -> Self {
+        Self::without(samples, all, f64::NAN)
+    }
+
+    /// Finds the range that matters among values that span `all` and are not `left_out`.
+    pub(in crate::data) fn without(samples: &Samples, all: ValueRange, left_out: f64) -> Self {
+        let Some(found) = ValueRange::spread(all.low, all.high).and_then(|_| robust(samples, left_out))
+        else {
+            return Self::same(all);
+        };
+        let near = SNAP * found.span();
+        let mut robust = found;
+        if !matches!(samples.voxel_type(), VoxelType::F32 | VoxelType::F64) {
+            robust = ValueRange::new(found.low.floor(), found.high.ceil());
+        }
+        if robust.low - all.low <= near {
+            robust.low = all.low;
+        }
+        if all.high - robust.high <= near {
+            robust.high = all.high;
+        }
+        Self { all, robust }
+    }
+}
+
+/// The value below which a share of the finite ones lies that are not `left_out`, as far as evenly spread voxels tell; 0
+/// where there are none.
+pub(in crate::data) fn quantile(samples: &Samples, left_out: f64, share: f64) -> f64 {
+    let values = sorted(samples, left_out);
+    let at = (share.clamp(0.0, 1.0) * values.len() as f64) as usize;
+    values.get(at).or(values.last()).copied().unwrap_or_default()
+}
+
+/// The finite values of evenly spread voxels that are not `left_out`, in order.
+fn sorted(samples: &Samples, left_out: f64) -> Vec<f64> {
+    let stride = samples.len().div_ceil(MOST_SAMPLED).max(1);
+    let value = |at: usize| {
+        let first = at * stride;
+        // Somewhere in each stretch, lest strides fall into step with rows.
+        let hash = ((at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) as usize;
+        samples.value(first + hash % stride.min(samples.len() - first))
+    };
+    let all = (0..samples.len().div_ceil(stride)).into_par_iter().map(value);
+    let mut values: Vec<f64> = all.filter(|value| value.is_finite() && *value != left_out).collect();
+    values.par_sort_unstable_by(f64::total_cmp);
+    values
+}
+
+/// The lowest and the highest values, in order from the outermost on.
+struct Extremes {
+    lows: Vec<f64>,
+    highs: Vec<f64>,
+}
+
+impl Extremes {
+    /// Room for so many at either end.
+    fn none(count: usize) -> Self {
+        Self { lows: vec![f64::INFINITY; count], highs: vec![f64::NEG_INFINITY; count] }
+    }
+
+    fn low(&mut self, value: f64) {
+        if let Some(last) = self.lows.last_mut().filter(|last| value < **last) {
+            *last = value;
+            self.lows.sort_unstable_by(f64::total_cmp);
+        }
+    }
+
+    fn high(&mut self, value: f64) {
+        if let Some(last) = self.highs.last_mut().filter(|last| value > **last) {
+            *last = value;
+            self.highs.sort_unstable_by(|a, b| b.total_cmp(a));
+        }
+    }
+
+    fn include(mut self, value: f64) -> Self {
+        self.low(value);
+        self.high(value);
+        self
+    }
+
+    fn union(mut self, other: &Self) -> Self {
+        other.lows.iter().for_each(|&value| self.low(value));
+        other.highs.iter().for_each(|&value| self.high(value));
+        self
+    }
+}
+
+/// The range of the finite values between two others that are not `left_out` but for `few` voxels at either end; `None` if it has no length.
+#[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
+fn trimmed(samples: &Samples, left_out: f64, few: usize, above: f64, below: f64) -> Option<ValueRange> {
+    let found = with_samples!(samples, values => values
+        .par_chunks(CHUNK)
+        .map(|chunk| {
+            let values = chunk.iter().map(|&value| value as f64);
+            // Comparisons with NaN are false.
+            let counts = |value: &f64| above < *value && *value < below && *value != left_out;
+            values.filter(counts).fold(Extremes::none(few + 1), Extremes::include)
+        })
+        .reduce(|| Extremes::none(few + 1), |a, b| a.union(&b)));
+    let range = ValueRange::spread(found.lows[few], found.highs[few])?;
+    range.span().is_finite().then_some(range)
+}
+
+/// Whether there are no more than so many different values among some in order.
+fn are_few(values: &[f64]) -> bool {
+    values.windows(2).filter(|pair| pair[0] < pair[1]).take(FEW_VALUES).count() < FEW_VALUES
+}
+
+/// How many of some values in order, from the first on, are one that is padding beside the others; 0 if it is not.
+fn padded(values: &[f64]) -> usize {
+    let (n, rare) = (values.len(), values.len() / VOXELS_PER_RARE);
+    let usual = (values[n - 1 - rare] - values[rare]).abs();
+    let count = values.iter().take_while(|&&value| value == values[0]).count();
+    let others = &values[count..];
+    if count * VOXELS_PER_PADDED <= n || others.len() * VOXELS_PER_REST <= n {
+        return 0;
+    }
+    let gap = (others[others.len() / VOXELS_PER_UNUSUAL] - values[0]).abs();
+    if gap >= LEAST_GAP * usual { count } else { 0 }
+}
+
+/// How far an end is moved outwards from where `usual` ends: distances to the last value, and to padding beyond that.
+fn widened(usual: ValueRange, to_last: f64, padding: Option<f64>) -> f64 {
+    let most = WIDENED * usual.span();
+    let by = if to_last < most { to_last } else { 0.0 };
+    match padding {
+        None => by,
+        Some(padding) if padding < most => padding,
+        Some(_) => by + BESIDE_PADDING * usual.span(),
+    }
+}
+
+/// The range of the values that matter; `None` where there is only one value but for a few voxels.
+fn robust(samples: &Samples, left_out: f64) -> Option<ValueRange> {
+    let few = (samples.len() / VOXELS_PER_FEW).min(FEW);
+    let whole = trimmed(samples, left_out, few, f64::NEG_INFINITY, f64::INFINITY)?;
+    let mut values = sorted(samples, left_out);
+    values.retain(|&value| whole.contains(value));
+    if values.is_empty() || are_few(&values) {
+        return Some(whole);
+    }
+    let above = padded(&values.iter().rev().copied().collect::<Vec<_>>());
+    let below = padded(&values);
+    if values.len() <= below + above {
+        return Some(whole);
+    }
+    let rest = &values[below..values.len() - above];
+    let unusual = rest.len() / VOXELS_PER_UNUSUAL;
+    let Some(usual) = ValueRange::spread(rest[unusual], rest[rest.len() - 1 - unusual]) else {
+        return Some(whole);
+    };
+    let (first, last) = (values[0], values[values.len() - 1]);
+    let last_values = if below + above == 0 {
+        whole
+    } else {
+        let bound = |is_padded: bool, padding: f64, open: f64| if is_padded { padding } else { open };
+        let above_low = bound(below > 0, first, f64::NEG_INFINITY);
+        trimmed(samples, left_out, few, above_low, bound(above > 0, last, f64::INFINITY)).unwrap_or(usual)
+    };
+    let usual = ValueRange::new(usual.low.max(last_values.low), usual.high.min(last_values.high));
+    let low = widened(usual, usual.low - last_values.low, (below > 0).then_some(usual.low - first));
+    let high = widened(usual, last_values.high - usual.high, (above > 0).then_some(last - usual.high));
+    Some(ValueRange::new(usual.low - low, usual.high + high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(values: Vec<f64>) -> ValueRange {
+        let all = values.iter().filter(|value| value.is_finite());
+        let all = all.fold(ValueRange::new(f64::INFINITY, f64::NEG_INFINITY), |range, &value| {
+            ValueRange::new(range.low.min(value), range.high.max(value))
+        });
+        ValueRanges::of(&Samples::F64(values), all).robust
+    }
+
+    /// Numbers between 0 and 1, mostly near 0, from a fixed seed.
+    fn numbers(count: usize) -> Vec<f64> {
+        let mut state = 7u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        (0..count).map(|_| next() * next()).collect()
+    }
+
+    fn close(a: ValueRange, b: ValueRange) -> bool {
+        (a.low - b.low).abs().max((a.high - b.high).abs()) <= 0.01 * b.span()
+    }
+
+    #[test]
+    fn no_single_voxel_matters() {
+        for count in [20_000, 40_000, 300_000] {
+            let values = numbers(count);
+            let before = of(values.clone());
+            assert!(before.low.abs() < 0.01 && before.high > 0.9, "{before:?}");
+            for odd in [1e30, -1e30, 30_000.0, -2.0, 1.1, 1.5, f64::NAN, f64::INFINITY, 0.5] {
+                let mut changed = values.clone();
+                changed[count / 3] = odd;
+                assert!(close(of(changed), before), "{odd} among {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn padding_is_left_out_and_outliers_are() {
+        let values = numbers(40_000);
+        let before = of(values.clone());
+        for padding in [-3.0, -32_768.0, 7.0, 1e9] {
+            let mut padded = values.clone();
+            padded.extend(vec![padding; 10_000]);
+            let after = of(padded);
+            let room = 1.01 * BESIDE_PADDING * before.span();
+            assert!(
+                after.low <= before.low + 1e-9 && after.low >= before.low - room,
+                "{padding}: {after:?}, {before:?}"
+            );
+            assert!(
+                after.high >= before.high - 1e-9 && after.high <= before.high + room,
+                "{padding}: {after:?}, {before:?}"
+            );
+        }
+        // Hot voxels, but less than one of ten thousand.
+        let mut hot = numbers(200_000);
+        let before = of(hot.clone());
+        hot[1000..1015].fill(500.0);
+        let after = of(hot);
+        assert!(after.high <= before.high && after.high > 0.85, "{after:?}");
+    }
+
+    #[test]
+    fn what_lies_around_an_object_is_no_padding_if_it_is_near_its_values() {
+        // A tissue of 0.3 … 1 in exact nothing.
+        let mut values: Vec<f64> = numbers(20_000).into_iter().map(|value| 0.3 + 0.7 * value).collect();
+        values.extend(vec![0.0; 20_000]);
+        assert_eq!(of(values).low, 0.0);
+        // Of steel of 0.95 … 1 it is far from them: the object's border keeps a place in the range.
+        let mut values: Vec<f64> = numbers(20_000).into_iter().map(|value| 0.95 + 0.05 * value).collect();
+        values.extend(vec![0.0; 20_000]);
+        let found = of(values);
+        assert!(found.low < 0.949 && found.low > 0.94, "{found:?}");
+    }
+
+    #[test]
+    fn masks_labels_and_constants_keep_their_values() {
+        let all = |values: Vec<f64>| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            assert_eq!(of(values), ValueRange::new(low, high));
+        };
+        all(vec![7.0; 5000]);
+        all((0..50_000).map(|at| f64::from(u8::from(at < 30))).collect());
+        all((0..50_000).map(|at| f64::from(at % 50 / 46)).collect());
+        all((0..50_000).map(|at| f64::from(at % 7) * 300.0).collect());
+        // One voxel only: there is nothing else to be seen.
+        all((0..5000).map(|at| f64::from(u8::from(at == 9))).collect());
+        all(vec![1.0, 2.0]);
+        // A mask with one voxel that is not of it.
+        let mut mask: Vec<f64> = (0..50_000).map(|at| f64::from(at % 2)).collect();
+        mask[100] = 1e30;
+        assert_eq!(of(mask), ValueRange::UNIT);
+    }
+
+    #[test]
+    fn scale_offset_and_number_type_do_not_matter() {
+        let values: Vec<f64> = numbers(60_000).into_iter().map(|value| (value * 4000.0).round()).collect();
+        let before = of(values.clone());
+        let moved = of(values.iter().map(|value| 3.0 * value - 500.0).collect());
+        assert_eq!(moved, ValueRange::new(3.0 * before.low - 500.0, 3.0 * before.high - 500.0));
+        let all = ValueRange::new(0.0, values.iter().copied().fold(0.0, f64::max));
+        for samples in [
+            Samples::U16(values.iter().map(|&value| value as u16).collect()),
+            Samples::I32(values.iter().map(|&value| value as i32).collect()),
+            Samples::F32(values.iter().map(|&value| value as f32).collect()),
+        ] {
+            assert_eq!(ValueRanges::of(&samples, all).robust, before);
+        }
+        let mut turned = values;
+        turned.reverse();
+        assert_eq!(of(turned), before);
+    }
+}

@@ -1,0 +1,179 @@
+//! Properties that a first look has whatever the volume: no voxel matters by itself, nor how numbers are written.
+
+use glam::DVec3;
+
+use super::visible::{Shown, shown};
+use super::*;
+use crate::data::{Samples, ValueRange};
+
+const N: usize = 32;
+
+/// A soft ball of 900 in noise around 60, both with a ripple.
+fn values() -> Vec<f64> {
+    let mut state = 3u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / f64::from(1 << 24)
+    };
+    let value = |at: usize| {
+        let radius = DVec3::from([at % N, at / N % N, at / N / N].map(|c| c as f64 - 15.5)).length();
+        (60.0 * noise() + 840.0 / (1.0 + (2.0 * (radius - 9.0)).exp()) + 40.0 * noise()).round()
+    };
+    (0..N * N * N).map(value).collect()
+}
+
+fn volume(values: &[f64]) -> Volume {
+    Volume::with_spacing("t", [N; 3], DVec3::ONE, Samples::F64(values.to_vec())).unwrap()
+}
+
+fn look(volume: &Volume) -> Settings {
+    first_settings(volume, &Histogram::of(volume))
+}
+
+/// The largest change of a control point, as a share of the range that matters; and whether the object is still seen.
+fn change(from: &Settings, volume: &Volume) -> f64 {
+    let to = look(volume);
+    assert_eq!(shown(&to, volume), Shown::Object);
+    assert_eq!(from.transfer.points.len(), to.transfer.points.len());
+    let pairs = from.transfer.points.iter().zip(&to.transfer.points);
+    let largest = pairs.map(|(a, b)| (a.value - b.value).abs()).fold(0.0, f64::max);
+    largest / volume.ranges().robust.span()
+}
+
+#[test]
+fn one_voxel_of_any_value_changes_nothing() {
+    let values = values();
+    let before = look(&volume(&values));
+    let highest = values.iter().copied().fold(0.0, f64::max);
+    for at in [0, 5 * N * N + 9 * N + 11, N * N * N / 2 + N / 2 * N + N / 2] {
+        for odd in [1e30, -1e30, 30_000.0, -32_768.0, highest + 1.0, -1.0, 400.0, f64::NAN, f64::INFINITY] {
+            let mut changed = values.clone();
+            changed[at] = odd;
+            let by = change(&before, &volume(&changed));
+            assert!(by <= 0.01, "{odd} at {at}: {by}");
+        }
+    }
+}
+
+#[test]
+fn one_voxel_between_object_and_surroundings_is_neither() {
+    // Nothing lies between 30 and 170 but that voxel.
+    let value = |at: usize| {
+        let radius = DVec3::from([at % N, at / N % N, at / N / N].map(|c| c as f64 - 15.5)).length();
+        (if radius < 9.0 { 170.0 } else { 0.0 }) + (at % 31) as f64
+    };
+    let values: Vec<f64> = (0..N * N * N).map(value).collect();
+    let before = look(&volume(&values));
+    for odd in [60.0, 100.0, 140.0] {
+        let mut changed = values.clone();
+        changed[77] = odd;
+        let by = change(&before, &volume(&changed));
+        assert!(by <= 0.01, "{odd}: {by}");
+    }
+}
+
+#[test]
+fn a_border_of_the_lowest_value_hardly_matters() {
+    let values = values();
+    let before = look(&volume(&values));
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let wide = N + 8;
+    for padding in [lowest, -32_768.0] {
+        let padded: Vec<f64> = (0..wide * wide * wide)
+            .map(|at| {
+                let place = [at % wide, at / wide % wide, at / wide / wide].map(|c| c.wrapping_sub(4));
+                let inside = place.iter().all(|&c| c < N);
+                if inside { values[place[0] + N * (place[1] + N * place[2])] } else { padding }
+            })
+            .collect();
+        let padded = Volume::with_spacing("t", [wide; 3], DVec3::ONE, Samples::F64(padded)).unwrap();
+        let robust = padded.ranges().robust;
+        assert!(robust.low > lowest - 0.1 * robust.span(), "{robust:?}");
+        let function = look(&padded).transfer;
+        // Noise in the corners is not shown, the ball is.
+        assert!(
+            function.opacity_at(50.0) < 0.01 && function.opacity_at(880.0) > 0.3,
+            "{padding}: {function:?}"
+        );
+        let ends = |look: &TransferFunction| look.points.last().unwrap().value;
+        assert!((ends(&function) - ends(&before.transfer)).abs() <= 0.01 * robust.span());
+    }
+}
+
+#[test]
+fn scale_and_offset_change_nothing_in_relative_terms() {
+    let values = values();
+    let before = look(&volume(&values));
+    for (scale, offset) in [(3.0, 0.0), (0.001, -5.0), (1e6, 1e9)] {
+        let changed = volume(&values.iter().map(|value| value * scale + offset).collect::<Vec<_>>());
+        let mut moved = before.clone();
+        for point in &mut moved.transfer.points {
+            point.value = point.value * scale + offset;
+        }
+        // Rounding may put a value into the next bin.
+        let by = change(&moved, &changed);
+        assert!(by <= 0.002, "{scale} {offset}: {by}");
+    }
+}
+
+#[test]
+fn number_types_change_nothing() {
+    let values = values();
+    let before = look(&volume(&values));
+    for samples in [
+        Samples::U16(values.iter().map(|&value| value as u16).collect()),
+        Samples::I16(values.iter().map(|&value| value as i16).collect()),
+        Samples::U32(values.iter().map(|&value| value as u32).collect()),
+        Samples::F32(values.iter().map(|&value| value as f32).collect()),
+    ] {
+        let volume = Volume::with_spacing("t", [N; 3], DVec3::ONE, samples).unwrap();
+        assert!(change(&before, &volume) < 1e-9);
+    }
+}
+
+#[test]
+fn sixteen_bits_are_spent_on_the_values_that_matter() {
+    let mut values = values();
+    values[0] = -32_768.0;
+    values[1] = 32_767.0;
+    let samples = Samples::I16(values.iter().map(|&value| value as i16).collect());
+    let volume = Volume::with_spacing("t", [N; 3], DVec3::ONE, samples).unwrap();
+    let steps = |volume: &Volume| (volume.density_of(501.0) - volume.density_of(500.0)) * 65535.0;
+    assert!(steps(&volume) > 50.0, "{}", steps(&volume));
+    assert!(steps(&volume.showing(volume.value_range())) < 1.01);
+    let seen = Histogram::of(&volume).counts.iter().filter(|&&count| count > 0).count();
+    assert!(seen > 700, "{seen}");
+}
+
+#[test]
+fn a_typed_range_has_densities_zero_and_one_at_its_ends() {
+    let volume = volume(&values());
+    for (low, high) in [(-100.0, 300.0), (0.1, 0.3), (123.4, 1e6)] {
+        let shown = volume.showing(ValueRange::new(low, high));
+        assert_eq!((shown.density_of(low), shown.density_of(high)), (0.0, 1.0));
+        assert_eq!((shown.density_of(low - 1.0), shown.density_of(high + 1.0)), (0.0, 1.0));
+        assert_eq!((shown.value(3, 4, 5), shown.content_id()), (volume.value(3, 4, 5), volume.content_id()));
+    }
+}
+
+#[test]
+fn no_picture_is_empty() {
+    let constant = vec![7.0; N * N * N];
+    let mut outlier = constant.clone();
+    outlier[500] = 1e30;
+    let mut mask: Vec<f64> = (0..N * N * N).map(|at| f64::from(u8::from(at / N / N > 20))).collect();
+    mask[3] = 1e30;
+    for (what, values) in [("constant", constant), ("outlier", outlier), ("mask", mask)] {
+        let volume = volume(&values);
+        assert_ne!(shown(&look(&volume), &volume), Shown::Nothing, "{what}");
+        let blind = Settings { transfer: TransferFunction::default(), ..Settings::default() };
+        let mut helped = show_something(&blind, &volume);
+        aim(&mut helped, &volume);
+        assert_ne!(shown(&helped, &volume), Shown::Nothing, "{what}");
+    }
+    let volume = volume(&values());
+    let mut helped = show_something(&Settings::default(), &volume);
+    aim(&mut helped, &volume);
+    let visible = Object::of_shown(&helped, &volume).all_cells().count() as f64 / (N * N * N) as f64;
+    assert!((0.02..=0.06).contains(&visible), "{visible}");
+}

@@ -1,0 +1,118 @@
+//! Sees to it that a first look shows something: where the best guess does not, the next one is taken.
+
+use glam::DVec3;
+
+use super::isosurfaces::Isosurfaces;
+use super::object::Object;
+use super::{aim, ramp, threshold, transfer};
+use crate::data::{Histogram, ValueRange, Volume};
+use crate::model::{
+    ControlPoint, DensityRange, FRAME_ASPECT, Interpolation, LightingTransfer, Settings, TransferFunction,
+};
+
+/// Pixels of the frame in which the object is looked for.
+const FRAME: [f64; 2] = [48.0 * FRAME_ASPECT, 48.0];
+
+/// Share of the frame's pixels in which the object must be seen: a thin line through a tenth of it.
+const LEAST_SEEN: f64 = 0.005;
+
+/// Share of the volume from which it is not an object that is shown, but the volume's box.
+const MOST_SHOWN: f64 = 0.95;
+
+/// Share of the voxels that [`densest`] shows.
+const DENSEST: f64 = 0.05;
+
+/// A first look, or if it shows nothing, or nothing but the volume's box, another that shows something.
+pub(super) fn or_another(first: Settings, volume: &Volume, histogram: &Histogram) -> Settings {
+    if shown(&first, volume) == Shown::Object {
+        return first;
+    }
+    let robust = |transfer: TransferFunction| Settings { transfer, ..first.clone() };
+    let others: [&dyn Fn() -> Settings; 4] = [
+        &|| robust(ramp(volume, histogram, threshold::otsu(histogram))),
+        &|| robust(ramp(volume, histogram, Isosurfaces::of(volume).best().unwrap_or(0.5))),
+        &|| {
+            let all = volume.showing(volume.value_range());
+            let transfer = transfer(&all, &Histogram::of(&all));
+            Settings { range: DensityRange::Full, transfer, ..first.clone() }
+        },
+        &|| robust(densest(volume)),
+    ];
+    let is_box = shown(&first, volume) == Shown::Box;
+    let mut next = None;
+    for other in others {
+        let mut settings = other();
+        aim(&mut settings, volume);
+        match shown(&settings, volume) {
+            Shown::Object => return settings,
+            Shown::Box if !is_box && next.is_none() => next = Some(settings),
+            _ => {}
+        }
+    }
+    next.unwrap_or(first)
+}
+
+/// What a look shows of a volume.
+#[derive(Debug, PartialEq)]
+pub(super) enum Shown {
+    Nothing,
+    Object,
+    Box,
+}
+
+pub(super) fn shown(settings: &Settings, volume: &Volume) -> Shown {
+    let object = Object::of_shown(settings, volume);
+    let count = object.all_cells().count();
+    if count as f64 > MOST_SHOWN * object.cells.iter().product::<usize>() as f64 {
+        return Shown::Box;
+    }
+    let scene_from_index = volume.scene().scene_from_index;
+    let [width, height] = FRAME;
+    let reach = object.half_edge(&volume.scene()) / settings.camera.pixel_at_target(width, height);
+    let mut pixels = vec![false; (width * height) as usize];
+    for cell in object.all_cells() {
+        let point: DVec3 = scene_from_index.transform_point3(object.middle(cell));
+        let Some((x, y, _)) = settings.camera.pixel_from_scene(point, width, height) else { continue };
+        // Pixels that a cell covers, one at least; none beyond the border.
+        let covered = |at: f64, size: f64| {
+            let [first, last] = [at - reach, at + reach].map(|end| end.floor().clamp(-1.0, size));
+            (first as i64).max(0)..=(last as i64).min(size as i64 - 1)
+        };
+        for y in covered(y, height) {
+            for x in covered(x, width) {
+                pixels[y as usize * width as usize + x as usize] = true;
+            }
+        }
+    }
+    let seen = pixels.iter().filter(|pixel| **pixel).count();
+    if seen as f64 >= LEAST_SEEN * pixels.len() as f64 { Shown::Object } else { Shown::Nothing }
+}
+
+/// A transfer function that shows the twentieth of the voxels that has the highest values; all of a volume that has one
+/// value only.
+pub fn densest(volume: &Volume) -> TransferFunction {
+    let ValueRange { low, high } = volume.ranges().robust;
+    let point = |value: f64, lightness: f32, opacity: f64| {
+        ControlPoint::new(value, [lightness, lightness * 0.97, lightness * 0.92], opacity)
+    };
+    let points = if low == high {
+        vec![point(low, 0.9, 0.9)]
+    } else {
+        // Where one value has more than that, all that is above the other values.
+        let found = volume.quantile(1.0 - DENSEST);
+        let start = if found >= high { f64::midpoint(low, high) } else { found.max(low) };
+        let at = |share: f64| start + share * (high - start);
+        vec![point(start, 0.5, 0.0), point(at(0.1), 0.6, 0.5), point(high, 1.0, 0.95)]
+    };
+    TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() }
+}
+
+/// A look as it is, but with a transfer function that shows something: see [`densest`].
+pub fn show_something(settings: &Settings, volume: &Volume) -> Settings {
+    Settings {
+        range: DensityRange::Robust,
+        transfer: densest(volume),
+        lighting: LightingTransfer::default(),
+        ..settings.clone()
+    }
+}
