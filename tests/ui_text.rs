@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Right in front of words that people do not see in the window: names of things for the library of the window,
-/// what developers read, and errors, which their types word.
-const NOT_SHOWN: [&str; 12] = [
+/// Right in front of words that people do not see in the window: names of things for the library of the window
+/// and of what the system sets, what developers read, and errors, which their types word.
+const NOT_SHOWN: [&str; 13] = [
+    "var_os(",
     "Id::unique(",
     "id_salt(",
     "Grid::new(",

@@ -25,7 +25,7 @@ const DEFAULT_SOURCE: &str = "builtin:chair";
 #[derive(Debug)]
 pub(in crate::app) enum PendingLook {
     /// A file's: laid over the volume's first look.
-    Record(Record),
+    Record(Box<Record>),
     /// Every setting, whatever the first look is.
     Settings(Box<Settings>),
 }
@@ -158,7 +158,7 @@ impl App {
     fn use_look(&mut self, record: Record, ctx: &egui::Context) {
         if self.loader.progress().is_some() {
             // What is being opened is what the user will see it on.
-            self.pending = Some(PendingLook::Record(record));
+            self.pending = Some(PendingLook::Record(Box::new(record)));
         } else if self.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
         } else {
@@ -169,7 +169,7 @@ impl App {
     /// Opens a volume with a look.
     fn open_with(&mut self, source: &Path, record: Record, ctx: &egui::Context) {
         if self.start_loading(source, Reading::default(), ctx) {
-            self.pending = Some(PendingLook::Record(record));
+            self.pending = Some(PendingLook::Record(Box::new(record)));
         }
     }
 

@@ -1,6 +1,7 @@
 //! What somebody sees who has started the window from a menu, where no window can be opened: standard error goes
 //! nowhere there.
 
+use std::ffi::OsString;
 use std::io::IsTerminal as _;
 use std::sync::mpsc;
 use std::time::Duration;
@@ -26,11 +27,11 @@ struct Start {
 
 impl Start {
     fn now() -> Self {
-        let is_named = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+        let is_named = |value: Option<OsString>| value.is_some_and(|value| !value.is_empty());
         Self {
             has_servers: cfg!(all(unix, not(target_os = "macos"))),
-            has_x: is_named("DISPLAY"),
-            has_wayland: is_named("WAYLAND_DISPLAY"),
+            has_x: is_named(std::env::var_os("DISPLAY")),
+            has_wayland: is_named(std::env::var_os("WAYLAND_DISPLAY")),
             says_on_terminal: std::io::stderr().is_terminal(),
         }
     }

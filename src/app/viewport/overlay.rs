@@ -7,7 +7,7 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-use super::sides;
+use super::sides::{Letters, SIDES, letters};
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
 use crate::app::text;
@@ -48,7 +48,9 @@ impl Overlay {
         let painter = ui.painter_at(picture);
         scale_bar(&painter, picture, camera, scene);
         if is_anatomical {
-            sides::show(&painter, picture, camera);
+            for Letters { at, align, text } in letters(picture, camera) {
+                outlined(&painter, at, align, &text);
+            }
         }
         cube(ui, &painter, picture, camera, is_anatomical)
     }
@@ -124,7 +126,7 @@ fn scale_bar(painter: &Painter, picture: Rect, camera: &Camera, scene: &SceneSpa
 }
 
 /// Text that can be read on any picture.
-pub(super) fn outlined(painter: &Painter, at: Pos2, align: Align2, text: &str) {
+fn outlined(painter: &Painter, at: Pos2, align: Align2, text: &str) {
     let font = FontId::proportional(12.0);
     for offset in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
         painter.text(at + offset, align, text, font.clone(), theme::OUTLINE);
@@ -191,16 +193,6 @@ fn cube(
     }
     clicked
 }
-
-/// The sides of the cube, and what is written on them: signs, or for bodies what lies there.
-pub(super) const SIDES: [(DVec3, [&str; 2]); 6] = [
-    (DVec3::X, text::overlay::RIGHT),
-    (DVec3::NEG_X, text::overlay::LEFT),
-    (DVec3::Y, text::overlay::ANTERIOR),
-    (DVec3::NEG_Y, text::overlay::POSTERIOR),
-    (DVec3::Z, text::overlay::SUPERIOR),
-    (DVec3::NEG_Z, text::overlay::INFERIOR),
-];
 
 /// An opaque colour: one over another.
 fn over(below: Color32, ink: Color32) -> Color32 {

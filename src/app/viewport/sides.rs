@@ -1,9 +1,10 @@
-//! Letters at the edges of the picture that say which side of a body is where: right and left are never guessed.
+//! The sides of a volume, and the letters at the edges of the picture that say which side of a body is where: right and
+//! left are never guessed.
 
-use eframe::egui::{Align2, Painter, Rect, vec2};
+use eframe::egui::{Align2, Pos2, Rect, vec2};
 use glam::DVec3;
 
-use super::overlay::{SIDES, outlined};
+use crate::app::text;
 use crate::model::Camera;
 
 /// Points from the edge of the picture.
@@ -15,6 +16,16 @@ const LEAST: f64 = 0.3;
 
 /// An edge names no more sides than this.
 const MOST: usize = 2;
+
+/// Directions of the scene, and what is written there: signs, or for bodies what lies there.
+pub(super) const SIDES: [(DVec3, [&str; 2]); 6] = [
+    (DVec3::X, text::overlay::RIGHT),
+    (DVec3::NEG_X, text::overlay::LEFT),
+    (DVec3::Y, text::overlay::ANTERIOR),
+    (DVec3::NEG_Y, text::overlay::POSTERIOR),
+    (DVec3::Z, text::overlay::SUPERIOR),
+    (DVec3::NEG_Z, text::overlay::INFERIOR),
+];
 
 /// The sides of a body that lie in a direction of its scene, the most first.
 fn sides(direction: DVec3) -> String {
@@ -33,17 +44,24 @@ fn around(camera: &Camera) -> [String; 4] {
     [view.x_axis, -view.x_axis, view.y_axis, -view.y_axis].map(sides)
 }
 
-/// Paints the letters.
-pub(super) fn show(painter: &Painter, picture: Rect, camera: &Camera) {
-    let places = [
-        (picture.right_center() - vec2(MARGIN, 0.0), Align2::RIGHT_CENTER),
-        (picture.left_center() + vec2(MARGIN, 0.0), Align2::LEFT_CENTER),
-        (picture.center_top() + vec2(0.0, MARGIN), Align2::CENTER_TOP),
-        (picture.center_bottom() - vec2(0.0, MARGIN), Align2::CENTER_BOTTOM),
-    ];
-    for (letters, (at, align)) in around(camera).iter().zip(places) {
-        outlined(painter, at, align, letters);
-    }
+/// What is written at an edge of the picture.
+pub(super) struct Letters {
+    pub at: Pos2,
+    /// Which part of the text is there.
+    pub align: Align2,
+    pub text: String,
+}
+
+/// Which sides of a body are where in a picture of it.
+pub(super) fn letters(picture: Rect, camera: &Camera) -> [Letters; 4] {
+    let [right, left, top, bottom] = around(camera);
+    [
+        (right, picture.right_center() - vec2(MARGIN, 0.0), Align2::RIGHT_CENTER),
+        (left, picture.left_center() + vec2(MARGIN, 0.0), Align2::LEFT_CENTER),
+        (top, picture.center_top() + vec2(0.0, MARGIN), Align2::CENTER_TOP),
+        (bottom, picture.center_bottom() - vec2(0.0, MARGIN), Align2::CENTER_BOTTOM),
+    ]
+    .map(|(text, at, align)| Letters { at, align, text })
 }
 
 #[cfg(test)]
@@ -106,7 +124,7 @@ mod tests {
                         for (axis, step) in DVec3::AXES.into_iter().enumerate() {
                             let (from, to) = (place(middle - step), place(middle + step));
                             let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-                            if dx.hypot(dy) < 1.0 {
+                            if dx * dx + dy * dy < 1.0 {
                                 // It runs along the line of sight.
                                 continue;
                             }

@@ -4,8 +4,10 @@ use glam::{DVec2, DVec3};
 
 use crate::model::{Camera, Projection, SceneAxis};
 
-/// A side from which to look at the scene as it stands: its axes are those of the scene where z is up, and turn with
-/// what is up ([`SceneAxis::scene_from_upright`]). What the front of a thing is, only its owner knows.
+/// A side from which to look at the scene as it stands.
+///
+/// Its axes are those of the scene where z is up, and turn with what is up ([`SceneAxis::scene_from_upright`]). What the
+/// front of a thing is, only its owner knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardView {
     /// From +x.

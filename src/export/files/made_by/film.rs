@@ -7,8 +7,8 @@ use super::{LONGEST_MARK, MOST_PARTS, is_mark};
 
 /// The boxes, one in the other, in which the comment is, and bytes of each that stand before the boxes in it: `meta`
 /// has a version, and the comment's own data a type and a language.
-const WAY: [(&[u8; 4], u64); 6] =
-    [(b"moov", 0), (b"udta", 0), (b"meta", 4), (b"ilst", 0), (b"\xa9cmt", 0), (b"data", 8)];
+const WAY: [([u8; 4], u64); 6] =
+    [(*b"moov", 0), (*b"udta", 0), (*b"meta", 4), (*b"ilst", 0), (*b"\xa9cmt", 0), (*b"data", 8)];
 
 /// Follows the boxes to the comment, wherever they are.
 pub(super) fn mp4(mut file: BufReader<File>) -> Result<bool> {
@@ -27,7 +27,7 @@ pub(super) fn mp4(mut file: BufReader<File>) -> Result<bool> {
 fn find(
     file: &mut BufReader<File>,
     inside: std::ops::Range<u64>,
-    kind: &[u8; 4],
+    kind: [u8; 4],
 ) -> Result<Option<std::ops::Range<u64>>> {
     let mut at = inside.start;
     for _ in 0..MOST_PARTS {
@@ -51,7 +51,7 @@ fn find(
         };
         let end = at.checked_add(length).filter(|end| length >= head && *end <= inside.end);
         let end = end.ok_or_else(|| Error::other("a box is longer than what it is in"))?;
-        if &found == kind {
+        if found == kind {
             return Ok(Some(at + head..end));
         }
         at = end;

@@ -66,34 +66,37 @@ fn texts_of_ours_are_known() {
 }
 
 /// A box of an MP4.
-fn boxed(kind: &[u8; 4], contents: &[u8]) -> Vec<u8> {
+fn boxed(kind: [u8; 4], contents: &[u8]) -> Vec<u8> {
     [&(contents.len() as u32 + 8).to_be_bytes(), &kind[..], contents].concat()
 }
 
 /// A box with its length in eight bytes.
-fn long_box(kind: &[u8; 4], contents: &[u8]) -> Vec<u8> {
+fn long_box(kind: [u8; 4], contents: &[u8]) -> Vec<u8> {
     [&1_u32.to_be_bytes(), &kind[..], &(contents.len() as u64 + 16).to_be_bytes(), contents].concat()
 }
 
 /// The head of a film whose item of some kind says something.
-fn head(item: &[u8; 4], text: &str) -> Vec<u8> {
-    let data = boxed(b"data", &[&[0, 0, 0, 1, 0, 0, 0, 0], text.as_bytes()].concat());
-    let items = [boxed(b"\xa9too", &boxed(b"data", &[0; 12])), boxed(item, &data)].concat();
-    let meta = [vec![0; 4], boxed(b"hdlr", &[0; 25]), boxed(b"ilst", &items)].concat();
-    boxed(b"moov", &[boxed(b"mvhd", &[0; 100]), boxed(b"udta", &boxed(b"meta", &meta))].concat())
+fn head(item: [u8; 4], text: &str) -> Vec<u8> {
+    let data = boxed(*b"data", &[&[0, 0, 0, 1, 0, 0, 0, 0], text.as_bytes()].concat());
+    let items = [boxed(*b"\xa9too", &boxed(*b"data", &[0; 12])), boxed(item, &data)].concat();
+    let meta = [vec![0; 4], boxed(*b"hdlr", &[0; 25]), boxed(*b"ilst", &items)].concat();
+    boxed(*b"moov", &[boxed(*b"mvhd", &[0; 100]), boxed(*b"udta", &boxed(*b"meta", &meta))].concat())
 }
 
 #[test]
 fn films_in_mp4_are_known_by_their_comment() {
-    let kind = boxed(b"ftyp", b"isom\0\0\x02\0isomiso2");
-    let (ours, pixels) = (head(b"\xa9cmt", &made_by()), boxed(b"mdat", &[7; 1000]));
+    let kind = boxed(*b"ftyp", b"isom\0\0\x02\0isomiso2");
+    let (ours, pixels) = (head(*b"\xa9cmt", &made_by()), boxed(*b"mdat", &[7; 1000]));
     check_ours(&[&kind[..], &ours, &pixels].concat());
-    assert!(is_ours_with([&kind[..], &long_box(b"mdat", &[7; 500_000]), &ours].concat()), "texts at the end");
+    assert!(
+        is_ours_with([&kind[..], &long_box(*b"mdat", &vec![7; 500_000]), &ours].concat()),
+        "texts at the end"
+    );
     for theirs in [
-        head(b"\xa9nam", &made_by()),
-        head(b"\xa9cmt", &format!("made with {}", made_by())),
-        boxed(b"mdat", &ours),
-        boxed(b"free", made_by().as_bytes()),
+        head(*b"\xa9nam", &made_by()),
+        head(*b"\xa9cmt", &format!("made with {}", made_by())),
+        boxed(*b"mdat", &ours),
+        boxed(*b"free", made_by().as_bytes()),
         // Longer than the file.
         [&[0xff; 4], &b"moov"[..], &ours].concat(),
         [&1_u32.to_be_bytes(), &b"moov"[..], &[0xff; 8], &ours].concat(),
