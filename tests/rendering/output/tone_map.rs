@@ -162,17 +162,17 @@ fn the_background_is_not_exposed_and_the_floor_is() {
     let after = render(&mut renderer, &loaded, &settings, SIZE);
     let texel = |bytes: &[u8], at: usize| [0, 1, 2].map(|channel| bytes[4 * at + channel]);
     let (mut bare, mut covered) = (0, 0);
-    for at in 0..floor.len() {
+    for (at, below) in floor.iter().enumerate() {
         if before.light[at][3] > 0.0 {
             continue;
         }
-        if floor[at][3] == 0.0 {
+        if below[3] == 0.0 {
             assert_eq!(texel(&before.shown, at), texel(&after.shown, at));
             bare += 1;
-        } else if floor[at][3] == 1.0 {
-            for channel in 0..3 {
-                let wanted = srgb((0.5 * f64::from(floor[at][channel])).min(1.0));
-                let found = f64::from(texel(&after.shown, at)[channel]) / 255.0;
+        } else if below[3] == 1.0 {
+            for (byte, light) in std::iter::zip(texel(&after.shown, at), below) {
+                let wanted = srgb((0.5 * f64::from(*light)).min(1.0));
+                let found = f64::from(byte) / 255.0;
                 assert!((found - wanted).abs() < EIGHT_BITS, "{found} instead of {wanted}");
             }
             covered += 1;

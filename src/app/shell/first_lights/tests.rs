@@ -65,10 +65,11 @@ impl Window {
             self.frame();
         }
     }
+}
 
-    fn proposed(&self) -> Vec<Light> {
-        Rig::ThreeQuarter.lights(&Window::new().settings.camera)
-    }
+/// What is found.
+fn proposed() -> Vec<Light> {
+    Rig::ThreeQuarter.lights(&Settings::default().camera)
 }
 
 #[test]
@@ -76,11 +77,11 @@ fn lights_move_to_their_places_in_one_short_movement() {
     let mut window = Window::new();
     let start = window.settings.clone();
     window.run(2.0);
-    assert_eq!((window.searches, &window.settings.lights), (1, &window.proposed()));
+    assert_eq!((window.searches, &window.settings.lights), (1, &proposed()));
     assert!(!window.lights.is_due());
     assert!((window.set.len() as f64 / 60.0 - EASE_S).abs() < 0.05, "{} frames", window.set.len());
     // Never further from the end than before.
-    let end = DVec3::from(window.proposed()[0].position);
+    let end = DVec3::from(proposed()[0].position);
     let left: Vec<f64> =
         window.set.iter().map(|lights| DVec3::from(lights[0].position).angle_between(end)).collect();
     assert!(left.windows(2).all(|pair| pair[1] <= pair[0] + 1e-9), "{left:?}");
@@ -100,9 +101,12 @@ fn the_picture_comes_first() {
     assert_eq!(window.searches, 1);
 }
 
+/// What somebody may do to a look.
+type Touch = fn(&mut Settings);
+
 #[test]
 fn what_somebody_has_touched_is_left_alone() {
-    let touch: [(&str, fn(&mut Settings)); 4] = [
+    let touch: [(&str, Touch); 4] = [
         ("a light", |settings| settings.lights[0].position = [3.0, 0.0, 0.0]),
         ("its brightness", |settings| settings.lights[1].intensity = 0.5),
         ("the exposure", |settings| settings.output.exposure = 2.0),
@@ -135,7 +139,7 @@ fn turning_the_volume_does_not_matter_but_hands_come_first() {
     window.held = false;
     let camera = window.settings.camera.clone();
     window.run(1.0);
-    assert_eq!(window.settings.lights, window.proposed());
+    assert_eq!(window.settings.lights, proposed());
     assert_eq!(window.settings.camera, camera);
 }
 
