@@ -274,8 +274,8 @@ mod tests {
 
     #[test]
     fn the_sought_light_moves_and_others_stay() {
-        let mut settings = Settings::default();
-        settings.lights = vec![Light { position: [0.0, 5.0, 0.0], ..Light::default() }; 2];
+        let lights = vec![Light { position: [0.0, 5.0, 0.0], ..Light::default() }; 2];
+        let settings = Settings { lights, ..Settings::default() };
         for place in LightPlace::to_try() {
             let Candidate { lights, way, .. } =
                 candidate(&settings, place, Sought::Light(1)).expect("a candidate");

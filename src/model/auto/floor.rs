@@ -28,7 +28,7 @@ pub fn wants_floor(settings: &Settings, volume: &Volume, shadowed: f64) -> bool 
     if object.compactness() < COMPACT {
         return false;
     }
-    match Base::of(&object, volume, DVec3::Z) {
+    match Base::of(&object, volume, settings.camera.up.direction()) {
         Base::Cut => false,
         Base::Narrow => shadowed < HARDLY_SHADOWED,
         // What stands is one thing: pieces would fall apart.
