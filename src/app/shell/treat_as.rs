@@ -35,6 +35,8 @@ impl App {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
         let wishes = Wishes { treated_as: kind, up: self.settings.camera.up };
         let mut look = auto::first_settings_with(dataset.volume(), &facts.histogram, wishes);
+        // As the user has stood it, whatever the file says.
+        auto::stand(&mut look, dataset.volume(), self.settings.camera.up);
         // Near what it is: kept, it is found again.
         look.shadows.balance = self.settings.shadows.balance;
         look.shadows.keep_balanced = self.settings.shadows.keep_balanced;

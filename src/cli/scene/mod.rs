@@ -1,11 +1,13 @@
 //! Arguments that say what is rendered, common to most commands.
 
+mod choices;
 mod look;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use self::choices::{EngineArg, KindArg, QualityArg, ShadowArg};
 pub(super) use self::look::Look;
 use self::look::{Named, proposal};
 use super::CliError;
@@ -15,9 +17,7 @@ use crate::data::{Dataset, KindName, Volume, VoxelType, open, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::gpu::{Context, fitted};
 use crate::model::auto::Wishes;
-use crate::model::{
-    Engine, MAX_EDGE, ObjectTurn, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto,
-};
+use crate::model::{Engine, MAX_EDGE, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto};
 
 /// How a volume is read.
 #[derive(Debug, Clone, Args)]
@@ -123,82 +123,6 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     Ok([parse(width).ok_or_else(expected)?, parse(height).ok_or_else(expected)?])
 }
 
-/// Where shadows come from.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ShadowArg {
-    /// Light reaches everything
-    Off,
-    /// A light volume filled by sheet-buffer splatting
-    Splat,
-    /// A light volume filled by a ray from every voxel
-    Raycast,
-    /// A ray to the light from every sample
-    Direct,
-}
-
-/// How sheets are filled.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum EngineArg {
-    /// Pixels gather what voxels would splat: the same sums, quickly
-    Gather,
-    /// Voxels are splatted, as the paper has it
-    Scatter,
-}
-
-/// How truly light is computed.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum QualityArg {
-    /// Light volumes alone: soft shadows, quickest
-    Fast,
-    /// Light volumes, and short rays near what is seen
-    Standard,
-    /// Light volumes, and longer rays: for figures
-    Fine,
-    /// Rays all the way and the thinnest slabs: slow
-    Exact,
-}
-
-impl From<QualityArg> for Quality {
-    fn from(level: QualityArg) -> Self {
-        match level {
-            QualityArg::Fast => Self::Fast,
-            QualityArg::Standard => Self::Standard,
-            QualityArg::Fine => Self::Fine,
-            QualityArg::Exact => Self::Exact,
-        }
-    }
-}
-
-/// A kind of data.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum KindArg {
-    /// More is more of something
-    Scalar,
-    /// An object that is darker than what is around it
-    DarkOnBright,
-    /// Hounsfield units
-    Ct,
-    /// Deviations to both sides of zero
-    Signed,
-    /// Something or nothing
-    Mask,
-    /// Numbers of what is there
-    Labels,
-}
-
-impl From<KindArg> for KindName {
-    fn from(kind: KindArg) -> Self {
-        match kind {
-            KindArg::Scalar => Self::Scalar,
-            KindArg::DarkOnBright => Self::DarkOnBright,
-            KindArg::Ct => Self::HounsfieldCt,
-            KindArg::Signed => Self::Signed,
-            KindArg::Mask => Self::Mask,
-            KindArg::Labels => Self::LabelMap,
-        }
-    }
-}
-
 /// The look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
@@ -301,11 +225,8 @@ impl LookArgs {
             return auto::first_settings_with(volume, histogram, Wishes { treated_as, ..Wishes::default() });
         };
         let mut settings = auto::first_settings_with(volume, histogram, Wishes { treated_as, up });
-        if settings.camera.up != up {
-            // Against what the file says.
-            settings.turn_object(ObjectTurn::Upright(up));
-            auto::frame(&mut settings, volume);
-        }
+        // Against what the file says.
+        auto::stand(&mut settings, volume, up);
         settings
     }
 

@@ -25,7 +25,8 @@ use self::domain::Domain;
 use self::object::Object;
 pub use self::visible::{densest, show_something};
 use super::{
-    Camera, Classification, Length, Quality, Rig, SceneAxis, Settings, Shading, Shadows, TransferFunction,
+    Camera, Classification, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading, Shadows,
+    TransferFunction,
 };
 use crate::data::{DataKind, Histogram, KindName, Volume};
 
@@ -77,6 +78,15 @@ fn aim(settings: &mut Settings, volume: &Volume) {
     view::choose(&mut settings.camera, volume, &object);
     frame::frame(settings, volume, &object);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
+}
+
+/// Stands what settings show of a volume up so that an axis of the scene points up, on the floor and in the light as
+/// they were.
+pub fn stand(settings: &mut Settings, volume: &Volume, up: SceneAxis) {
+    if settings.camera.up != up {
+        settings.turn_object(ObjectTurn::Upright(up));
+        frame(settings, volume);
+    }
 }
 
 /// The kind of that name, or what the volume's own is.
