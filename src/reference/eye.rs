@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Reference;
 use super::back_project::Attenuation;
-use super::cut::Remaining;
+use super::remains::cut::Remaining;
 use super::shade::{Sampled, Shader};
 use super::sheet::{Cutting, Sample, Stack};
 use crate::model::{BakedTransfer, Classification, THIN_SLABS};

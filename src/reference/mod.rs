@@ -10,8 +10,8 @@
 //! |---|---|---|
 //! | prefiltered volume and its pyramid | `pyramid` | [`Reference::density`] |
 //! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
-//! | what is there at all | `presence` | [`Reference::light_sheets`], [`Reference::picture`] |
-//! | crop box and clip plane | `cut` | [`Reference::light_sheets`], [`Reference::picture`] |
+//! | what is there at all | `remains/presence` | [`Reference::light_sheets`], [`Reference::picture`] |
+//! | crop box and clip plane | `remains/cut` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
@@ -19,7 +19,6 @@
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
-mod cut;
 mod eye;
 mod field;
 mod floor;
@@ -27,8 +26,8 @@ mod footprint;
 mod gather;
 mod kernel;
 mod light;
-mod presence;
 mod pyramid;
+mod remains;
 mod shade;
 mod shadow_ray;
 mod sheet;

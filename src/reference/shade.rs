@@ -4,9 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
-use super::cut::Remaining;
 use super::kernel::Profile;
 use super::pyramid::MAX_LEVEL;
+use super::remains::cut::Remaining;
 use super::shadow_ray::ShadowRays;
 use super::{Fault, Reference, gather};
 use crate::model::{

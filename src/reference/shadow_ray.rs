@@ -5,8 +5,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
-use super::cut::Remaining;
 use super::kernel::Profile;
+use super::remains::cut::Remaining;
 use super::{Reference, gather};
 use crate::model::{BakedTransfer, Deposit, Kernel, LightKind, Quadrature, SceneLight};
 

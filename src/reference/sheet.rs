@@ -4,9 +4,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cut::Remaining;
 use super::field::Field;
 use super::kernel::Profile;
+use super::remains::cut::Remaining;
 use super::{Fault, Reference, Weights, footprint, gather};
 use crate::model::{BakedTransfer, Classification, Kernel, Quadrature};
 use crate::plan::SheetFrame;

@@ -4,19 +4,22 @@ pub(super) mod gradients;
 pub(super) mod listed_bricks;
 pub(super) mod prefilter;
 pub(super) mod presence;
+mod shapes;
 mod textures;
 pub(super) mod transfer_tables;
 
+pub(crate) use shapes::texture_3d;
 #[cfg(feature = "testing")]
 pub use textures::stored_density;
-pub(crate) use textures::{texture_3d, textures};
+pub(crate) use textures::textures;
 
 use std::sync::Arc;
 
 use half::f16;
 
 use self::presence::Presence;
-use self::textures::{Textures, density_is_unorm, padded, unorm16};
+use self::shapes::padded;
+use self::textures::{Textures, density_is_unorm, unorm16};
 use super::resources::pool::ResourcePool;
 use super::resources::tools::Tools;
 use super::{Context, GpuError};
@@ -25,9 +28,6 @@ use crate::gpu::pipelines::binding::{Named, Pipeline, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms::Grid;
 use crate::gpu::pipelines::variant::Ends;
 use crate::math::SceneSpace;
-
-/// Voxels before the data in the pyramid, which repeat its border: one texel of its coarsest level.
-const PYRAMID_PADDING: usize = 4;
 
 /// Upload block: small enough that one takes a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;

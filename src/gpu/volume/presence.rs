@@ -3,8 +3,8 @@
 
 use rayon::prelude::*;
 
-use super::textures::{padded, texture_3d};
-use super::{LevelViews, PYRAMID_PADDING};
+use super::LevelViews;
+use super::shapes::{PYRAMID_PADDING, padded, texture_3d};
 use crate::data::{Missing, Volume};
 use crate::gpu::{Context, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;

@@ -3,8 +3,8 @@
 #[cfg(feature = "testing")]
 use half::f16;
 
-use super::PYRAMID_PADDING;
 use super::presence::Presence;
+use super::shapes::{padded, texture_3d};
 use crate::data::{BRICK_EDGE, Volume, VoxelType};
 use crate::gpu::{Context, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;
@@ -50,34 +50,6 @@ pub(crate) fn textures(context: &Context, volume: &Volume, dims: [usize; 3]) -> 
         )
     })?;
     Ok(Textures { density, pyramid, presence: Presence::new(context, volume, dims)? })
-}
-
-/// Texels of the pyramid: whole ones on every level, so that a level's texel is exactly 2³ of the finer one's.
-pub(super) fn padded(dims: [usize; 3]) -> [usize; 3] {
-    dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
-}
-
-/// A 3D texture without mip levels.
-pub(crate) fn texture_3d(
-    label: &'static str,
-    dims: [usize; 3],
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d {
-            width: dims[0] as u32,
-            height: dims[1] as u32,
-            depth_or_array_layers: dims[2] as u32,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D3,
-        format,
-        usage,
-        view_formats: &[],
-    }
 }
 
 /// A density in 16 normalised bits.

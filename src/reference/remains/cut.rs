@@ -3,31 +3,31 @@
 
 use glam::DVec3;
 
-use super::kernel::cubic_b_spline;
-use super::{Fault, Reference};
 use crate::model::{ClipPlane, CropBox, CutEffect};
+use crate::reference::kernel::cubic_b_spline;
+use crate::reference::{Fault, Reference};
 
 /// Depth below a face, in voxels, from which material attenuates light fully.
 const SKIN: f64 = 2.0;
 
 /// The half-spaces whose intersection remains: all p with normal · p ≤ offset.
-pub(super) struct Remaining {
+pub(in crate::reference) struct Remaining {
     bounds: Vec<(DVec3, f64)>,
 }
 
 impl Reference<'_> {
     /// What the eye sees.
-    pub(super) fn seen(&self) -> Remaining {
+    pub(in crate::reference) fn seen(&self) -> Remaining {
         self.remaining(&[CutEffect::Removed, CutEffect::Hidden])
     }
 
     /// What attenuates light.
-    pub(super) fn shading(&self) -> Remaining {
+    pub(in crate::reference) fn shading(&self) -> Remaining {
         self.remaining(&[CutEffect::Removed, CutEffect::Shadowless])
     }
 
     /// Where what the eye sees ends: at cuts, and at the grid's own faces.
-    pub(super) fn faces(&self) -> Remaining {
+    pub(in crate::reference) fn faces(&self) -> Remaining {
         let crop = &self.settings.cuts.crop;
         let is_cropped = crop.on && crop.effect != CutEffect::Shadowless;
         let mut bounds = self.seen().bounds;
@@ -76,7 +76,12 @@ impl Reference<'_> {
 
     /// The gradient in scene space of something solid that ends where it is cut: for each face the kernel's
     /// value, at the distance in voxels.
-    pub(super) fn face_gradient(&self, seen: &Remaining, index: DVec3, stretch_level: f64) -> DVec3 {
+    pub(in crate::reference) fn face_gradient(
+        &self,
+        seen: &Remaining,
+        index: DVec3,
+        stretch_level: f64,
+    ) -> DVec3 {
         let place = self.scene.scene_from_index.transform_point3(index);
         let faces = seen.bounds.iter().map(|&(normal, offset)| {
             // Scene units per voxel across the face: |Aᵀ n|, where A takes index space to the scene.
@@ -89,7 +94,7 @@ impl Reference<'_> {
 
     /// The share of the material at a point of index space that attenuates light: 3t² − 2t³ of its depth below
     /// each face, up to [`SKIN`] voxels.
-    pub(super) fn share_that_shades(&self, remaining: &Remaining, index: DVec3) -> f64 {
+    pub(in crate::reference) fn share_that_shades(&self, remaining: &Remaining, index: DVec3) -> f64 {
         let place = self.scene.scene_from_index.transform_point3(index);
         let shares = remaining.bounds.iter().map(|&(normal, offset)| {
             let per_voxel = (self.scene.scene_from_index.matrix3.transpose() * normal).length();
@@ -100,7 +105,7 @@ impl Reference<'_> {
     }
 
     /// The share of a straight stretch, between two points of index space, that remains.
-    pub(super) fn share_of(&self, remaining: &Remaining, from: DVec3, to: DVec3) -> f64 {
+    pub(in crate::reference) fn share_of(&self, remaining: &Remaining, from: DVec3, to: DVec3) -> f64 {
         let [from, to] = [from, to].map(|point| self.scene.scene_from_index.transform_point3(point));
         let (mut begin, mut end) = (0.0_f64, 1.0_f64);
         for &(normal, offset) in &remaining.bounds {

@@ -3,16 +3,16 @@
 
 use glam::DVec3;
 
-use super::kernel::{Profile, quadrature_nodes};
-use super::pyramid::MAX_LEVEL;
-use super::{Reference, Weights};
 use crate::model::{Kernel, Quadrature};
 use crate::plan::SheetFrame;
+use crate::reference::kernel::{Profile, quadrature_nodes};
+use crate::reference::pyramid::MAX_LEVEL;
+use crate::reference::{Reference, Weights};
 
 impl Reference<'_> {
     /// Σ w(v) over the voxels that are there, at an index-space point with the kernel stretched 2^`level` times. Where
     /// voxels are missing the prefiltered kernel says so, whichever the settings have: a fetch of the pyramid.
-    pub(super) fn presence(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
+    pub(in crate::reference) fn presence(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
         match &self.presence {
             Some(presence) => presence.fetch(point, level),
             None => self.presence_in_grid(profile, point, level),
@@ -20,7 +20,7 @@ impl Reference<'_> {
     }
 
     /// The share of the kernel within the grid, missing voxels or not.
-    pub(super) fn presence_in_grid(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
+    pub(in crate::reference) fn presence_in_grid(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
         let width = level.clamp(0.0, MAX_LEVEL as f64).exp2();
         let along = |axis: usize| {
             let n = self.scene.dims[axis] as f64;
@@ -41,7 +41,7 @@ impl Reference<'_> {
     }
 
     /// The gradient in scene space of something solid that ends where voxels are missing.
-    pub(super) fn missing_gradient(&self, point: DVec3, level: f64) -> DVec3 {
+    pub(in crate::reference) fn missing_gradient(&self, point: DVec3, level: f64) -> DVec3 {
         if self.presence.is_none() {
             return DVec3::ZERO;
         }
@@ -51,7 +51,7 @@ impl Reference<'_> {
 
     /// The mean over slab `k` along the ray of pixel (i, j) of what `presence` says of a point and a level: where
     /// densities are taken, or for whole footprints all along.
-    pub(super) fn slab_mean_of(
+    pub(in crate::reference) fn slab_mean_of(
         &self,
         frame: &SheetFrame,
         quadrature: Quadrature,
