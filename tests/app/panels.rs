@@ -88,7 +88,7 @@ fn volumes_are_treated_as_other_data_in_one_step() {
     harness.get_by_label("Scalar field");
     let before = harness.state().settings().clone();
     let treat = |harness: &mut Harness<'_, App>, kind: &str| {
-        click(harness, "Treat as");
+        harness.get_by_role_and_label(Role::ComboBox, "Treat as").click();
         harness.run_steps(4);
         // The list is over all else, and shown last.
         harness.get_all_by_label(kind).last().expect("it is in the list").click();

@@ -4,6 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
+use crate::data::foreign_text::plain;
+
 /// What a user reads: `WHAT: WHY (file, field); HELP`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
@@ -145,34 +147,6 @@ pub(in crate::data) fn quoted(text: &str) -> String {
     format!("\"{}\"", plain(text, 60))
 }
 
-/// Text from outside as one line of at most `longest` characters, for messages: control characters become `·`.
-pub fn plain(text: &str, longest: usize) -> String {
-    let mut characters = text.chars().map(|c| if is_odd(c) { '·' } else { c });
-    let mut short: String = characters.by_ref().take(longest).collect();
-    if characters.next().is_some() {
-        short.push('…');
-    }
-    short
-}
-
-/// Text from outside as one line of at most `longest` characters, to be kept: without control characters.
-pub fn single_line(text: &str, longest: usize) -> String {
-    text.chars().filter(|&c| !is_odd(c)).take(longest).collect()
-}
-
-/// Text that may hold words from outside, for a terminal: control characters other than the ends of lines become `·`.
-pub fn without_controls(text: &str) -> String {
-    text.chars().map(|c| if c != '\n' && is_odd(c) { '·' } else { c }).collect()
-}
-
-/// Whether a character could disturb a terminal or turn the direction of a line.
-fn is_odd(c: char) -> bool {
-    // Also what stands for bytes that were no text, which few fonts have.
-    c.is_control()
-        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-        || c == char::REPLACEMENT_CHARACTER
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,11 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn foreign_text_is_made_harmless() {
+    fn what_is_quoted_is_harmless() {
         assert_eq!(quoted("a\u{1b}[2Jb"), "\"a·[2Jb\"");
-        assert_eq!(plain("abcdef", 3), "abc…");
-        assert_eq!(plain("abc", 3), "abc");
-        assert_eq!(plain("a\u{202e}b", 9), "a·b");
-        assert_eq!(single_line("a\u{202e}\u{1b}[2J\nb\u{2069}cd", 6), "a[2Jbc");
     }
 }

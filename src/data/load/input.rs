@@ -6,7 +6,8 @@ use std::path::Path;
 use std::time::SystemTime;
 
 use super::{LoadControl, LoadError};
-use crate::data::attempt::{Attempt, plain};
+use crate::data::attempt::Attempt;
+use crate::data::plain;
 
 /// A regular file open for reading, at its beginning.
 #[derive(Debug)]

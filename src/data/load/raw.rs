@@ -9,8 +9,9 @@ use glam::DVec3;
 use super::input::{Input, is_gzip, stem};
 use super::samples::{Layout, read_binary, read_gzip};
 use super::{Endian, LoadControl, LoadError, LoadOptions};
-use crate::data::attempt::{Attempt, plain, quoted};
+use crate::data::attempt::{Attempt, quoted};
 use crate::data::attempt::{Extent, is_usable_spacing, unlike_spacings};
+use crate::data::plain;
 use crate::data::{Volume, VoxelType};
 
 /// How a RAW file is stored. What is given overrides what the file's name says.

@@ -1,10 +1,12 @@
 //! A scalar volume on a regular grid, with its place in the world and its values in data units.
 
 mod error;
+mod kind;
 mod missing;
 mod reduce;
 
 pub use error::VolumeError;
+pub use kind::{DataKind, KindFound, KindName};
 pub use missing::Missing;
 pub use reduce::reduced_dims;
 
@@ -14,7 +16,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::values::robust::quantile;
 use super::values::samples::with_samples;
-use super::{Hints, KindFound, Samples, ValueRange, ValueRanges};
+use super::{Hints, Samples, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
 /// Identifies a volume, and says what its values are.

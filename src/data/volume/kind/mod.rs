@@ -10,7 +10,8 @@ mod sampled;
 mod tests;
 
 use self::sampled::{Sampled, quantile};
-use super::{Meaning, Modality, Volume};
+use super::Volume;
+use crate::data::{Meaning, Modality};
 
 /// What kind of data a volume holds.
 #[derive(Debug, Clone, Copy, PartialEq)]

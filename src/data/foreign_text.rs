@@ -1,0 +1,42 @@
+//! Text from outside, made harmless.
+
+/// Text from outside as one line of at most `longest` characters, for messages: control characters become `·`.
+pub fn plain(text: &str, longest: usize) -> String {
+    let mut characters = text.chars().map(|c| if is_odd(c) { '·' } else { c });
+    let mut short: String = characters.by_ref().take(longest).collect();
+    if characters.next().is_some() {
+        short.push('…');
+    }
+    short
+}
+
+/// Text from outside as one line of at most `longest` characters, to be kept: without control characters.
+pub fn single_line(text: &str, longest: usize) -> String {
+    text.chars().filter(|&c| !is_odd(c)).take(longest).collect()
+}
+
+/// Text that may hold words from outside, for a terminal: control characters other than the ends of lines become `·`.
+pub fn without_controls(text: &str) -> String {
+    text.chars().map(|c| if c != '\n' && is_odd(c) { '·' } else { c }).collect()
+}
+
+/// Whether a character could disturb a terminal or turn the direction of a line.
+fn is_odd(c: char) -> bool {
+    // Also what stands for bytes that were no text, which few fonts have.
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || c == char::REPLACEMENT_CHARACTER
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn foreign_text_is_made_harmless() {
+        assert_eq!(plain("abcdef", 3), "abc…");
+        assert_eq!(plain("abc", 3), "abc");
+        assert_eq!(plain("a\u{202e}b", 9), "a·b");
+        assert_eq!(single_line("a\u{202e}\u{1b}[2J\nb\u{2069}cd", 6), "a[2Jbc");
+    }
+}
