@@ -16,7 +16,8 @@ const LEAST_EQUAL_OF_ONE: f64 = 0.5;
 /// fields of few values it is next to nothing, in label maps 0.84 and more.
 const LEAST_JUMPS: f64 = 0.3;
 
-/// From so many values on there are jumps in label maps: of three labels around each other there are none.
+/// From so many values on there are jumps in label maps: of three labels around each other there are none. Those count
+/// from one, or leave out one or two; other numbers, such as 0, 90 and 220, are of materials.
 const VALUES_WITH_JUMPS: usize = 5;
 
 /// Values that only labels have are whole, and not too large for a number that counts things.
@@ -119,7 +120,9 @@ pub(super) fn label_map(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFo
     let sum = |part: fn(&Pair) -> f64| pairs.of_value.iter().map(part).sum::<f64>();
     let equal = sum(|pair| pair.equal) / sum(|pair| pair.all);
     let jumps = pairs.jumps / pairs.unequal.max(1.0);
-    let is_abrupt = distinct.len() < VALUES_WITH_JUMPS || jumps >= LEAST_JUMPS;
+    let span = distinct[distinct.len() - 1] - distinct[0];
+    let are_counted = distinct.len() < VALUES_WITH_JUMPS && span <= 2.0 * distinct.len() as f64;
+    let is_abrupt = are_counted || jumps >= LEAST_JUMPS;
     (equal >= LEAST_EQUAL && typical >= LEAST_EQUAL_OF_ONE && is_abrupt).then(|| {
         let why = format!(
             "{} whole numbers fill regions: {:.0} % of neighbours are equal, and {:.0} % of the others far apart",

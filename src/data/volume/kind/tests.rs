@@ -140,6 +140,16 @@ fn scalars() -> Vec<Vec<f64>> {
         values(|p, _| 200.0 * edge(p)),
         // A CT of metal in eight bits: two materials, edges between them, and little else.
         values(|p, _| (200.0 * edge(p)).round()),
+        // A core of one material in another, without edges.
+        values(|p, _| {
+            if p.length() < 0.4 {
+                220.0
+            } else if p.length() < 0.7 {
+                90.0
+            } else {
+                0.0
+            }
+        }),
         // A smooth field of eight values.
         values(|p, _| (8.0 * bump(p, DVec3::ZERO, 0.5)).floor()),
         // Few values, and noise.
@@ -273,14 +283,14 @@ fn files_know_better() {
     let lobes = &signed_fields()[1];
     assert_eq!(with(lobes, &|hints| hints.meaning = Meaning::PositiveDensity), DataKind::Scalar);
     // Twelve bits without a sign: CT where the file says so.
-    let head = &scalars()[10];
+    let head = &scalars()[11];
     let of_ct = with(head, &|hints| hints.modality = Modality::Ct);
     assert_eq!(of_ct, DataKind::HounsfieldCt { water: 1024.0 });
     let of_mr = with(&hounsfield()[2], &|hints| hints.modality = Modality::Mr);
     assert_ne!(of_mr.name(), KindName::HounsfieldCt);
     let rescaled = with(&hounsfield()[2], &|hints| hints.is_rescaled = true);
     assert_ne!(rescaled.name(), KindName::HounsfieldCt);
-    assert_eq!(with(&scalars()[11], &|hints| hints.set_padding(-32768.0)), DataKind::Scalar);
+    assert_eq!(with(&scalars()[12], &|hints| hints.set_padding(-32768.0)), DataKind::Scalar);
 }
 
 #[test]
