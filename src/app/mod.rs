@@ -34,7 +34,7 @@ use self::windows::files;
 use self::common::commands::Command;
 use self::common::volume_facts::VolumeFacts;
 use self::memory::Memory;
-use self::shell::first_lights::FirstLights;
+use self::shell::first_lights::{FirstLights, Seeking};
 use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
 use self::shell::messages::Messages;
@@ -68,7 +68,7 @@ use self::windows::slices::Slices;
 use self::worker::loader::Loader;
 use self::worker::task::{self, Work};
 use crate::data::Dataset;
-use crate::gpu::{Context, Found, GpuError, WindowPainter};
+use crate::gpu::{Context, GpuError, WindowPainter};
 use crate::model::Settings;
 
 /// A frame that keeps the window's thread longer is felt.
@@ -105,7 +105,7 @@ pub struct App {
     balance: Option<Work<Result<f64, GpuError>>>,
     keep_balanced: KeepBalanced,
     first_lights: FirstLights,
-    light_search: Option<Work<Result<Option<Found>, GpuError>>>,
+    light_search: Option<Seeking>,
     export: Export,
     files: Files,
     session: Option<Session>,
@@ -145,6 +145,8 @@ const LAST_TASKS: Duration = Duration::from_secs(10);
 
 impl Drop for App {
     fn drop(&mut self) {
+        // Nobody waits for its end any more.
+        self.light_search = None;
         // Where another window takes the place of this one, that waits in the end.
         if !self.is_ending {
             task::wait_for_all(LAST_TASKS);

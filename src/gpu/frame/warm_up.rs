@@ -8,7 +8,7 @@ use crate::gpu::eye::gather::GatherVariant;
 use crate::gpu::light::backproject::BackprojectVariant;
 use crate::gpu::light::march::MarchVariant;
 use crate::gpu::output::display::DisplayVariant;
-use crate::gpu::pipelines::variant::{Ends, LightCount, Only, Variant};
+use crate::gpu::pipelines::variant::{LightCount, Only, Variant};
 use crate::gpu::{GpuError, ShaderLibrary};
 use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows, Slabs};
 
@@ -29,7 +29,7 @@ impl ShaderLibrary {
         }
         self.warm(&Only("light/clear_margin.wgsl"), stop)?;
         self.warm(&DisplayVariant { samples: 1, is_linear: false, is_deep: false }, stop)?;
-        self.warm_up_passes(&Cuts::default(), Ends::Nowhere, stop)
+        self.warm_up_passes(&Cuts::default(), stop)
     }
 
     fn warm(&self, variant: &impl Variant, stop: &AtomicBool) -> Result<(), GpuError> {
@@ -50,13 +50,12 @@ impl ShaderLibrary {
             let settings = Settings { shadows, ..Settings::default() };
             self.warm(&FloorVariant::of(&settings, FIRST_LIGHTS), stop)?;
         }
-        self.warm_up_passes(&Cuts::default(), Ends::AtFaces, stop)?;
         let plane = ClipPlane { on: true, ..ClipPlane::default() };
-        self.warm_up_passes(&Cuts { plane, ..Cuts::default() }, Ends::Nowhere, stop)
+        self.warm_up_passes(&Cuts { plane, ..Cuts::default() }, stop)
     }
 
-    /// The passes of a splatted picture, of whole volumes or of what remains of them, that ends there.
-    fn warm_up_passes(&self, cuts: &Cuts, ends: Ends, stop: &AtomicBool) -> Result<(), GpuError> {
+    /// The passes of a splatted picture, of whole volumes or of what remains of them.
+    fn warm_up_passes(&self, cuts: &Cuts, stop: &AtomicBool) -> Result<(), GpuError> {
         for is_stretched in [false, true] {
             for (kernel, slabs) in LOOKS {
                 let settings = Settings {
@@ -65,10 +64,10 @@ impl ShaderLibrary {
                     cuts: cuts.clone(),
                     ..Settings::default()
                 };
-                let eye = GatherVariant::of(&settings, FIRST_LIGHTS, is_stretched).ending(ends);
+                let eye = GatherVariant::of(&settings, FIRST_LIGHTS, is_stretched);
                 self.warm(&eye.with_gradients(true), stop)?;
                 self.warm(&BackprojectVariant::of(&self.context, &settings.shadows, is_stretched), stop)?;
-                self.warm(&MarchVariant::of(&settings, is_stretched).ending(ends), stop)?;
+                self.warm(&MarchVariant::of(&settings, is_stretched), stop)?;
             }
         }
         Ok(())

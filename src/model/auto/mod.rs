@@ -25,8 +25,8 @@ use self::domain::Domain;
 use self::object::Object;
 pub use self::visible::{densest, show_something};
 use super::{
-    Camera, Classification, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading, Shadows,
-    TransferFunction,
+    Camera, Classification, DensityRange, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading,
+    Shadows, TransferFunction,
 };
 use crate::data::{DataKind, Histogram, KindName, Volume};
 
@@ -46,6 +46,12 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
 
 /// Settings for a volume that nobody has touched yet, as somebody wishes them to be.
 pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
+    // Whatever was shown before.
+    let robust = volume.ranges().robust;
+    if volume.shown_range() != robust {
+        let volume = volume.showing(robust);
+        return first_settings_with(&volume, &Histogram::of(&volume), wishes);
+    }
     let kind = kind_of(volume, wishes.treated_as);
     let found = transfer::find(volume, histogram, kind);
     let up = if volume.is_anatomical() { SceneAxis::PlusZ } else { wishes.up };
@@ -61,7 +67,8 @@ pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishe
     };
     Quality::Standard.apply(&mut settings);
     if let DataKind::LabelMap { .. } = kind {
-        // Between two labels there is none of the numbers between them.
+        // Between two labels there is none of the numbers between them, and none of them is an outlier.
+        settings.range = DensityRange::Full;
         settings.sampling.classification = Classification::Pre;
     }
     aim(&mut settings, volume);

@@ -2,6 +2,8 @@
 //! thread of its own, and taken over in one short movement. What the user has touched by then is left alone. Times are
 //! in seconds, of any clock that does not go back.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use eframe::egui;
@@ -165,10 +167,22 @@ fn between(from: &[Light], to: &[Light], share: f64) -> Vec<Light> {
         .collect()
 }
 
+/// A search that runs. Dropping this ends it at its next step, and forgets what it has found.
+pub(crate) struct Seeking {
+    work: Work<Result<Option<Found>, GpuError>>,
+    is_unwanted: Arc<AtomicBool>,
+}
+
+impl Drop for Seeking {
+    fn drop(&mut self) {
+        self.is_unwanted.store(true, Ordering::Relaxed);
+    }
+}
+
 impl App {
     /// Finishes the first look of the volume, if nobody has touched it.
     pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
-        if let Some(result) = self.light_search.as_ref().and_then(Work::take) {
+        if let Some(result) = self.light_search.as_ref().and_then(|seeking| seeking.work.take()) {
             self.light_search = None;
             let found = match result {
                 Ok(Ok(found)) => found,
@@ -183,6 +197,9 @@ impl App {
                 }
             };
             self.first_lights.found(found);
+        }
+        if !self.first_lights.is_due() {
+            self.light_search = None;
         }
         let now_s = ctx.input(|input| input.time);
         let moment = Moment {
@@ -214,16 +231,21 @@ impl App {
     fn seek_lights(&mut self, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset() else { return self.first_lights.stop() };
         let (shaders, settings) = (self.loader.shaders().clone(), self.settings.clone());
+        let is_unwanted = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&is_unwanted);
         let task = move || -> Result<Option<Found>, GpuError> {
             let mut search = LightSearch::new(shaders, &dataset, &settings, Sought::KeyAndFill)?;
             while search.step()? {
+                if asked.load(Ordering::Relaxed) {
+                    return Ok(None);
+                }
                 // Pictures that are asked for meanwhile come between.
                 std::thread::sleep(BREATH);
             }
             Ok(search.finish())
         };
         match Work::start("light-search", ctx, task) {
-            Ok(work) => self.light_search = Some(work),
+            Ok(work) => self.light_search = Some(Seeking { work, is_unwanted }),
             Err(err) => {
                 log::warn!("no light was sought: {err}");
                 self.first_lights.stop();

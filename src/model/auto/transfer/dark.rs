@@ -38,7 +38,7 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
     ];
     let domain = Domain::Unknown;
     let stops = stops.map(|(darkness, place, opacity)| Stop {
-        value: volume.value_of(1.0 - darkness),
+        value: volume.value_of((1.0 - darkness).max(0.0)),
         place,
         opacity,
     });
