@@ -33,7 +33,11 @@ fn material_by_kernel(p: vec3f) -> vec4f {
             }
         }
     }
-    return select(sum, sum * presence_at(p, 0.0), MISSING);
+#if MISSING
+    return sum * presence_at(p, 0.0);
+#else
+    return sum;
+#endif
 }
 
 // A stretched kernel finds the blurred volume classified instead.

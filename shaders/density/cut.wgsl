@@ -1,7 +1,6 @@
 // What is left of the volume after the crop box and the clip plane (src/math/region.rs): of every slab a
 // ray meets, the part that lies within.
 #import "sheets/sheet_frame.wgsl"
-#import "density/kernel.wgsl"
 
 // Whether anything is cut at all.
 override CUT: bool = false;
@@ -87,9 +86,12 @@ fn blurred_edge(distance: f32) -> f32 {
 // ends there, reconstructed with a B-spline stretched 2^level times. Data behind the face would only give it the
 // direction of their noise, and there are none beyond the grid.
 fn face_gradient(cut: Cut, p: vec3f, level: f32) -> vec3f {
-    if (!FACES && !CUT) {
+#if FACES
+#else
+    if (!CUT) {
         return vec3f(0.0);
     }
+#endif
     let width = exp2(level);
     let nearest = min(p - cut.low, cut.high - p);
     let behind = select(1e9, cut.plane.w - dot(cut.plane.xyz, p), CUT);

@@ -10,9 +10,11 @@ override SIGMA: f32 = 0.6;
 // Points per slab at which it is evaluated: 1 at the middle, or 2 by Gauss–Legendre, whose mean is the paper's h̄.
 override QUADRATURE: u32 = 1u;
 // Whether voxels are missing (density/volume.wgsl).
-override MISSING: bool = false;
-// Whether anything is shown so near the faces of the grid that its end there could be seen.
-override FACES: bool = true;
+#if MISSING
+const MISSING = true;
+#else
+const MISSING = false;
+#endif
 
 // Weights of the neighbours at −1, 0, 1, 2 of a point at fraction f in [0, 1); their sum is 1.
 fn kernel_weights(f: f32) -> vec4f {

@@ -1,5 +1,6 @@
 // Where there is material at all: outside the grid is none, whatever the transfer function says. The field goes on
-// there as it is at the border, and its material fades with the share of the kernel that lies on voxels.
+// there as it is at the border, and its material fades with the share of the kernel that lies on voxels. FACES: anything
+// is shown so near the faces of the grid that its end there could be seen; all else does without, and compiles quicker.
 #import "density/kernel.wgsl"
 
 // Edges of the grid, in index space, lie half a voxel beyond its outermost voxels. Kernels reach so far to either side.
@@ -8,16 +9,35 @@ const EDGE_REACH = 1.5;
 // What sums over the voxels that are there are divided by at least: below, so little is there that nobody sees it.
 const LEAST_PRESENCE = 1e-4;
 
-// Along each axis the share of a kernel's weights that lies on voxels 0, 1, 2 …, where the kernel's middle is `depth`
-// voxels inside the edge before voxel 0; symmetrical about ½ at the edge. Branches would spare software drivers nothing.
+#if FACES
+// Along each axis the share of the prefiltered kernel that lies on voxels 0, 1, 2 …, where its middle is `depth` voxels
+// inside the edge before voxel 0; symmetrical about ½ at the edge.
+fn prefiltered_shares(depth: vec3f) -> vec3f {
+    let away = abs(depth);
+    // Linear between 11/12 on the outermost voxel and 1 on the next; and between 1/12 and 11/12 across the edge.
+    let shares = min(0.5 + away * (5.0 / 6.0), min((away + 10.5) / 12.0, vec3f(1.0)));
+    return select(1.0 - shares, shares, depth >= vec3f(0.0));
+}
+
+// The same of the kernel at hand. Branches would spare software drivers nothing.
 fn shares_inside(depth: vec3f) -> vec3f {
+    if (KERNEL == KERNEL_PREFILTERED) {
+        return prefiltered_shares(depth);
+    }
     let away = abs(depth);
     var shares: vec3f;
-    if (KERNEL == KERNEL_PREFILTERED) {
-        // Linear between 11/12 on the outermost voxel and 1 on the next; and between 1/12 and 11/12 across the edge.
-        shares = min(0.5 + away * (5.0 / 6.0), min((away + 10.5) / 12.0, vec3f(1.0)));
-    } else if (KERNEL == KERNEL_GAUSSIAN) {
-        shares = vec3f(gaussian_share(away.x), gaussian_share(away.y), gaussian_share(away.z));
+    if (KERNEL == KERNEL_GAUSSIAN) {
+        // Of the weights of the four voxels around its middle: between the last that is missing and the first, or the
+        // first and the second.
+        let is_inside = away >= vec3f(0.5);
+        let f = fract(select(away + 0.5, away - 0.5, is_inside));
+        let scale = -0.5 / (SIGMA * SIGMA);
+        let w0 = exp((f + 1.0) * (f + 1.0) * scale);
+        let w1 = exp(f * f * scale);
+        let w2 = exp((1.0 - f) * (1.0 - f) * scale);
+        let w3 = exp((2.0 - f) * (2.0 - f) * scale);
+        let outside = select(w0 + w1, w0, is_inside);
+        shares = select(vec3f(1.0), 1.0 - outside / (w0 + w1 + w2 + w3), away < vec3f(EDGE_REACH));
     } else {
         // What the B-spline has beyond the edge, by truncated powers.
         let outer = max(EDGE_REACH - away, vec3f(0.0));
@@ -27,20 +47,20 @@ fn shares_inside(depth: vec3f) -> vec3f {
     return select(1.0 - shares, shares, depth >= vec3f(0.0));
 }
 
-// The same of a Gaussian, inside the edge: of the weights of the four voxels around its middle.
-fn gaussian_share(away: f32) -> f32 {
-    // Between the last voxel that is missing and the first, or the first and the second.
-    let is_inside = away >= 0.5;
-    let weights = kernel_weights(fract(select(away + 0.5, away - 0.5, is_inside)));
-    let share = select(weights.z + weights.w, 1.0 - weights.x, is_inside);
-    return select(1.0, share, away < EDGE_REACH);
+// The share of a kernel that lies within the grid, from those before and behind along each axis.
+fn product_of(before: vec3f, behind: vec3f) -> f32 {
+    let shares = max(before + behind - 1.0, vec3f(0.0));
+    return shares.x * shares.y * shares.z;
 }
 
 // The share of a kernel around an index-space point that lies on the voxels of a grid, where it is `width` times as
 // wide as on voxels.
 fn presence(p: vec3f, dims: vec3f, width: f32) -> f32 {
-    let before = (p + 0.5) / width;
-    let behind = (dims - 0.5 - p) / width;
-    let shares = max(shares_inside(before) + shares_inside(behind) - 1.0, vec3f(0.0));
-    return shares.x * shares.y * shares.z;
+    return product_of(shares_inside((p + 0.5) / width), shares_inside((dims - 0.5 - p) / width));
 }
+
+// The same of the prefiltered kernel.
+fn prefiltered_presence(p: vec3f, dims: vec3f, width: f32) -> f32 {
+    return product_of(prefiltered_shares((p + 0.5) / width), prefiltered_shares((dims - 0.5 - p) / width));
+}
+#endif

@@ -95,23 +95,36 @@ fn density(p: vec3f, level: f32) -> f32 {
 
 // The share of the kernel at a point that lies within the grid, where it is stretched to pyramid level `level`.
 fn presence_in_grid(p: vec3f, level: f32) -> f32 {
-    if (!FACES) {
-        return 1.0;
-    }
-    if (!STRETCH) {
-        return presence(p, grid.dims, 1.0);
-    }
-    return presence(p, grid.dims, exp2(level));
+#if FACES
+    return presence(p, grid.dims, select(1.0, exp2(level), STRETCH));
+#else
+    return 1.0;
+#endif
 }
 
 // The share of it that lies on voxels that are there.
 fn presence_at(p: vec3f, level: f32) -> f32 {
-    if (MISSING) {
-        return textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
-    }
+#if MISSING
+    return textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
+#else
     return presence_in_grid(p, level);
+#endif
 }
 
+// The same of what is fetched from the pyramid, whatever the kernel.
+fn pyramid_presence(p: vec3f, level: f32) -> f32 {
+#if MISSING
+    return presence_at(p, level);
+#else
+#if FACES
+    return prefiltered_presence(p, grid.dims, select(1.0, exp2(level), STRETCH));
+#else
+    return 1.0;
+#endif
+#endif
+}
+
+#if MISSING
 // How steeply that rises, in index space: by central differences over as far as the kernel is stretched.
 fn presence_slope(p: vec3f, level: f32) -> vec3f {
     let h = exp2(level);
@@ -124,9 +137,11 @@ fn presence_slope(p: vec3f, level: f32) -> vec3f {
         presence_at(p + z, level) - presence_at(p - z, level),
     ) / (2.0 * h);
 }
+#endif
 
 // The share of the material of slab k that is there, where the ray crosses it.
 fn slab_presence(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+#if FACES
     let depth = depth_of(frame, k);
     if (QUADRATURE == 2u) {
         let near = depth - TWO_POINT_OFFSET * frame.slab;
@@ -135,14 +150,21 @@ fn slab_presence(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
             + presence_at(ray.origin + ray.direction * far, kernel_level(frame, far)));
     }
     return presence_at(ray.origin + ray.direction * depth, kernel_level(frame, depth));
+#else
+    return 1.0;
+#endif
 }
 
 // The share of slab k within the grid, where the ray crosses it.
 fn slab_in_grid(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+#if MISSING
     let depth = depth_of(frame, k);
     let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
     return 0.5 * (presence_in_grid(ray.origin + ray.direction * (depth - offset), kernel_level(frame, depth - offset))
         + presence_in_grid(ray.origin + ray.direction * (depth + offset), kernel_level(frame, depth + offset)));
+#else
+    return slab_presence(frame, ray, k);
+#endif
 }
 
 // The sheet's value: density averaged over slab k where the ray crosses it.

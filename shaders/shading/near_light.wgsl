@@ -24,7 +24,7 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
         let extinction = lighting_table.entries[nearest_entry(pyramid(p, surface.level))].a;
-        depth += extinction * share_that_shades(eye.shading_cut, p) * presence_at(p, surface.level) * length;
+        depth += extinction * share_that_shades(eye.shading_cut, p) * pyramid_presence(p, surface.level) * length;
         way += length;
         step += 1u;
         if (step >= NEAR_STEPS) {

@@ -97,9 +97,9 @@ struct Sampled {
 fn face_slope(p: vec3f, level: f32, density: f32) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && side_of(density) < 0.0);
     var faces = face_gradient(eye.faces, p, level);
-    if (MISSING) {
-        faces += presence_slope(p, level);
-    }
+#if MISSING
+    faces += presence_slope(p, level);
+#endif
     return turned * gradient_to_scene(eye.space, faces);
 }
 

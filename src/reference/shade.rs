@@ -10,7 +10,7 @@ use super::remains::cut::Remaining;
 use super::shadow_ray::ShadowRays;
 use super::{Fault, Reference, gather};
 use crate::model::{
-    BakedTransfer, Light, LightKind, NearField, Projection, SceneLight, ShadowAlgorithm, Sides,
+    BakedTransfer, Kernel, Light, LightKind, NearField, Projection, SceneLight, ShadowAlgorithm, Sides,
 };
 
 /// The lights and the eye of one picture.
@@ -21,7 +21,7 @@ pub(super) struct Shader<'r> {
     opacity_unit: f64,
     /// What light meets.
     lighting: BakedTransfer,
-    /// The kernel of the picture.
+    /// The kernel of what is fetched from the pyramid.
     profile: Profile,
     remaining: Remaining,
     /// See [`sides`]; evenly over densities 0 … 1.
@@ -98,7 +98,7 @@ impl<'r> Shader<'r> {
             lamps: settings.lights.iter().enumerate().filter(|(_, light)| light.on).map(lamp).collect(),
             opacity_unit: settings.opacity_unit.in_scene(&reference.scene).max(1e-9),
             lighting: settings.baked_lighting(reference.range, &reference.scene),
-            profile: reference.profile(settings.sampling.kernel),
+            profile: reference.profile(Kernel::Prefiltered),
             remaining: reference.shading(),
             sides: sides(&settings.baked_eye(reference.range, &reference.scene)),
         }

@@ -70,8 +70,20 @@ impl ShaderLibrary {
         format: wgpu::TextureFormat,
         attenuation: wgpu::TextureFormat,
     ) -> Result<String, GpuError> {
+        Self::source_where(name, format, attenuation, &|_| true)
+    }
+
+    /// The same with only those parts whose conditions hold, which stand between lines `#if`, `#else` and `#endif`: what
+    /// a variant does without need not be compiled.
+    fn source_where(
+        name: &str,
+        format: wgpu::TextureFormat,
+        attenuation: wgpu::TextureFormat,
+        holds: &dyn Fn(&str) -> bool,
+    ) -> Result<String, GpuError> {
         let mut joined = String::new();
         join(name, &mut Vec::new(), &mut joined)?;
+        let joined = chosen(&joined, holds);
         let wgsl = |format| match format {
             wgpu::TextureFormat::R32Float => "r32float",
             wgpu::TextureFormat::R8Unorm => "r8unorm",
@@ -144,7 +156,12 @@ impl ShaderLibrary {
         if self.context.is_software() {
             check_room(&format!("the pipeline of {shader}"), OF_THE_COMPILER)?;
         }
-        let mut source = Self::source(shader, self.context.storage_format, attenuation)?;
+        let holds = |condition: &str| {
+            constants.iter().find(|(name, _)| *name == condition).is_none_or(|(_, value)| *value != 0.0)
+        };
+        let mut source = Self::source_where(shader, self.context.storage_format, attenuation, &holds)?;
+        let overrides: Vec<_> =
+            constants.iter().filter(|(name, _)| !CONDITIONS.contains(name)).copied().collect();
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
         }
@@ -170,7 +187,7 @@ impl ShaderLibrary {
             module: &module,
             entry_point: Some("main"),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants,
+                constants: &overrides,
                 zero_initialize_workgroup_memory: false,
             },
             cache: self.cache.as_ref().map(|known| &known.cache),
@@ -206,6 +223,31 @@ impl PipelineKey {
     }
 }
 
+/// Names of the conditions of parts of shaders, which variants give like override constants.
+const CONDITIONS: [&str; 2] = ["FACES", "MISSING"];
+
+/// The lines of a source whose conditions hold.
+fn chosen(source: &str, holds: &dyn Fn(&str) -> bool) -> String {
+    // Of each condition around a line, whether it holds.
+    let mut around = Vec::new();
+    let mut lines = String::with_capacity(source.len());
+    for line in source.lines() {
+        if let Some(condition) = line.strip_prefix("#if ") {
+            around.push(holds(condition.trim()));
+        } else if line == "#else" {
+            if let Some(last) = around.last_mut() {
+                *last = !*last;
+            }
+        } else if line == "#endif" {
+            around.pop();
+        } else if around.iter().all(|holds| *holds) {
+            lines.push_str(line);
+            lines.push('\n');
+        }
+    }
+    lines
+}
+
 fn join(name: &str, seen: &mut Vec<String>, joined: &mut String) -> Result<(), GpuError> {
     if seen.iter().any(|known| known == name) {
         return Ok(());
@@ -224,4 +266,19 @@ fn join(name: &str, seen: &mut Vec<String>, joined: &mut String) -> Result<(), G
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_there_whose_conditions_hold() {
+        let source = "a\n#if ONE\nb\n#if OTHER\nc\n#else\nd\n#endif\n#else\ne\n#endif\nf";
+        let with = |one: bool, other: bool| {
+            let holds = |condition: &str| if condition == "ONE" { one } else { other };
+            chosen(source, &holds).replace('\n', "")
+        };
+        assert_eq!([with(true, true), with(true, false), with(false, true)], ["abcf", "abdf", "aef"]);
+    }
 }

@@ -25,7 +25,7 @@ fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
     }
     let is_missing = |at: usize| {
         let p = DVec3::new((at % n) as f64, (at / n % n) as f64, (at / n / n) as f64) / n as f64;
-        p.distance(DVec3::new(0.6, 0.3, 0.7)) < 0.25 || at % 97 == 0
+        p.distance(DVec3::new(0.6, 0.3, 0.7)) < 0.25 || at.is_multiple_of(97)
     };
     let values = (0..n * n * n).map(|at| if is_missing(at) { f32::NAN } else { step(at) as f32 }).collect();
     Volume::with_spacing("waves", [n; 3], spacing_mm, Samples::F32(values)).expect("a volume")
