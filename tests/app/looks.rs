@@ -69,7 +69,7 @@ fn lights_are_suggested() {
 fn looks_are_tried_on_the_volume() {
     let mut harness = window();
     let before = harness.state().settings().clone();
-    harness.key_press(egui::Key::L);
+    harness.key_press(egui::Key::V);
     harness.run_steps(3);
     wait_for(&mut harness, "Use 1 · First look");
     let count = harness.query_all_by_label_contains("Use ").count();

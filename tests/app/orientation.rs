@@ -96,6 +96,9 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     // The panel does the same.
     click(&mut harness, "Camera");
     harness.run_steps(10);
+    // The section may begin below the window's edge.
+    harness.get_by_label("−z").scroll_to_me();
+    harness.run_steps(10);
     click(&mut harness, "−z");
     assert_eq!(settings(&harness).camera.up, SceneAxis::MinusZ);
     assert!(harness.query_by_label("Stand up or lay down").is_none(), "the menu is closed");

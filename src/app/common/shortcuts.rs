@@ -55,7 +55,7 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 42] = [
     plain(Key::H, Command::ToggleHandles),
     plain(Key::C, Command::ToggleCompare),
     plain(Key::D, Command::ShowSlices),
-    plain(Key::L, Command::TryLooks),
+    plain(Key::V, Command::TryLooks),
     plain(Key::N, Command::ToggleSide),
     plain(Key::Questionmark, Command::ShowHelp),
     plain(Key::F1, Command::ShowHelp),
