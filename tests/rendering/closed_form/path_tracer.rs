@@ -1,8 +1,10 @@
 //! Pictures beside those of a path tracer that follows light until it has been scattered once, in steep material:
 //! where they are seen and what of the light arrives there are both drawn by lot, without steps and without slabs.
 
+use chiaroscuro::data::KindName;
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::{RenderOptions, Renderer};
+use chiaroscuro::model::auto::Wishes;
 use chiaroscuro::model::{
     BakedTransfer, Length, LightKind, Projection, Quality, Settings, ShadowAlgorithm, auto,
 };
@@ -174,7 +176,10 @@ fn pictures_are_as_bright_as_a_path_tracers() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     for name in ["box", "sphere", "cloud"] {
         let loaded = Dataset::new(builtin(name, Some(64)).expect("a built-in volume"));
-        let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
+        // A ramp of opacities, also of the box, which is a mask.
+        let wishes = Wishes { treated_as: Some(KindName::Scalar), ..Wishes::default() };
+        let mut settings = auto::first_settings_with(loaded.volume(), loaded.histogram(), wishes);
+        scenes::seen_as_earlier(&mut settings);
         isotropic(&mut settings);
         settings.camera.projection = Projection::Orthographic;
         settings.lights = vec![scenes::light(LightKind::Parallel, [-2.2, -1.2, 1.6])];
