@@ -84,7 +84,7 @@ mod tests {
     fn codes_are_understood_and_words_are_not_mistaken() {
         assert_eq!(Modality::of_code(" CT "), Modality::Ct);
         assert_eq!(Modality::of_code("PT"), Modality::Pet);
-        assert_eq!(Modality::of_code("SM"), Modality::Unknown);
+        assert_eq!(Modality::of_code("ZZ"), Modality::Unknown);
         assert_eq!(Modality::of_description("T1-weighted MRI of a head"), Modality::Mr);
         assert_eq!(Modality::of_description("chest,CT"), Modality::Ct);
         for text in ["", "Mr Smith", "give us a pet", "ACTUAL DOCTOR", "us"] {
