@@ -3,8 +3,12 @@
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 
-// Voxels are classified, and then spread; else what is spread is classified.
-override PRECLASSIFY: bool = false;
+// PRECLASSIFY: voxels are classified, and then spread; else what is spread is classified.
+#if PRECLASSIFY
+const PRECLASSIFY = true;
+#else
+const PRECLASSIFY = false;
+#endif
 
 // Colours weighted by extinction, so that they can be summed.
 fn associated(material: vec4f) -> vec4f {
@@ -61,12 +65,13 @@ struct SlabSample {
 }
 
 fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
-    if (PRECLASSIFY) {
-        return SlabSample(spread_material(frame, ray, k), 0.0);
-    }
+#if PRECLASSIFY
+    return SlabSample(spread_material(frame, ray, k), 0.0);
+#else
     let density = slab_density(frame, ray, k);
     let material = classify(density);
     return SlabSample(vec4f(material.rgb, material.a * slab_presence(frame, ray, k)), density);
+#endif
 }
 
 // The material of classified voxels in slab k where the ray crosses it.
@@ -83,8 +88,9 @@ fn spread_material(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
 
 // Its extinction alone.
 fn slab_extinction(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
-    if (!PRECLASSIFY) {
-        return classified_extinction(slab_density(frame, ray, k)) * slab_presence(frame, ray, k);
-    }
+#if PRECLASSIFY
     return spread_material(frame, ray, k).a;
+#else
+    return classified_extinction(slab_density(frame, ray, k)) * slab_presence(frame, ray, k);
+#endif
 }

@@ -1,9 +1,6 @@
 // Normals from the volume: the slope of the kernel itself, or what is stored of it.
 #import "density/stored_gradient.wgsl"
 
-// Take gradients from the kernel.
-override KERNEL_GRADIENTS: bool = false;
-
 // Derivatives of the cubic B-spline's weights by f (kernel.wgsl); their sum is 0.
 fn kernel_slopes(f: f32) -> vec4f {
     let g = 1.0 - f;
@@ -36,10 +33,11 @@ fn stretched_gradient(p: vec3f, level: f32) -> vec3f {
     return mix(gradient_by_kernel(p), blurred, level);
 }
 
-// The gradient of the volume in index space.
+// The gradient of the volume in index space. KERNEL_GRADIENTS: take it from the kernel.
 fn slope_at(p: vec3f, level: f32) -> vec3f {
-    if (KERNEL_GRADIENTS) {
-        return stretched_gradient(p, level);
-    }
+#if KERNEL_GRADIENTS
+    return stretched_gradient(p, level);
+#else
     return volume_slope(p, level);
+#endif
 }

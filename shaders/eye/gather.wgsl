@@ -18,12 +18,10 @@
 // light.
 @group(0) @binding(5) var light_distances: texture_3d<f32>;
 
-// Cast rays to the lights instead of looking into volumes (P §3.3).
-override DIRECT: bool = false;
+// DIRECT: cast rays to the lights instead of looking into volumes (P §3.3).
 // Take gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
-// Slabs are as thin as they need to be (slabs_by_need.wgsl).
-override BY_NEED: bool = false;
+// BY_NEED: slabs are as thin as they need to be (slabs_by_need.wgsl).
 
 fn light_extinction(density: f32) -> f32 {
     let at = table_entry(density);
@@ -35,15 +33,16 @@ fn light_distance(cell: vec3f) -> i32 {
 }
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
-    if (!DIRECT) {
-        return near_or_looked_up(light, volume, surface, towards);
-    }
+#if DIRECT
     let p = biased(light, surface, towards);
     let s = eye.shading;
     let reach = towards.distance - s.bias;
     let direction = to_index(eye.space, towards.direction);
     return shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth, eye.shading_cut)
         * hood_share(light, towards.direction);
+#else
+    return near_or_looked_up(light, volume, surface, towards);
+#endif
 }
 
 // The sheet's value at a pixel and slab; nothing lies before the first slab or behind the last.
@@ -193,11 +192,10 @@ fn main(
     let ray = ray_of(eye.frame, vec2f(pixel));
     let span = span_within(eye.seen, ray);
     let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
-    var seen: Seen;
-    if (BY_NEED) {
-        seen = slabs_by_need(ray, span, inside);
-    } else {
-        seen = even_slabs(ray, span, inside, pixel);
-    }
+#if BY_NEED
+    let seen = slabs_by_need(ray, span, inside);
+#else
+    let seen = even_slabs(ray, span, inside, pixel);
+#endif
     textureStore(picture, pixel, vec4f(seen.color, 1.0 - seen.left));
 }

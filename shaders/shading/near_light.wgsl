@@ -37,8 +37,9 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
 
 // What is left of a light that has a volume.
 fn near_or_looked_up(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
-    if (NEAR_STEPS > 0u) {
-        return near_light(light, volume, surface, towards);
-    }
+#if NEAR_STEPS
+    return near_light(light, volume, surface, towards);
+#else
     return looked_up(light, volume, biased(light, surface, towards));
+#endif
 }

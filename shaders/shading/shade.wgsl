@@ -125,14 +125,30 @@ fn surface_of(found: Sampled) -> Surface {
 // The light of all lights that material attenuates.
 fn lit_through_material(surface: Surface) -> Lit {
     var lit = Lit(vec3f(0.0), vec3f(0.0));
-    if (SHADOWED > 0u) { lit = add(lit, lit_by(0u, attenuation_0, surface)); }
-    if (SHADOWED > 1u) { lit = add(lit, lit_by(1u, attenuation_1, surface)); }
-    if (SHADOWED > 2u) { lit = add(lit, lit_by(2u, attenuation_2, surface)); }
-    if (SHADOWED > 3u) { lit = add(lit, lit_by(3u, attenuation_3, surface)); }
-    if (SHADOWED > 4u) { lit = add(lit, lit_by(4u, attenuation_4, surface)); }
-    if (SHADOWED > 5u) { lit = add(lit, lit_by(5u, attenuation_5, surface)); }
-    if (SHADOWED > 6u) { lit = add(lit, lit_by(6u, attenuation_6, surface)); }
-    if (SHADOWED > 7u) { lit = add(lit, lit_by(7u, attenuation_7, surface)); }
+#if SHADOWED > 0
+    lit = add(lit, lit_by(0u, attenuation_0, surface));
+#endif
+#if SHADOWED > 1
+    lit = add(lit, lit_by(1u, attenuation_1, surface));
+#endif
+#if SHADOWED > 2
+    lit = add(lit, lit_by(2u, attenuation_2, surface));
+#endif
+#if SHADOWED > 3
+    lit = add(lit, lit_by(3u, attenuation_3, surface));
+#endif
+#if SHADOWED > 4
+    lit = add(lit, lit_by(4u, attenuation_4, surface));
+#endif
+#if SHADOWED > 5
+    lit = add(lit, lit_by(5u, attenuation_5, surface));
+#endif
+#if SHADOWED > 6
+    lit = add(lit, lit_by(6u, attenuation_6, surface));
+#endif
+#if SHADOWED > 7
+    lit = add(lit, lit_by(7u, attenuation_7, surface));
+#endif
     return lit;
 }
 

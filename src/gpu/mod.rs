@@ -38,6 +38,8 @@ pub use output::light_slice::{LightSlice, export_slice, light_volume_nrrd};
 pub use output::window::{WindowPainter, WindowPicture};
 pub use painter::PicturePainter;
 #[cfg(feature = "testing")]
+pub use pipelines::conditions::shader_conditions;
+#[cfg(feature = "testing")]
 pub use pipelines::layouts::{ShaderBindings, shader_bindings};
 pub use pipelines::shader::ShaderLibrary;
 #[cfg(feature = "testing")]

@@ -1,9 +1,14 @@
 //! What the host binds is what every entry point declares: number, name, kind, format and size, by reflection.
 
-use chiaroscuro::gpu::{SHADERS, ShaderBindings, ShaderLibrary, shader_bindings};
+use chiaroscuro::gpu::{SHADERS, shader_bindings};
 use naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, GlobalVariable, Handle, ImageClass, ImageDimension, Module, ScalarKind, TypeInner};
-use wgpu::{BindingType, BufferBindingType, SamplerBindingType, TextureFormat, TextureViewDimension};
+use wgpu::{
+    BindGroupLayoutEntry, BindingType, BufferBindingType, SamplerBindingType, TextureFormat,
+    TextureSampleType, TextureViewDimension,
+};
+
+use crate::sources::variants;
 
 /// Formats of single channels, and of light volumes.
 const FORMATS: [(TextureFormat, TextureFormat); 3] = [
@@ -55,8 +60,8 @@ fn declared(module: &Module, variable: &GlobalVariable, is_sampled: bool) -> Bin
         (_, TypeInner::Image { dim, arrayed, class }) => match class {
             ImageClass::Sampled { kind, multi } => BindingType::Texture {
                 sample_type: match kind {
-                    ScalarKind::Float => wgpu::TextureSampleType::Float { filterable: is_sampled },
-                    ScalarKind::Uint => wgpu::TextureSampleType::Uint,
+                    ScalarKind::Float => TextureSampleType::Float { filterable: is_sampled },
+                    ScalarKind::Uint => TextureSampleType::Uint,
                     other => panic!("no pass reads {other:?}"),
                 },
                 view_dimension: dimension(*dim, *arrayed),
@@ -76,10 +81,13 @@ fn declared(module: &Module, variable: &GlobalVariable, is_sampled: bool) -> Bin
     }
 }
 
-/// Where the host's layout of a shader and what its entry point uses differ.
-fn differences((shader, groups): &ShaderBindings, source: &str) -> Vec<String> {
+/// Group, number, name and kind of a binding.
+type Binding = (u32, u32, String, BindingType);
+
+/// The bindings that an entry point uses.
+fn used_by(source: &str) -> Vec<Binding> {
     let (module, info) = parsed(source);
-    assert_eq!(module.entry_points.len(), 1, "{shader} has one entry point");
+    assert_eq!(module.entry_points.len(), 1, "a shader has one entry point");
     let entry = info.get_entry_point(0);
     let is_sampled =
         |variable: Handle<GlobalVariable>| entry.sampling_set.iter().any(|pair| pair.image == variable);
@@ -92,6 +100,27 @@ fn differences((shader, groups): &ShaderBindings, source: &str) -> Vec<String> {
         let kind = declared(&module, variable, is_sampled(handle));
         used.push((binding.group, binding.binding, name, kind));
     }
+    used
+}
+
+/// The bindings that any of the variants of a shader uses: a texture is filtered if any filters it.
+fn used_by_any(sources: &[(String, String)]) -> Vec<Binding> {
+    let filtered = TextureSampleType::Float { filterable: true };
+    let is_filtered =
+        |ty: &BindingType| matches!(ty, BindingType::Texture { sample_type, .. } if *sample_type == filtered);
+    let mut all: Vec<Binding> = Vec::new();
+    for used in sources.iter().flat_map(|(_, source)| used_by(source)) {
+        match all.iter_mut().find(|known| known.2 == used.2) {
+            Some(known) if is_filtered(&used.3) => *known = used,
+            Some(_) => {}
+            None => all.push(used),
+        }
+    }
+    all
+}
+
+/// Where the host's layout of a shader and what its variants use differ.
+fn differences(groups: &[Vec<(&'static str, BindGroupLayoutEntry)>], used: &[Binding]) -> Vec<String> {
     let mut bound = Vec::new();
     for (group, slots) in (0..).zip(groups) {
         bound.extend(slots.iter().map(|(name, slot)| (group, slot.binding, (*name).to_owned(), slot.ty)));
@@ -104,10 +133,9 @@ fn differences((shader, groups): &ShaderBindings, source: &str) -> Vec<String> {
 #[test]
 fn every_binding_of_every_entry_point_is_bound_as_it_is_declared() {
     for (storage, attenuation) in FORMATS {
-        for layout in shader_bindings(storage, attenuation) {
-            let source = ShaderLibrary::source(layout.0, storage, attenuation).expect("a shader");
-            let found = differences(&layout, &source);
-            assert!(found.is_empty(), "{} ({storage:?}, {attenuation:?}):\n{}", layout.0, found.join("\n"));
+        for (shader, groups) in shader_bindings(storage, attenuation) {
+            let found = differences(&groups, &used_by_any(&variants(shader, storage, attenuation)));
+            assert!(found.is_empty(), "{shader} ({storage:?}, {attenuation:?}):\n{}", found.join("\n"));
         }
     }
 }
@@ -129,8 +157,8 @@ fn wrong_layouts_are_noticed() {
         .into_iter()
         .find(|(shader, _)| *shader == "light/march.wgsl")
         .expect("the march has a layout");
-    let source = ShaderLibrary::source(shader, storage, storage).expect("a shader");
-    type Damage = fn(&mut Vec<(&'static str, wgpu::BindGroupLayoutEntry)>);
+    let used = used_by_any(&variants(shader, storage, storage));
+    type Damage = fn(&mut Vec<(&'static str, BindGroupLayoutEntry)>);
     let damages: [(&str, Damage); 5] = [
         ("a name", |group| group[1].0 = "tables"),
         ("a number", |group| group[2].1.binding = 9),
@@ -142,13 +170,13 @@ fn wrong_layouts_are_noticed() {
         ("a kind", |group| group[4].1.ty = group[0].1.ty),
         ("one less", |group| group.truncate(5)),
     ];
-    assert!(differences(&(shader, groups.clone()), &source).is_empty());
+    assert!(differences(&groups, &used).is_empty());
     for (what, damage) in damages {
         let mut damaged = groups.clone();
         damage(&mut damaged[0]);
-        assert!(!differences(&(shader, damaged), &source).is_empty(), "{what} is wrong");
+        assert!(!differences(&damaged, &used).is_empty(), "{what} is wrong");
     }
     let mut without = groups;
     without.pop();
-    assert!(!differences(&(shader, without), &source).is_empty(), "a group is missing");
+    assert!(!differences(&without, &used).is_empty(), "a group is missing");
 }

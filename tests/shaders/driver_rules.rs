@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::sources::{check, code_of, entry_shaders, joined};
+use wgpu::TextureFormat;
+
+use crate::sources::{check, code_of, entry_shaders, joined, variants};
 
 /// Uniforms that are not copied by the first statements of a shader's entry, or read from elsewhere.
 fn uniforms_read_late(source: &str) -> Vec<String> {
@@ -26,8 +28,13 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
 fn uniforms_are_copied_before_anything_branches() {
     let late: Vec<_> = entry_shaders()
         .into_iter()
-        .map(|name| (name, uniforms_read_late(&joined(name))))
-        .filter(|(_, late)| !late.is_empty())
+        .flat_map(|name| {
+            variants(name, TextureFormat::R16Float, TextureFormat::R16Float)
+                .into_iter()
+                .map(move |(what, source)| (name, what, source))
+        })
+        .map(|(name, what, source)| (name, what, uniforms_read_late(&source)))
+        .filter(|(_, _, late)| !late.is_empty())
         .collect();
     assert!(late.is_empty(), "{late:?}");
 }
@@ -121,8 +128,10 @@ fn branches_on_uniforms_in(module: &naga::Module) -> usize {
 #[test]
 fn no_branch_depends_on_uniforms_alone() {
     for name in entry_shaders() {
-        let module = check(&joined(name)).expect("the shader is valid");
-        assert_eq!(branches_on_uniforms_in(&module), 0, "{name}");
+        for (what, source) in variants(name, TextureFormat::R16Float, TextureFormat::R16Float) {
+            let module = check(&source).expect("the shader is valid");
+            assert_eq!(branches_on_uniforms_in(&module), 0, "{name}, {what}");
+        }
     }
     // And such branches are found.
     let wrong = joined("output/display.wgsl").replacen(

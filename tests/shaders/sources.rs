@@ -1,6 +1,6 @@
 //! Shaders as files, with their imports, and parsed.
 
-use chiaroscuro::gpu::{SHADERS, ShaderLibrary};
+use chiaroscuro::gpu::{SHADERS, ShaderLibrary, shader_conditions};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use wgpu::TextureFormat;
 
@@ -17,6 +17,25 @@ pub(crate) fn entry_shaders() -> Vec<&'static str> {
 pub(crate) fn joined(name: &str) -> String {
     ShaderLibrary::source(name, TextureFormat::R16Float, TextureFormat::R16Float)
         .expect("the shader and its imports are there")
+}
+
+/// A shader with all its conditional parts, with none of them, with each alone, and with all others; and for what.
+pub(crate) fn variants(
+    name: &str,
+    storage: TextureFormat,
+    attenuation: TextureFormat,
+) -> Vec<(String, String)> {
+    let source = |what: String, value: &dyn Fn(&str) -> f64| {
+        let source = ShaderLibrary::source_where(name, storage, attenuation, value);
+        (what, source.expect("the shader, its imports and its conditions are there"))
+    };
+    let mut all = vec![source("all".to_owned(), &|_| 9.0), source("none".to_owned(), &|_| 0.0)];
+    for one in shader_conditions() {
+        let is_one = |condition: &str| f64::from(u8::from(condition == one));
+        all.push(source(format!("{one} alone"), &is_one));
+        all.push(source(format!("all but {one}"), &|condition| 9.0 * (1.0 - is_one(condition))));
+    }
+    all
 }
 
 /// Parses and validates; no capability beyond what every adapter has is allowed.

@@ -5,18 +5,18 @@ use std::fmt::Write as _;
 use chiaroscuro::gpu::ShaderLibrary;
 use wgpu::TextureFormat;
 
-use crate::sources::{FORMATS, check, entry_shaders, joined};
+use crate::sources::{FORMATS, check, entry_shaders, joined, variants};
 
 #[test]
 fn every_shader_is_valid_for_both_storage_formats() {
     let mut failures = String::new();
     for name in entry_shaders() {
         for format in FORMATS {
-            let outcome = ShaderLibrary::source(name, format, format)
-                .map_err(|err| err.to_string())
-                .and_then(|source| check(&source));
-            if let Err(err) = outcome {
-                writeln!(failures, "{name} with {format:?}:\n{err}").expect("strings can be written to");
+            for (what, source) in variants(name, format, format) {
+                if let Err(err) = check(&source) {
+                    let line = writeln!(failures, "{name} with {format:?}, {what}:\n{err}");
+                    line.expect("strings can be written to");
+                }
             }
         }
     }

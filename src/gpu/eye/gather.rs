@@ -272,10 +272,11 @@ impl Variant for GatherVariant {
             flag("STRETCH", self.is_stretched),
             flag("BY_NEED", self.by_need),
             flag("KERNEL_GRADIENTS", self.kernel_gradients),
+            flag("DIRECT", self.rays.is_some()),
         ]);
         constants.extend(self.sampling.constants());
         if let Some(deposit) = self.rays {
-            constants.extend([("DIRECT", 1.0), deposit_constant(deposit)]);
+            constants.push(deposit_constant(deposit));
         }
         constants
     }

@@ -1,6 +1,7 @@
 //! Shaders and what is made of them: their texts, pipelines and variants, bindings by name, uniforms.
 
 pub(super) mod binding;
+pub(super) mod conditions;
 pub(super) mod layouts;
 mod pipeline_cache;
 pub(super) mod shader;

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::binding::{Group, Pipeline, Slot, ring_format};
+use super::conditions::{chosen, is_override};
 use super::layouts::LAYOUTS;
 use super::pipeline_cache::PipelineCache;
 use super::shader_files::SHADERS;
@@ -60,8 +61,8 @@ impl ShaderLibrary {
         Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }
     }
 
-    /// A shader with everything that it imports, for storage textures of `format`, and light volumes of
-    /// `attenuation`.
+    /// A shader with everything that it imports and all its conditional parts, for storage textures of `format`, and light
+    /// volumes of `attenuation`.
     ///
     /// # Errors
     /// When a file is not there.
@@ -70,20 +71,24 @@ impl ShaderLibrary {
         format: wgpu::TextureFormat,
         attenuation: wgpu::TextureFormat,
     ) -> Result<String, GpuError> {
-        Self::source_where(name, format, attenuation, &|_| true)
+        // More than any bound of a condition: all lights are shadowed.
+        Self::source_where(name, format, attenuation, &|_| f64::INFINITY)
     }
 
-    /// The same with only those parts whose conditions hold, which stand between lines `#if`, `#else` and `#endif`: what
-    /// a variant does without need not be compiled.
-    fn source_where(
+    /// A shader with those of its conditional parts (`conditions.rs`) whose conditions hold; `value` tells the numbers in
+    /// them.
+    ///
+    /// # Errors
+    /// When a file is not there, or a condition means nothing.
+    pub fn source_where(
         name: &str,
         format: wgpu::TextureFormat,
         attenuation: wgpu::TextureFormat,
-        holds: &dyn Fn(&str) -> bool,
+        value: &dyn Fn(&str) -> f64,
     ) -> Result<String, GpuError> {
         let mut joined = String::new();
         join(name, &mut Vec::new(), &mut joined)?;
-        let joined = chosen(&joined, holds);
+        let joined = chosen(&joined, value)?;
         let wgsl = |format| match format {
             wgpu::TextureFormat::R32Float => "r32float",
             wgpu::TextureFormat::R8Unorm => "r8unorm",
@@ -156,12 +161,11 @@ impl ShaderLibrary {
         if self.context.is_software() {
             check_room(&format!("the pipeline of {shader}"), OF_THE_COMPILER)?;
         }
-        let holds = |condition: &str| {
-            constants.iter().find(|(name, _)| *name == condition).is_none_or(|(_, value)| *value != 0.0)
+        let value = |wanted: &str| {
+            constants.iter().find(|(name, _)| *name == wanted).map_or(0.0, |(_, value)| *value)
         };
-        let mut source = Self::source_where(shader, self.context.storage_format, attenuation, &holds)?;
-        let overrides: Vec<_> =
-            constants.iter().filter(|(name, _)| !CONDITIONS.contains(name)).copied().collect();
+        let mut source = Self::source_where(shader, self.context.storage_format, attenuation, &value)?;
+        let overrides: Vec<_> = constants.iter().filter(|(name, _)| is_override(name)).copied().collect();
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
         }
@@ -223,31 +227,6 @@ impl PipelineKey {
     }
 }
 
-/// Names of the conditions of parts of shaders, which variants give like override constants.
-const CONDITIONS: [&str; 2] = ["FACES", "MISSING"];
-
-/// The lines of a source whose conditions hold.
-fn chosen(source: &str, holds: &dyn Fn(&str) -> bool) -> String {
-    // Of each condition around a line, whether it holds.
-    let mut around = Vec::new();
-    let mut lines = String::with_capacity(source.len());
-    for line in source.lines() {
-        if let Some(condition) = line.strip_prefix("#if ") {
-            around.push(holds(condition.trim()));
-        } else if line == "#else" {
-            if let Some(last) = around.last_mut() {
-                *last = !*last;
-            }
-        } else if line == "#endif" {
-            around.pop();
-        } else if around.iter().all(|holds| *holds) {
-            lines.push_str(line);
-            lines.push('\n');
-        }
-    }
-    lines
-}
-
 fn join(name: &str, seen: &mut Vec<String>, joined: &mut String) -> Result<(), GpuError> {
     if seen.iter().any(|known| known == name) {
         return Ok(());
@@ -266,19 +245,4 @@ fn join(name: &str, seen: &mut Vec<String>, joined: &mut String) -> Result<(), G
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_are_there_whose_conditions_hold() {
-        let source = "a\n#if ONE\nb\n#if OTHER\nc\n#else\nd\n#endif\n#else\ne\n#endif\nf";
-        let with = |one: bool, other: bool| {
-            let holds = |condition: &str| if condition == "ONE" { one } else { other };
-            chosen(source, &holds).replace('\n', "")
-        };
-        assert_eq!([with(true, true), with(true, false), with(false, true)], ["abcf", "abdf", "aef"]);
-    }
 }

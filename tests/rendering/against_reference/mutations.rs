@@ -316,8 +316,8 @@ scatter_mutation!(
 scatter_mutation!(
     scattered_and_lit_without_rays_nearby,
     "scatter/eye.wgsl",
-    "if (NEAR_STEPS > 0u)",
-    "if (NEAR_STEPS > 99u)"
+    "return near_light(light, volume, surface, towards);",
+    "return looked_up(light, volume, biased(light, surface, towards));"
 );
 scatter_mutation!(
     scattered_with_the_gradient_flipped,
