@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::data::Volume;
+use crate::data::{Missing, Volume};
 use crate::math::{Bounds, Region, SceneSpace};
 use crate::model::{BakedTransfer, LightKind, Settings, Sides};
 
@@ -65,10 +65,9 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     let value = rays.value(index);
     let lighting = settings.baked_lighting(range, scene);
     let is_one_sided = settings.shading.sides == Sides::One;
-    // Opacity falls towards high densities: the outside is there.
-    let is_turned = is_one_sided && eye.side(rays.density(index)) < 0.0;
-    let (outside, sign) = if is_turned { (1.0, 1.0) } else { (0.0, -1.0) };
-    let normal = rays.gradient(point, &seen, outside).normalize_or_zero() * sign;
+    // Opacity falls towards high densities: into a solid, too, in which it rises.
+    let turned = if is_one_sided && eye.side(rays.density(index)) < 0.0 { -1.0 } else { 1.0 };
+    let normal = rays.gradient(point, &seen, turned).normalize_or_zero() * -turned;
     let shading_cut = settings.cuts.shading().region(scene);
     let lights = settings
         .lights
@@ -173,46 +172,59 @@ impl Rays<'_> {
 
     fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {
         let index = self.scene.index_from_scene.transform_point3(point);
-        table.sample(self.density(index))[3]
+        let (density, there) = self.density_where_there(index);
+        table.sample(density)[3] * there
     }
 
-    /// The density between voxels, linearly; that of the border beyond it.
+    /// The density between voxels, linearly; that of the border beyond it; 0 where no voxel nearby is there.
     fn density(&self, index: DVec3) -> f64 {
+        self.density_where_there(index).0
+    }
+
+    /// The density, and the share of the voxels nearby that are there.
+    fn density_where_there(&self, index: DVec3) -> (f64, f64) {
         self.between_voxels(index, |value| self.volume.density_of(value))
     }
 
-    /// The value between voxels, linearly; what is not finite is the lowest that is shown.
+    /// The value between voxels, linearly.
     fn value(&self, index: DVec3) -> f64 {
-        self.between_voxels(index, |value| if value.is_finite() { value } else { self.volume.value_of(0.0) })
+        self.between_voxels(index, |value| value).0
     }
 
-    /// What voxels are, between them.
-    fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> f64 {
+    /// The mean of what the voxels around a point that are there are, by their weights, and the sum of these.
+    fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
         let dims = self.volume.dims();
         let last = DVec3::from(dims.map(|n| (n - 1) as f64));
         let at = index.clamp(DVec3::ZERO, last);
         let low = at.floor();
         let f = at - low;
-        let voxel = |side: usize| {
-            let place = |axis: usize| {
-                let far = side >> axis & 1;
-                (low[axis] as usize + far).min(dims[axis] - 1)
-            };
+        let (mut sum, mut there) = (0.0, 0.0);
+        for side in 0..8 {
+            let [x, y, z] =
+                [0, 1, 2].map(|axis| (low[axis] as usize + (side >> axis & 1)).min(dims[axis] - 1));
+            let is_missing = |missing: &Missing| missing.contains(x + dims[0] * (y + dims[1] * z));
+            if self.volume.missing().is_some_and(is_missing) {
+                continue;
+            }
             let weight: f64 =
                 (0..3).map(|axis| if side >> axis & 1 == 1 { f[axis] } else { 1.0 - f[axis] }).product();
-            weight * of(self.volume.value(place(0), place(1), place(2)))
-        };
-        (0..8).map(voxel).sum()
+            sum += weight * of(self.volume.value(x, y, z));
+            there += weight;
+        }
+        if there > 0.0 { (sum / there, there) } else { (0.0, 0.0) }
     }
 
-    /// ∇ density in scene space, by central differences over a voxel; what is cut away, and what lies beyond the grid,
-    /// has the density `outside`.
-    fn gradient(&self, point: DVec3, seen: &Region, outside: f64) -> DVec3 {
+    /// ∇ density in scene space, by central differences over a voxel, and `turned` times that of a solid of density 1
+    /// which ends where voxels are missing, at the faces of the grid and where it is cut.
+    fn gradient(&self, point: DVec3, seen: &Region, turned: f64) -> DVec3 {
         let edge = self.scene.smallest_edge();
         let seen = seen.within(&self.grid());
+        let index_of = |point| self.scene.index_from_scene.transform_point3(point);
+        let here = self.density(index_of(point));
         let at = |offset: DVec3| {
-            let index = self.scene.index_from_scene.transform_point3(point + offset * edge);
-            if seen.contains(index) { self.density(index) } else { outside }
+            let index = index_of(point + offset * edge);
+            let (density, there) = self.density_where_there(index);
+            if there > 0.0 && seen.contains(index) { density + turned * there } else { here }
         };
         DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)
     }
@@ -266,6 +278,28 @@ mod tests {
             None,
             "between the layers there is nothing"
         );
+    }
+
+    /// Voxels that a file declares as padding, with a value that the curve shows, are neither seen nor counted.
+    #[test]
+    fn what_is_missing_is_not_met() {
+        let (volume, mut settings) = slab_over_block();
+        // What is seen is a face, not the middle of what lies behind it.
+        settings.transfer.points[1].opacity = 0.99;
+        let look = |volume: &Volume| probe(volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
+        let without_slab = volume.clone().with_padding(0.5).expect("the block");
+        let [whole, block] = [&volume, &without_slab].map(|volume| look(volume).expect("something"));
+        assert!(whole.index.z > 9.0 && block.index.z < 6.5, "{block:?}");
+        // The block's side, below the slab.
+        let [below, uncovered] = [&volume, &without_slab].map(|volume| {
+            let seen = probe(volume, &settings, DVec3::new(-3.0, 0.0, -0.375), DVec3::X);
+            seen.expect("the block's side").lights[0].transmittance
+        });
+        assert!(uncovered > 2.0 * below, "{uncovered} {below}");
+        // Beside voxels that are missing, too, the value is that of voxels which are there; and the surface faces them.
+        let layers = look(&volume.with_padding(0.0).expect("the layers")).expect("the slab");
+        assert!((layers.value - 0.5).abs() < 1e-6, "{layers:?}");
+        assert!(layers.lights[0].facing.is_some_and(|facing| facing > 0.9), "{layers:?}");
     }
 
     #[test]
