@@ -90,10 +90,7 @@ impl SmallPictures {
         settings: &Settings,
     ) -> Result<Self, GpuError> {
         let mut dark = settings.clone();
-        dark.shadows.algorithm = ShadowAlgorithm::Off;
-        for light in &mut dark.lights {
-            light.intensity = 0.0;
-        }
+        (dark.shading.diffuse, dark.shading.specular) = (0.0, 0.0);
         let unlit = small_picture(renderer, dataset, &dark)?;
         Self::before(renderer, dataset, settings, unlit)
     }
@@ -107,8 +104,7 @@ impl SmallPictures {
     ) -> Result<Self, GpuError> {
         let mut shadowed = settings.clone();
         shadowed.shadows.balance = 1.0;
-        let mut unshadowed = shadowed.clone();
-        unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
+        let unshadowed = without_shadows(&shadowed);
         let with = small_picture(renderer, dataset, &shadowed)?;
         let without = small_picture(renderer, dataset, &unshadowed)?;
         Ok(Self { with, without, unlit })
@@ -137,13 +133,29 @@ impl SmallPictures {
     }
 }
 
-/// Linear light of a small picture. As a preview, it makes do with the light volumes of larger pictures.
+/// The look without shadows; by the pipelines of the look itself, if that is so of them: each takes about a second to
+/// compile on software adapters, and nothing else needs it.
+fn without_shadows(settings: &Settings) -> Settings {
+    let mut unshadowed = settings.clone();
+    // Light volumes hold hoods, too.
+    if settings.lights.iter().any(|light| light.hood.on) {
+        unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
+    } else {
+        unshadowed.shadows.strength = 0.0;
+    }
+    unshadowed
+}
+
+/// Linear light of a small picture, of which the floor is no part. As a preview, it makes do with the light volumes of
+/// larger pictures.
 fn small_picture(
     renderer: &mut Renderer,
     dataset: &Dataset,
     settings: &Settings,
 ) -> Result<Vec<[f32; 4]>, GpuError> {
     let options = RenderOptions { preview: true, ..RenderOptions::default() };
-    renderer.draw(dataset, settings, MEASURED_SIZE, &options)?;
+    let mut settings = settings.clone();
+    settings.floor.on = false;
+    renderer.draw(dataset, &settings, MEASURED_SIZE, &options)?;
     renderer.read_light()
 }

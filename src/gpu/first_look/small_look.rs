@@ -37,7 +37,6 @@ impl SmallLook {
 
     /// A look whose brightness is known.
     pub fn known(whole: &Volume, small: &Dataset, settings: Settings) -> Self {
-        let quick = quick(&settings, whole, small.volume());
-        Self { quick: Settings { floor: settings.floor.clone(), ..quick }, settings }
+        Self { quick: quick(&settings, whole, small.volume()), settings }
     }
 }

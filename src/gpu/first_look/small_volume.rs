@@ -55,8 +55,6 @@ pub(super) fn quick(settings: &Settings, whole: &Volume, small: &Volume) -> Sett
     let slab = quick.mean_slab();
     quick.sampling.slabs = Slabs::Even;
     quick.sampling.slab = preview_slab(&quick.camera, &small.scene(), MEASURED_SIZE, slab);
-    // It is no part of what is measured.
-    quick.floor.on = false;
     quick
 }
 
