@@ -1,6 +1,6 @@
 //! What the window asks of the thread that renders its pictures.
 
-use crate::data::Dataset;
+use crate::data::{Dataset, ValueRange, ValueRanges};
 use crate::gpu::{RenderOptions, Renderer};
 use crate::model::Settings;
 use crate::plan::{FrameKeys, Request};
@@ -12,6 +12,17 @@ pub(in crate::app) struct Looks {
     pub left: Settings,
     /// The look right of the divider.
     pub right: Option<Settings>,
+}
+
+impl Looks {
+    /// Two looks with densities for the values of both: the volume is uploaded for a range, and would be for each of
+    /// the two in each picture.
+    fn over_one_range(self, ranges: &ValueRanges) -> Self {
+        let Some(right) = self.right else { return self };
+        let [a, b] = [&self.left, &right].map(|look| look.shown_range(ranges));
+        let both = ValueRange::new(a.low.min(b.low), a.high.max(b.high));
+        Self { left: self.left.over(both, ranges), right: Some(right.over(both, ranges)) }
+    }
 }
 
 /// A picture for the window, or two that are compared. Requests are the same when they need the same products:
@@ -42,6 +53,7 @@ impl FrameRequest {
     /// A request for a volume.
     pub(in crate::app) fn new(generation: u64, dataset: &Dataset, looks: Looks, size: [u32; 2]) -> Self {
         let volume = dataset.volume().id();
+        let looks = looks.over_one_range(&volume.ranges);
         let keys_of = |settings: &Settings| {
             let request = Request { volume, settings: settings.clone(), size, coarse: None };
             FrameKeys::of(&request, &RenderOptions::default())
@@ -63,4 +75,30 @@ pub(in crate::app) struct Scene {
     pub renderer: Renderer,
     /// The volume.
     pub dataset: Dataset,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::synthetic::builtin;
+    use crate::model::DensityRange;
+
+    #[test]
+    fn looks_that_are_compared_share_an_upload() {
+        let dataset = Dataset::new(builtin("sphere", Some(8)).expect("a volume"));
+        let all = dataset.volume().value_range();
+        let typed = |low: f64, high: f64| DensityRange::Typed(ValueRange::new(all.at(low), all.at(high)));
+        let look = |range| {
+            let mut look = Settings { range, ..Settings::default() };
+            look.transfer.points.clear();
+            look
+        };
+        let [left, right] = [look(typed(0.0, 0.5)), look(typed(0.25, 1.0))];
+        let alone = FrameRequest::new(1, &dataset, Looks { left: left.clone(), right: None }, [8; 2]);
+        assert_eq!(alone.looks.left, left);
+        let both = FrameRequest::new(1, &dataset, Looks { left, right: Some(right) }, [8; 2]);
+        let right_keys = both.right_keys.as_ref().expect("two looks");
+        assert_eq!(both.left_keys.volume, right_keys.volume);
+        assert_eq!(both.left_keys.volume.shown, ValueRange::new(all.at(0.0), all.at(1.0)));
+    }
 }

@@ -74,6 +74,21 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// The same picture of a volume with these values, with densities for a range that holds those of the look.
+    #[must_use]
+    pub fn over(&self, range: ValueRange, ranges: &ValueRanges) -> Self {
+        let own = self.shown_range(ranges);
+        if own == range {
+            return self.clone();
+        }
+        let mut wider = Self { range: DensityRange::Typed(range), ..self.clone() };
+        // Densities change more slowly by as much as there are more values.
+        wider.shading.surface_gradient *= own.span() / range.span();
+        wider
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +126,19 @@ mod tests {
         assert_eq!(settings.shown_range(&RANGES), RANGES.robust);
         settings.lighting.linked = false;
         assert_eq!(settings.shown_range(&RANGES).high, 3500.0);
+    }
+
+    #[test]
+    fn a_wider_range_is_shown_as_it_is() {
+        let mut settings = Settings::default();
+        settings.transfer.points = vec![ControlPoint::new(0.0, [1.0; 3], 0.5)];
+        assert_eq!(settings.over(RANGES.robust, &RANGES), settings);
+        let range = ValueRange::new(-2000.0, 6000.0);
+        let wider = settings.over(range, &RANGES);
+        assert_eq!(wider.shown_range(&RANGES), range);
+        let per_value =
+            |settings: &Settings| settings.shading.surface_gradient * settings.shown_range(&RANGES).span();
+        assert!((per_value(&wider) / per_value(&settings) - 1.0).abs() < 1e-12);
     }
 
     #[test]
