@@ -267,7 +267,9 @@ impl RenderWorker {
         total_ms += start.elapsed().as_secs_f64() * 1000.0;
         log::debug!("{quality:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
         let fills: u64 = scene.renderer.light_rebuilds().iter().sum();
-        if scene.renderer.report().runs.eye > 0 {
+        let runs = &scene.renderer.report().runs;
+        // How long a volume takes to be uploaded says nothing of the next picture.
+        if runs.eye > 0 && runs.volume == 0 {
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
             self.controller.learn_picture(*quality, pixels, total_ms - light_ms);
         }
