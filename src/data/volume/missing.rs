@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
-use super::{Volume, VolumeError};
+use super::{Samples, Volume, VolumeError};
 use crate::data::ValueRanges;
 
 /// Which voxels of a grid hold nothing, and what stands in for them.
@@ -17,7 +17,7 @@ pub struct Missing {
     count: usize,
     /// For each block of 2³ voxels the mean of those that hold something; of the nearest larger block that does, where
     /// none of them is.
-    means: Vec<f32>,
+    means: Vec<f64>,
 }
 
 impl Missing {
@@ -85,7 +85,7 @@ impl Missing {
         let first = z * nx * ny;
         (0..nx * ny).filter(move |at| self.contains(first + at)).map(move |at| {
             let block = at % nx / 2 + width * (at / nx / 2 + height * (z / 2));
-            (at, f64::from(self.means[block]))
+            (at, self.means[block])
         })
     }
 }
@@ -100,11 +100,16 @@ impl Volume {
     }
 
     /// States the value of voxels that hold nothing, as a file declares it: there is no material, and it counts neither
-    /// among the values of the volume nor in means.
+    /// among the values of the volume nor in means. Files write 0.1 in decimals: of 32-bit floats
+    /// it is the nearest.
     ///
     /// # Errors
     /// When no voxel has another value.
     pub fn with_padding(mut self, padding_value: f64) -> Result<Self, VolumeError> {
+        let padding_value = match &*self.samples {
+            Samples::F32(_) => f64::from(padding_value as f32),
+            _ => padding_value,
+        };
         let (value_range, _) = self.samples.range_without(padding_value).ok_or(VolumeError::NothingFinite)?;
         // Beside the values, it decides what is shown.
         self.content_id = self.content_id.rotate_left(9) ^ padding_value.to_bits();
@@ -132,7 +137,7 @@ fn half(dims: [usize; 3]) -> [usize; 3] {
 }
 
 /// The mean of what there is in each block of 2³; NaN where there is nothing.
-fn halved(dims: [usize; 3], value: impl Fn(usize) -> Option<f64> + Sync) -> Vec<f32> {
+fn halved(dims: [usize; 3], value: impl Fn(usize) -> Option<f64> + Sync) -> Vec<f64> {
     let [width, height, depth] = half(dims);
     let [nx, ny, nz] = dims;
     let mean = |block: usize| {
@@ -149,17 +154,17 @@ fn halved(dims: [usize; 3], value: impl Fn(usize) -> Option<f64> + Sync) -> Vec<
             }
         }
         // 0 / 0 is NaN.
-        (sum / f64::from(count)) as f32
+        sum / f64::from(count)
     };
     (0..width * height * depth).into_par_iter().map(mean).collect()
 }
 
 /// Values of a grid with those of larger blocks where they are NaN.
-fn filled(mut values: Vec<f32>, dims: [usize; 3]) -> Vec<f32> {
+fn filled(mut values: Vec<f64>, dims: [usize; 3]) -> Vec<f64> {
     if values.len() == 1 || !values.iter().any(|value| value.is_nan()) {
         return values;
     }
-    let there = |voxel: usize| Some(f64::from(values[voxel])).filter(|value| !value.is_nan());
+    let there = |voxel: usize| Some(values[voxel]).filter(|value| !value.is_nan());
     let coarser = half(dims);
     let means = filled(halved(dims, there), coarser);
     values.par_iter_mut().enumerate().filter(|(_, value)| value.is_nan()).for_each(|(at, value)| {
@@ -174,7 +179,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::data::{Samples, ValueRange};
+    use crate::data::ValueRange;
 
     #[test]
     fn what_is_missing_has_the_mean_of_what_is_near() {
@@ -205,6 +210,7 @@ mod tests {
         assert!((0..16).all(|z| missing.in_slice(z).all(|(_, value)| value == 3.0)));
         assert_eq!(Missing::find(dims, |_| Some(1.0)), None);
     }
+
     #[test]
     fn cells_count_that_a_kernel_finds_something_from() {
         // The last voxels along x are there: 13 … 15 of 20, and so are cells 5 … 8.
@@ -233,6 +239,10 @@ mod tests {
         assert_eq!(padded.non_finite_voxels(), 0);
         assert_ne!(padded.content_id(), volume(None).unwrap().content_id());
         assert_eq!(volume(Some(7.0)).unwrap().missing(), None);
+        let tenths = Samples::F32(vec![0.1, 0.2, 0.3]);
+        let tenths =
+            Volume::with_spacing("t", [3, 1, 1], DVec3::ONE, tenths).unwrap().with_padding(0.1).unwrap();
+        assert_eq!(tenths.missing().map(Missing::count), Some(1));
         let all = Volume::with_spacing("t", [1; 3], DVec3::ONE, Samples::U8(vec![3])).unwrap();
         assert!(matches!(all.with_padding(3.0), Err(VolumeError::NothingFinite)));
     }

@@ -26,27 +26,16 @@ impl Volume {
         let dims = self.dims();
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
         let padding = self.padding_value();
+        let blocks = Blocks { dims, block, padding };
         let samples = match self.samples() {
-            Samples::U8(values) => {
-                Samples::U8(means(values, dims, block, padding, |mean| mean.round() as u8))
-            }
-            Samples::I8(values) => {
-                Samples::I8(means(values, dims, block, padding, |mean| mean.round() as i8))
-            }
-            Samples::U16(values) => {
-                Samples::U16(means(values, dims, block, padding, |mean| mean.round() as u16))
-            }
-            Samples::I16(values) => {
-                Samples::I16(means(values, dims, block, padding, |mean| mean.round() as i16))
-            }
-            Samples::U32(values) => {
-                Samples::U32(means(values, dims, block, padding, |mean| mean.round() as u32))
-            }
-            Samples::I32(values) => {
-                Samples::I32(means(values, dims, block, padding, |mean| mean.round() as i32))
-            }
-            Samples::F32(values) => Samples::F32(means(values, dims, block, padding, |mean| mean as f32)),
-            Samples::F64(values) => Samples::F64(means(values, dims, block, padding, |mean| mean)),
+            Samples::U8(values) => Samples::U8(blocks.whole_means(values, |mean| mean as u8)),
+            Samples::I8(values) => Samples::I8(blocks.whole_means(values, |mean| mean as i8)),
+            Samples::U16(values) => Samples::U16(blocks.whole_means(values, |mean| mean as u16)),
+            Samples::I16(values) => Samples::I16(blocks.whole_means(values, |mean| mean as i16)),
+            Samples::U32(values) => Samples::U32(blocks.whole_means(values, |mean| mean as u32)),
+            Samples::I32(values) => Samples::I32(blocks.whole_means(values, |mean| mean as i32)),
+            Samples::F32(values) => Samples::F32(blocks.means(values, |mean| mean as f32, |mean| mean)),
+            Samples::F64(values) => Samples::F64(blocks.means(values, |mean| mean, |mean| mean)),
         };
         // A block's centre is that of its voxels: voxel 0 of two voxels lies at index 0.5.
         let edges = DVec3::from(block.map(|n| n as f64));
@@ -67,40 +56,61 @@ pub fn reduced_dims(dims: [usize; 3], block: [usize; 3]) -> [usize; 3] {
     [0, 1, 2].map(|axis| dims[axis].div_ceil(block[axis]))
 }
 
-/// The mean of every block.
-fn means<T: Copy + Into<f64> + Sync, R: Send>(
-    values: &[T],
+/// Blocks of voxels to be averaged.
+struct Blocks {
     dims: [usize; 3],
     block: [usize; 3],
     padding: Option<f64>,
-    round: impl Fn(f64) -> R + Sync,
-) -> Vec<R> {
-    let [nx, ny, nz] = dims;
-    let [width, height, depth] = reduced_dims(dims, block);
-    let slice = |k: usize| {
-        let (mut sums, mut counts) = (vec![0.0; width * height], vec![0u32; width * height]);
-        for z in k * block[2]..nz.min((k + 1) * block[2]) {
-            for y in 0..ny {
-                let row = &values[(z * ny + y) * nx..][..nx];
-                let first = y / block[1] * width;
-                let blocks = sums[first..].iter_mut().zip(&mut counts[first..]);
-                for (voxels, (sum, count)) in row.chunks(block[0]).zip(blocks) {
-                    let values = voxels.iter().map(|&value| value.into());
-                    for value in values.filter(|value| value.is_finite() && Some(*value) != padding) {
-                        *sum += value;
-                        *count += 1;
+}
+
+impl Blocks {
+    /// The rounded mean of every block. One that happens to be the padding value becomes the next number: something is
+    /// there.
+    fn whole_means<T: Copy + Into<f64> + Sync, R: Send>(
+        &self,
+        values: &[T],
+        number: impl Fn(f64) -> R + Sync,
+    ) -> Vec<R> {
+        self.means(values, number, |mean| {
+            let whole = mean.round();
+            let beside = if mean < whole { whole - 1.0 } else { whole + 1.0 };
+            if Some(whole) == self.padding { beside } else { whole }
+        })
+    }
+
+    /// The mean of every block, rounded; of nothing finite the padding value, or NaN where there is none.
+    fn means<T: Copy + Into<f64> + Sync, R: Send>(
+        &self,
+        values: &[T],
+        number: impl Fn(f64) -> R + Sync,
+        round: impl Fn(f64) -> f64 + Sync,
+    ) -> Vec<R> {
+        let &Self { dims, block, padding } = self;
+        let [nx, ny, nz] = dims;
+        let [width, height, depth] = reduced_dims(dims, block);
+        let slice = |k: usize| {
+            let (mut sums, mut counts) = (vec![0.0; width * height], vec![0u32; width * height]);
+            for z in k * block[2]..nz.min((k + 1) * block[2]) {
+                for y in 0..ny {
+                    let row = &values[(z * ny + y) * nx..][..nx];
+                    let first = y / block[1] * width;
+                    let blocks = sums[first..].iter_mut().zip(&mut counts[first..]);
+                    for (voxels, (sum, count)) in row.chunks(block[0]).zip(blocks) {
+                        let values = voxels.iter().map(|&value| value.into());
+                        for value in values.filter(|value| value.is_finite() && Some(*value) != padding) {
+                            *sum += value;
+                            *count += 1;
+                        }
                     }
                 }
             }
-        }
-        // 0 / 0: of nothing finite, nothing finite, unless there is a value that says so.
-        let mean = |(sum, count): (f64, u32)| match padding {
-            Some(padding) if count == 0 => round(padding),
-            _ => round(sum / f64::from(count)),
+            let mean = |(sum, count): (f64, u32)| {
+                number(if count == 0 { padding.unwrap_or(f64::NAN) } else { round(sum / f64::from(count)) })
+            };
+            sums.into_iter().zip(counts).map(mean).collect::<Vec<_>>()
         };
-        sums.into_iter().zip(counts).map(mean).collect::<Vec<_>>()
-    };
-    (0..depth).into_par_iter().flat_map_iter(slice).collect()
+        (0..depth).into_par_iter().flat_map_iter(slice).collect()
+    }
 }
 
 #[cfg(test)]
@@ -124,6 +134,18 @@ mod tests {
         let quarter = half.reduced([2, 1, 1]).unwrap();
         assert_eq!((quarter.dims(), quarter.file_dims()), ([1, 2, 1], [4, 3, 2]));
         assert_eq!(volume.clone().reduced([1; 3]).unwrap().content_id(), volume.content_id());
+    }
+
+    #[test]
+    fn means_are_no_padding() {
+        let volume = |values: Vec<i16>| {
+            Volume::with_spacing("t", [values.len(), 1, 1], DVec3::ONE, Samples::I16(values)).unwrap()
+        };
+        let padded = volume(vec![-6, -4, -8, -3, -5, -5, -5, 7]).with_padding(-5.0).unwrap();
+        let half = padded.reduced([2, 1, 1]).unwrap();
+        // The first mean is −5, and −5.5 rounds to −6; the third block is missing, and so is half of the last.
+        assert_eq!([0, 1, 2, 3].map(|x| half.value(x, 0, 0)), [-4.0, -6.0, -5.0, 7.0]);
+        assert_eq!(half.missing().map(|missing| missing.count()), Some(1));
     }
 
     #[test]
