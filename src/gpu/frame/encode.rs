@@ -31,6 +31,13 @@ impl Job<'_> {
                 volume.upload(context, slices.clone());
                 Ok(())
             }
+            Step::Presence(slices) => {
+                self.report.runs.volume += 1;
+                if let Some(presence) = &volume.presence {
+                    presence.upload(context, &volume.volume, slices.clone());
+                }
+                Ok(())
+            }
             Step::Pyramid(level, bricks) => {
                 self.report.runs.volume += 1;
                 prefilter::fill(context, &self.tools.shaders, volume, *level, bricks, encoder)

@@ -3,7 +3,7 @@
 use crate::data::load::memory_budget_bytes;
 use crate::data::{Volume, reduced_dims};
 use crate::gpu::light::volume::attenuation_texture;
-use crate::gpu::volume;
+use crate::gpu::volume::{self, presence::Presence};
 use crate::gpu::{Context, GpuError};
 
 /// Volumes of no more voxels are not tried out: 256³ take 100 MiB with one light.
@@ -65,14 +65,17 @@ fn larger(block: [usize; 3], dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 
 
 /// Makes the textures of such a volume and of one light, and gives them back.
 fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuError> {
-    // Density, pyramid and light: 44/7 bytes per voxel.
-    let bytes = dims.iter().map(|&n| n as u64).product::<u64>() * 44 / 7;
+    // Density, pyramid and light: 44/7 bytes per voxel; and 8/7 for what is there.
+    let per_voxel = if like.missing().is_some() { 52 } else { 44 };
+    let bytes = dims.iter().map(|&n| n as u64).product::<u64>() * per_voxel / 7;
     // A software driver takes memory when it is written to, and the system then ends the program.
     if context.is_software() && bytes > memory_budget_bytes() {
         return Err(GpuError::OutOfMemory { what: "the volume".to_owned(), mebibytes: bytes >> 20 });
     }
-    let made = volume::textures(context, like, dims)
-        .and_then(|textures| Ok((textures, attenuation_texture(context, dims, context.storage_format)?)));
+    let made = volume::textures(context, like, dims).and_then(|textures| {
+        let presence = Presence::new(context, like, dims)?;
+        Ok((textures, presence, attenuation_texture(context, dims, context.storage_format)?))
+    });
     let held = made.map(drop);
     // What was dropped, of a failed attempt too, is given back when the device is looked after.
     let waited = context.wait();

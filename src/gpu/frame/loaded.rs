@@ -8,6 +8,7 @@ use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::scatter::voxels::ScatterVoxels;
 use crate::gpu::volume::GpuVolume;
+use crate::gpu::volume::presence::Presence;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{Context, GpuError};
 use crate::model::{Classification, Settings, SheetOrder};
@@ -31,7 +32,8 @@ pub(crate) struct Loaded {
 }
 
 impl Loaded {
-    /// Makes room for a volume, and tables for a first look; nothing is uploaded yet.
+    /// Makes room for a volume, and tables for a first look; nothing is uploaded yet, but for what is known of which of
+    /// its voxels are there.
     ///
     /// # Errors
     /// When the adapter cannot hold them.
@@ -40,8 +42,9 @@ impl Loaded {
         dataset: &Dataset,
         settings: &Settings,
         tables_key: &TablesKey,
+        presence: Option<Presence>,
     ) -> Result<Self, GpuError> {
-        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks())?;
+        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), presence)?;
         let (tables, _) = Tables::new(context, &volume, settings, tables_key, None)?;
         let tables = Cached::complete(tables_key.clone(), tables);
         let dataset = dataset.clone();

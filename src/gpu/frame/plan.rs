@@ -17,6 +17,7 @@ use crate::gpu::output::target::Shape;
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::scatter::eye::SLABS_PER_STEP;
 use crate::gpu::scatter::voxels::Scattering;
+use crate::gpu::volume::presence::Presence;
 use crate::gpu::volume::{GpuVolume, prefilter};
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::{Depth, SheetOrder};
@@ -60,15 +61,23 @@ impl Renderer {
                 }
                 self.tools.pool.clear();
                 let start = Instant::now();
-                // What was made for a picture that was given up serves the next.
-                let known = other.map(|known| known.value.dataset).filter(|known| {
-                    let [known, dataset] = [known, dataset].map(Dataset::volume);
-                    known.content_id() == dataset.content_id()
-                        && known.samples().voxel_type() == dataset.samples().voxel_type()
-                        && known.shown_range() == keys.volume.shown
+                // What was made for a picture that was given up, or for another range of values, serves the next.
+                let known = other.filter(|known| {
+                    known.key().content_id == keys.volume.content_id && known.value.has_type_of(dataset)
                 });
+                let (known, presence) = known.map_or((None, None), |known| {
+                    let presence = if known.is_complete() { known.value.volume.presence } else { None };
+                    (Some(known.value.dataset), presence)
+                });
+                let known = known.filter(|known| known.volume().shown_range() == keys.volume.shown);
                 let dataset = known.unwrap_or_else(|| dataset.showing(keys.volume.shown));
-                let fresh = Loaded::new(&self.tools.context, &dataset, &request.settings, &keys.tables)?;
+                let has_presence = presence.is_some();
+                let (context, settings) = (&self.tools.context, &request.settings);
+                let fresh = Loaded::new(context, &dataset, settings, &keys.tables, presence)?;
+                if !has_presence {
+                    let slices = fresh.volume.presence.iter().flat_map(Presence::steps);
+                    steps.extend(slices.map(Step::Presence));
+                }
                 steps.extend(upload_steps(&fresh.volume));
                 self.report.runs.tables = 2;
                 self.report.bricks_ms = start.elapsed().as_secs_f64() * 1000.0;

@@ -56,6 +56,8 @@ pub(super) enum Product {
 pub(super) enum Step {
     /// Slices of the volume.
     Upload(Range<usize>),
+    /// Slices of the coarsest level of what is there.
+    Presence(Range<usize>),
     /// Level, and which of its bricks.
     Pyramid(u32, Range<usize>),
     /// Level, and which of its bricks.
@@ -81,7 +83,7 @@ impl Step {
     /// What it belongs to; `None` of what is no work.
     pub(super) fn stage(&self) -> Option<Stage> {
         Some(match self {
-            Self::Upload(_) => Stage::Upload,
+            Self::Upload(_) | Self::Presence(_) => Stage::Upload,
             Self::Pyramid(..) | Self::Gradients(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) | Self::Combine(_) => Stage::LightBackproject,

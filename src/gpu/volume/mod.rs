@@ -181,7 +181,7 @@ pub(crate) struct GpuVolume {
     pub pyramid: wgpu::Texture,
     pub pyramid_views: LevelViews,
     /// What is there, where voxels are missing.
-    presence: Option<Presence>,
+    pub presence: Option<Presence>,
     /// The bricks of its levels that hold anything.
     pub filled_levels: Vec<Vec<u32>>,
     /// Gradients of the pyramid, while memory allows.
@@ -195,7 +195,7 @@ pub(crate) struct GpuVolume {
 }
 
 impl GpuVolume {
-    /// Makes the textures; nothing is uploaded yet.
+    /// Makes the textures; nothing is uploaded yet, but for what is known of which voxels are there.
     ///
     /// # Errors
     /// When the adapter cannot hold them.
@@ -203,9 +203,14 @@ impl GpuVolume {
         context: &Context,
         volume: &Arc<Volume>,
         bricks: &Arc<Bricks>,
+        presence: Option<Presence>,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        let Textures { density, pyramid, presence } = textures(context, volume, dims)?;
+        let Textures { density, pyramid } = textures(context, volume, dims)?;
+        let presence = match presence {
+            None => Presence::new(context, volume, dims)?,
+            known => known,
+        };
         let padded = padded(dims);
         let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
         let grid = Grid {
@@ -289,9 +294,6 @@ impl GpuVolume {
             },
             wgpu::Extent3d { width, height, depth_or_array_layers: (end - first) as u32 },
         );
-        if let Some(presence) = self.presence.as_ref().filter(|_| slices.end == nz) {
-            presence.upload(context, &self.volume);
-        }
     }
 
     /// Where what is shown ends with the data, if nothing is known of what is shown.
@@ -312,7 +314,7 @@ impl GpuVolume {
         };
         // The coarser levels of the pyramid add a seventh.
         let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
-        let presence = self.presence.as_ref().map_or(0, |presence| texels(&presence.texture) * 8 / 7);
+        let presence = self.presence.as_ref().map_or(0, Presence::bytes);
         2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + presence + gradients
     }
 }

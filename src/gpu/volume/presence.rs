@@ -1,6 +1,8 @@
 //! Where voxels are missing: the share of kernels that lies on those that are there, in a texture beside the pyramid and
 //! like it, level by level. Made here and uploaded, since few volumes have any.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::LevelViews;
@@ -8,6 +10,12 @@ use super::shapes::{PYRAMID_PADDING, padded, texture_3d};
 use crate::data::{Missing, Volume};
 use crate::gpu::{Context, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;
+
+/// The coarsest level.
+const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
+
+/// Texels of level 0 per upload step: some 20 ms, and 16 MiB while it is made.
+const STEP_TEXELS: usize = 1 << 20;
 
 /// The texture, for a volume in which voxels are missing.
 #[derive(Debug)]
@@ -30,7 +38,7 @@ impl Presence {
             return Ok(None);
         }
         let texture = context.texture(&wgpu::TextureDescriptor {
-            mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
+            mip_level_count: MAX_LEVEL + 1,
             ..texture_3d(
                 "Volume::presence",
                 padded(dims),
@@ -42,92 +50,153 @@ impl Presence {
         Ok(Some(Self { texture, views }))
     }
 
-    /// Uploads all levels.
-    pub(crate) fn upload(&self, context: &Context, volume: &Volume) {
+    /// The slices of its coarsest level, cut into short steps.
+    pub(crate) fn steps(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let size = self.texture.size();
+        let slices = (size.depth_or_array_layers >> MAX_LEVEL) as usize;
+        let texels = (size.width as usize * size.height as usize) << MAX_LEVEL;
+        let each = (STEP_TEXELS / texels).max(1);
+        (0..slices).step_by(each).map(move |first| first..slices.min(first + each))
+    }
+
+    /// Uploads some slices of the coarsest level, and of all levels what lies there.
+    pub(crate) fn upload(&self, context: &Context, volume: &Volume, slices: Range<usize>) {
         let Some(missing) = volume.missing() else { return };
-        let mut level = prefiltered(missing, volume.dims());
-        for mip_level in 0..self.texture.mip_level_count() {
-            if mip_level > 0 {
-                level = level.halved();
-            }
-            let [width, height, depth] = level.dims.map(|n| n as u32);
+        for (mip_level, slab) in (0..).zip(levels_of(missing, volume.dims(), slices.clone())) {
+            let kept = slices.start << (MAX_LEVEL - mip_level)..slices.end << (MAX_LEVEL - mip_level);
+            let [width, height, _] = slab.dims.map(|n| n as u32);
             context.queue.write_texture(
                 wgpu::TexelCopyTextureInfo {
                     texture: &self.texture,
                     mip_level,
-                    origin: wgpu::Origin3d::ZERO,
+                    origin: wgpu::Origin3d { x: 0, y: 0, z: kept.start as u32 },
                     aspect: wgpu::TextureAspect::All,
                 },
-                &level.bytes(),
+                &slab.bytes(&kept),
                 wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(width),
                     rows_per_image: Some(height),
                 },
-                wgpu::Extent3d { width, height, depth_or_array_layers: depth },
+                wgpu::Extent3d { width, height, depth_or_array_layers: kept.len() as u32 },
             );
         }
     }
+
+    /// Bytes of its texture.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.texture.size();
+        let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
+        // The coarser levels add a seventh.
+        texels * 8 / 7
+    }
 }
 
-/// Shares at the texels of a level.
-struct Level {
+/// Shares at the texels of some slices of a level.
+struct Slab {
+    /// Texels along x and y, and slices.
     dims: [usize; 3],
+    /// The first slice, among those of the whole level …
+    first: usize,
+    /// … of which there are so many.
+    depth: usize,
     shares: Vec<f32>,
 }
 
-/// Level 0: 1 where a voxel is there, else 0, blurred as densities are (`shaders/volume/prefilter.wgsl`). Around the grid
-/// is nothing.
-fn prefiltered(missing: &Missing, dims: [usize; 3]) -> Level {
-    let [nx, ny, nz] = padded(dims);
+/// Of every level, the finest first, at least the slices that lie in those of the coarsest.
+fn levels_of(missing: &Missing, dims: [usize; 3], coarsest: Range<usize>) -> Vec<Slab> {
+    let depth = padded(dims)[2];
+    // Of each level those that the next is made from: texel i of 2i − 1 … 2i + 2.
+    let mut slices = vec![coarsest];
+    for level in (0..MAX_LEVEL).rev() {
+        let Range { start, end } = slices[slices.len() - 1].clone();
+        slices.push((2 * start).saturating_sub(1)..(2 * end + 1).min(depth >> level));
+    }
+    let mut slabs: Vec<Slab> = Vec::with_capacity(slices.len());
+    for kept in slices.into_iter().rev() {
+        let slab = match slabs.last() {
+            None => prefiltered(missing, dims, kept),
+            Some(finer) => finer.halved(kept),
+        };
+        slabs.push(slab);
+    }
+    slabs
+}
+
+/// Slices of level 0: 1 where a voxel is there, else 0, blurred as densities are (`shaders/volume/prefilter.wgsl`). Around
+/// the grid is nothing.
+fn prefiltered(missing: &Missing, dims: [usize; 3], slices: Range<usize>) -> Slab {
+    let [nx, ny, depth] = padded(dims);
     let voxel = |texel: usize, n: usize| texel.checked_sub(PYRAMID_PADDING).filter(|&voxel| voxel < n);
+    // A blurred slice is made from its neighbours, too.
+    let first = slices.start.saturating_sub(1);
+    let count = (slices.end + 1).min(depth) - first;
     let share = |at: usize| {
-        let place = [at % nx, at / nx % ny, at / (nx * ny)];
+        let place = [at % nx, at / nx % ny, first + at / (nx * ny)];
         let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(|axis| voxel(place[axis], dims[axis])) else {
             return 0.0;
         };
         if missing.contains(x + dims[0] * (y + dims[1] * z)) { 0.0 } else { 1.0 }
     };
-    let start = Level { dims: [nx, ny, nz], shares: (0..nx * ny * nz).into_par_iter().map(share).collect() };
-    (0..3).fold(start, |level, axis| {
-        level.resampled(axis, 1, |at| {
+    let shares = (0..nx * ny * count).into_par_iter().map(share).collect();
+    let start = Slab { dims: [nx, ny, count], first, depth, shares };
+    (0..3).fold(start, |slab, axis| {
+        let kept = if axis == 2 { slices.clone() } else { 0..slab.dims[axis] };
+        slab.resampled(axis, kept, 1, |at| {
             [(at - 1, 1.0 / 12.0), (at, 5.0 / 6.0), (at + 1, 1.0 / 12.0), (at + 1, 0.0)]
         })
     })
 }
 
-impl Level {
-    /// The next level (`shaders/volume/downsample.wgsl`).
-    fn halved(&self) -> Self {
-        let halve = |level: &Self, axis: usize| {
-            level.resampled(axis, 2, |at| {
+impl Slab {
+    /// Slices of the next level (`shaders/volume/downsample.wgsl`).
+    fn halved(&self, slices: Range<usize>) -> Self {
+        let halve = |slab: &Self, axis: usize, kept: Range<usize>| {
+            slab.resampled(axis, kept, 2, |at| {
                 let taps = [2 * at - 1, 2 * at, 2 * at + 1, 2 * at + 2];
                 let weights = [1.0 / 16.0, 7.0 / 16.0, 7.0 / 16.0, 1.0 / 16.0];
                 std::array::from_fn(|tap| (taps[tap], weights[tap]))
             })
         };
-        halve(&halve(&halve(self, 0), 1), 2)
+        let [nx, ny, _] = self.dims;
+        halve(&halve(&halve(self, 2, slices), 0, 0..nx / 2), 1, 0..ny / 2)
     }
 
-    /// Sums of four texels along an axis, of which there are `step` for one of the result: `taps` are their places, which
-    /// may lie beyond the outermost and mean it then, with their weights.
-    fn resampled(&self, axis: usize, step: usize, taps: impl Fn(i64) -> [(i64, f32); 4] + Sync) -> Self {
+    /// Sums of four texels along an axis, of which there are `step` for one of the result, which has places `kept`: `taps`
+    /// are their places, which may lie beyond the outermost of the level and mean it then, with their weights.
+    fn resampled(
+        &self,
+        axis: usize,
+        kept: Range<usize>,
+        step: usize,
+        taps: impl Fn(i64) -> [(i64, f32); 4] + Sync,
+    ) -> Self {
         let stride: usize = self.dims[..axis].iter().product();
-        let last = self.dims[axis] as i64 - 1;
-        let mut dims = self.dims;
-        dims[axis] = (dims[axis] / step).max(1);
+        let (mut dims, mut first, mut depth) = (self.dims, self.first, self.depth);
+        dims[axis] = kept.len();
+        let (mut start, mut count) = (0, self.dims[axis]);
+        if axis == 2 {
+            (start, count) = (first, depth);
+            (first, depth) = (kept.start, depth / step);
+        }
         let sum = |at: usize| {
-            let (below, along) = (at % stride, at / stride % dims[axis]);
+            let (below, along) = (at % stride, kept.start + at / stride % dims[axis]);
             let row = at / (stride * dims[axis]) * (stride * self.dims[axis]) + below;
-            let value = |place: i64| self.shares[row + place.clamp(0, last) as usize * stride];
+            let value = |place: i64| {
+                let place = place.clamp(0, count as i64 - 1) as usize - start;
+                self.shares[row + place * stride]
+            };
             taps(along as i64).iter().map(|&(place, weight)| weight * value(place)).sum()
         };
         let shares = (0..dims.iter().product::<usize>()).into_par_iter().map(sum).collect();
-        Self { dims, shares }
+        Self { dims, first, depth, shares }
     }
 
-    fn bytes(&self) -> Vec<u8> {
-        self.shares.par_iter().map(|share| (share * 255.0).round() as u8).collect()
+    /// Some of its slices in eight bits.
+    fn bytes(&self, slices: &Range<usize>) -> Vec<u8> {
+        let slice = self.dims[0] * self.dims[1];
+        let kept = (slices.start - self.first) * slice..(slices.end - self.first) * slice;
+        self.shares[kept].par_iter().map(|share| (share * 255.0).round() as u8).collect()
     }
 }
 
@@ -138,19 +207,40 @@ mod tests {
     use super::*;
     use crate::data::Samples;
 
+    fn sieve(dims: [usize; 3]) -> (Volume, f32) {
+        let values: Vec<f32> =
+            (0..dims.iter().product::<usize>()).map(|at| if at % 5 == 0 { f32::NAN } else { 1.0 }).collect();
+        let there = values.iter().filter(|value| value.is_finite()).count() as f32;
+        (Volume::with_spacing("t", dims, DVec3::ONE, Samples::F32(values)).unwrap(), there)
+    }
+
     #[test]
     fn levels_keep_the_sum_of_what_is_there() {
         let dims = [13, 9, 7];
-        let values: Vec<f32> = (0..13 * 9 * 7).map(|at| if at % 5 == 0 { f32::NAN } else { 1.0 }).collect();
-        let there = values.iter().filter(|value| value.is_finite()).count() as f32;
-        let volume = Volume::with_spacing("t", dims, DVec3::ONE, Samples::F32(values)).unwrap();
-        let mut level = prefiltered(volume.missing().unwrap(), dims);
-        assert_eq!(level.dims, [24, 24, 16]);
-        for halvings in 0..=MAX_STRETCH_LEVEL as u32 {
-            let sum = level.shares.iter().sum::<f32>() * 8f32.powi(halvings as i32);
+        let (volume, there) = sieve(dims);
+        let slabs = levels_of(volume.missing().unwrap(), dims, 0..16 >> MAX_LEVEL);
+        assert_eq!(slabs.len(), MAX_LEVEL as usize + 1);
+        assert_eq!(slabs[0].dims, [24, 24, 16]);
+        for (level, slab) in (0..).zip(&slabs) {
+            let sum = slab.shares.iter().sum::<f32>() * 8f32.powi(level);
             // Coarse texels at the outermost edge count what spreads beyond twice.
-            assert!((sum / there - 1.0).abs() < 0.02, "level {halvings}: {sum} of {there}");
-            level = level.halved();
+            assert!((sum / there - 1.0).abs() < 0.02, "level {level}: {sum} of {there}");
+        }
+    }
+
+    #[test]
+    fn slab_by_slab_it_is_the_same() {
+        let dims = [7, 9, 21];
+        let (volume, _) = sieve(dims);
+        let missing = volume.missing().unwrap();
+        let coarsest = padded(dims)[2] >> MAX_LEVEL;
+        let at_once = levels_of(missing, dims, 0..coarsest);
+        for first in 0..coarsest {
+            for ((level, whole), slab) in (0..).zip(&at_once).zip(levels_of(missing, dims, first..first + 1))
+            {
+                let kept = first << (MAX_LEVEL - level)..(first + 1) << (MAX_LEVEL - level);
+                assert_eq!(slab.bytes(&kept), whole.bytes(&kept), "slice {first}, level {level}");
+            }
         }
     }
 }

@@ -3,7 +3,6 @@
 #[cfg(feature = "testing")]
 use half::f16;
 
-use super::presence::Presence;
 use super::shapes::{padded, texture_3d};
 use crate::data::{BRICK_EDGE, Volume, VoxelType};
 use crate::gpu::{Context, GpuError};
@@ -17,7 +16,6 @@ const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
 pub(crate) struct Textures {
     pub density: wgpu::Texture,
     pub pyramid: wgpu::Texture,
-    pub presence: Option<Presence>,
 }
 
 /// The textures of a volume, if it had these dimensions.
@@ -49,7 +47,7 @@ pub(crate) fn textures(context: &Context, volume: &Volume, dims: [usize; 3]) -> 
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         )
     })?;
-    Ok(Textures { density, pyramid, presence: Presence::new(context, volume, dims)? })
+    Ok(Textures { density, pyramid })
 }
 
 /// A density in 16 normalised bits.
