@@ -63,8 +63,9 @@ fn material_of(pixel: vec2i, k: i32) -> vec4f {
         f32(atomicLoad(&sheets[channel_index(at, 3u)])),
         f32(atomicLoad(&sheets[channel_index(at, 4u)])),
     ) / UNIT;
-    // Others stand in for voxels that are missing.
-    let share = select(1.0, there, MISSING);
+    // Others stand in for voxels that are missing, but not beyond the grid.
+    let in_grid = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), k);
+    let share = select(1.0, there / max(in_grid, LEAST_PRESENCE), MISSING);
     return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit * share);
 }
 

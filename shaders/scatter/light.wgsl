@@ -34,8 +34,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             // The mean of the voxels that are there, as far as they are.
             let in_grid = slab_in_grid(march.frame, ray, f32(scatter.k));
             let there = slab_presence(march.frame, ray, f32(scatter.k));
-            let classified = classified_extinction(sum / max(in_grid, LEAST_PRESENCE)) * there;
-            let splatted = sum * scatter.extinction_unit * select(1.0, there, MISSING);
+            let mean = sum / max(in_grid, LEAST_PRESENCE);
+            let classified = classified_extinction(mean) * there;
+            // Others stand in for voxels that are missing, but not beyond the grid.
+            let splatted = select(sum, mean * there, MISSING) * scatter.extinction_unit;
             let extinction = select(classified, splatted, SPLAT == SPLAT_EXTINCTION);
             let place = ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k));
             let share = share_that_shades(march.shading_cut, place);

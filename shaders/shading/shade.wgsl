@@ -96,9 +96,11 @@ struct Sampled {
 // ends there, in which opacity rises, as density does or against it.
 fn face_slope(p: vec3f, level: f32, density: f32) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && side_of(density) < 0.0);
-    var faces = face_gradient(eye.faces, p, level);
 #if MISSING
-    faces += presence_slope(p, level);
+    // Beyond the grid, too, nothing is there.
+    let faces = face_gradient(eye.seen, p, level) + presence_slope(p, level);
+#else
+    let faces = face_gradient(eye.faces, p, level);
 #endif
     return turned * gradient_to_scene(eye.space, faces);
 }

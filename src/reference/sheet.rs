@@ -67,11 +67,7 @@ impl<'r> Stack<'r> {
                 let sums = footprint::splat(&reference.field, frame, profile, points, shift, k);
                 let mean = |(pixel, sum): (usize, f64)| {
                     let [i, j] = self.place_of(pixel as u32);
-                    let at = [i, j, f64::from(k)];
-                    let in_grid = reference.slab_mean_of(frame, *quadrature, at, |point, level| {
-                        reference.presence_in_grid(profile, point, level)
-                    });
-                    sum / in_grid.max(LEAST_PRESENCE)
+                    sum / self.presence_in_grid([i, j, f64::from(k)])
                 };
                 sums.into_iter().enumerate().map(mean).collect()
             }
@@ -104,9 +100,12 @@ impl<'r> Stack<'r> {
             });
             let material = |at: usize| {
                 let [i, j] = self.place_of(at as u32);
-                // Others stand in for voxels that are missing.
-                let there =
-                    if reference.presence.is_some() { self.presence_at([i, j, f64::from(k)]) } else { 1.0 };
+                let place = [i, j, f64::from(k)];
+                // Others stand in for voxels that are missing, but not beyond the grid.
+                let there = match &reference.presence {
+                    Some(_) => self.presence_at(place) / self.presence_in_grid(place),
+                    None => 1.0,
+                };
                 gather::straight(std::array::from_fn(|channel| channels[channel][at] * there))
             };
             return (0..self.pixel_count()).map(material).collect();
@@ -181,6 +180,14 @@ impl<'r> Stack<'r> {
         let Self { reference, frame, profile, quadrature, .. } = self;
         reference
             .slab_mean_of(frame, *quadrature, at, |point, level| reference.presence(profile, point, level))
+    }
+
+    /// The share of the kernels of slab `k` that lies within the grid, missing voxels or not; never less than
+    /// [`LEAST_PRESENCE`].
+    fn presence_in_grid(&self, at: [f64; 3]) -> f64 {
+        let Self { reference, frame, profile, quadrature, .. } = self;
+        let share = |point, level| reference.presence_in_grid(profile, point, level);
+        reference.slab_mean_of(frame, *quadrature, at, share).max(LEAST_PRESENCE)
     }
 
     /// Whether cuts leave anything of slab `k` on a pixel's ray.

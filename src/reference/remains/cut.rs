@@ -26,8 +26,11 @@ impl Reference<'_> {
         self.remaining(&[CutEffect::Removed, CutEffect::Shadowless])
     }
 
-    /// Where what the eye sees ends: at cuts, and at the grid's own faces.
+    /// Where what the eye sees ends: at cuts, and at the grid's own faces, unless presence says so already.
     pub(in crate::reference) fn faces(&self) -> Remaining {
+        if self.presence.is_some() {
+            return self.seen();
+        }
         let crop = &self.settings.cuts.crop;
         let is_cropped = crop.on && crop.effect != CutEffect::Shadowless;
         let mut bounds = self.seen().bounds;

@@ -1,5 +1,6 @@
 //! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
 
+use chiaroscuro::data::Volume;
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{
     Camera, ControlPoint, Engine, Gradients, Kernel, LightKind, Settings, ShadowAlgorithm, Slabs,
@@ -7,6 +8,7 @@ use chiaroscuro::model::{
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
+use super::presence::{two_lobes, waves};
 use crate::common::{Dataset, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
@@ -41,7 +43,12 @@ fn disagree_with(engine: Engine, from: &str, to: &str, fault: Fault) -> bool {
 
 /// The same with a look of its own, of a creature of n³ voxels.
 fn disagree_in(settings: &Settings, n: usize, from: &str, to: &str, fault: Fault) -> bool {
-    let loaded = Dataset::new(scenes::creature(n, DVec3::ONE));
+    disagree_about(scenes::creature(n, DVec3::ONE), settings, from, to, fault)
+}
+
+/// The same of any volume.
+fn disagree_about(volume: Volume, settings: &Settings, from: &str, to: &str, fault: Fault) -> bool {
+    let loaded = Dataset::new(volume);
     let context = context();
     let shaders = ShaderLibrary::with_mutation(&context, from, to);
     let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
@@ -109,6 +116,30 @@ fn gpu_weights_not_divided() {
 #[test]
 fn reference_weights_not_divided() {
     assert!(disagree_in(&paper_look(), 40, "\u{0}", "", Fault::NoDivision), "the comparison does not notice");
+}
+
+/// Material that goes on behind the faces of the grid, and through missing voxels; normals that do not look there.
+#[test]
+fn ends_of_data_that_are_not_seen() {
+    let presence = "return presence_at(ray.origin + ray.direction * depth, kernel_level(frame, depth));";
+    let faces = "let faces = face_gradient(eye.faces, p, level);";
+    let holes = "+ presence_slope(p, level);";
+    let look = two_lobes();
+    for (has_missing, from, to) in [
+        (false, presence, "return 1.0;"),
+        (true, presence, "return 1.0;"),
+        (false, faces, "let faces = vec3f(0.0);"),
+        (true, holes, ";"),
+    ] {
+        let volume = waves(20, DVec3::ONE, has_missing);
+        assert!(
+            disagree_about(volume, &look, from, to, Fault::None),
+            "the comparison does not notice {to:?} for {from:?}"
+        );
+    }
+    for has_missing in [false, true] {
+        assert!(!disagree_about(waves(20, DVec3::ONE, has_missing), &look, "\u{0}", "", Fault::None));
+    }
 }
 
 /// Opacity that rises with density and falls again, so that surfaces have both sides; a light far away, whose sheets

@@ -12,7 +12,7 @@ use crate::scenes;
 
 /// Waves that reach all faces, from −1 to 1, as eight bits; or numbers of which those in a ball, and some here and there,
 /// are missing.
-fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
+pub(super) fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
     let value = |at: usize| {
         let p = DVec3::new((at % n) as f64, (at / n % n) as f64, (at / n / n) as f64) / n as f64;
         (9.0 * p.x + 3.0 * p.y).sin() * (7.0 * p.y - 2.0 * p.z).cos() * (5.0 * p.z + 4.0 * p.x * p.y).cos()
@@ -32,7 +32,7 @@ fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
 }
 
 /// Both lobes of a signed field are shown, and nothing between them: the lowest value is opaque.
-fn two_lobes() -> Settings {
+pub(super) fn two_lobes() -> Settings {
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
     let transfer = TransferFunction {
         points: vec![
@@ -130,4 +130,7 @@ fn scattered_waves_have_holes() {
     settings.camera = Camera { distance: 9.0, ..settings.camera };
     settings.lights[0].lock = LightLock::Scene;
     check_volume("scattered holes, stretched", waves(18, DVec3::ONE, true), &settings, None);
+    settings = scattered();
+    settings.sampling.classification = Classification::Pre;
+    check_volume("scattered holes, classified", waves(18, DVec3::ONE, true), &settings, None);
 }

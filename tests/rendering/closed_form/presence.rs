@@ -41,10 +41,10 @@ fn falling(per_voxel: f64) -> TransferFunction {
     }
 }
 
-/// A volume of one value; a voxel in the middle has another, so that the values span a range.
+/// A volume of the lowest or the highest value; a voxel in a corner has the other, so that the values span a range.
 fn constant(value: u8) -> Dataset {
     let mut values = vec![value; N * N * N];
-    values[0] = 255;
+    values[0] = 255 - value;
     Dataset::new(Volume::with_spacing("constant", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
 }
 
