@@ -52,6 +52,10 @@ override SHADOWED: u32 = 1u;
 // Nobody sees less than this of the floor: an eighth of an 8-bit step.
 const LEAST = 0.0005;
 
+fn ray_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+    return slab_density(frame, ray, k);
+}
+
 fn light_extinction(density: f32) -> f32 {
     return classified_extinction(density);
 }

@@ -23,6 +23,18 @@
 override SHEET_GRADIENTS: bool = false;
 // BY_NEED: slabs are as thin as they need to be (slabs_by_need.wgsl).
 
+// Densities of the volume as rays to lights find them.
+fn ray_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+#if PRECLASSIFY
+    let depth = depth_of(frame, k);
+    let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
+    return 0.5 * (lighting_density(ray.origin + ray.direction * (depth - offset), 0.0)
+        + lighting_density(ray.origin + ray.direction * (depth + offset), 0.0));
+#else
+    return slab_density(frame, ray, k);
+#endif
+}
+
 fn light_extinction(density: f32) -> f32 {
     let at = table_entry(density);
     return mix(lighting_table.entries[at.low].a, lighting_table.entries[at.low + 1u].a, at.fraction);
@@ -78,12 +90,8 @@ fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
 
 // The light from material where the gradient is `volume_slope` in scene space.
 fn lit_material(p: vec3f, level: f32, volume_slope: vec3f, found: SlabSample) -> vec3f {
-    var density = found.density;
-    if (PRECLASSIFY && ONE_SIDED) {
-        density = pyramid(p, level);
-    }
-    let slope = volume_slope + face_slope(p, level, density);
-    return shade(Sampled(p, slope, density, level), found.material.rgb);
+    let slope = volume_slope + face_slope(p, level, found.density);
+    return shade(Sampled(p, slope, found.density, level), found.material.rgb);
 }
 
 // The next slab, from `first` on, in a cell that may show something; or one beyond the last.

@@ -29,6 +29,10 @@ var<private> raycast: Raycast;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
+fn ray_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+    return slab_density(frame, ray, k);
+}
+
 fn light_extinction(density: f32) -> f32 {
     return classified_extinction(density);
 }

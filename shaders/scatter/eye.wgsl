@@ -44,9 +44,15 @@ fn sheet_presence(ray: Ray, k: i32) -> f32 {
 fn sheet(pixel: vec2i, k: i32) -> f32 {
     let last = i32(scatter.sheet_count) - 1;
     let known = clamp(k, 0, last);
-    let sum = f32(atomicLoad(&sheets[sheet_index(vec2u(pixel), u32(known))])) / UNIT;
+    let at = sheet_index(vec2u(pixel), u32(known));
+#if PRECLASSIFY
+    // Of voxels that were classified the extinction.
+    let found = f32(atomicLoad(&sheets[channel_index(at, 4u)])) / UNIT;
+#else
     let there = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), known);
-    return select(0.0, sum / max(there, LEAST_PRESENCE), (k >= 0) & (k <= last));
+    let found = f32(atomicLoad(&sheets[at])) / UNIT / max(there, LEAST_PRESENCE);
+#endif
+    return select(0.0, found, (k >= 0) & (k <= last));
 }
 
 // The sheet's material: what its density means, as far as it is there, or the sum of what its voxels mean.

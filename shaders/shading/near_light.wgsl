@@ -1,5 +1,5 @@
 // Short rays from samples towards lights (P eq. 8 for the first voxels of the way), in front of what light volumes know.
-#import "density/volume.wgsl"
+#import "density/lighting_density.wgsl"
 #import "density/table.wgsl"
 #import "density/cut.wgsl"
 #import "shading/shade.wgsl"
@@ -23,8 +23,8 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
         let width = near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == NEAR_STEPS);
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
-        let extinction = lighting_table.entries[nearest_entry(pyramid(p, surface.level))].a;
-        depth += extinction * share_that_shades(eye.shading_cut, p) * pyramid_presence(p, surface.level) * length;
+        let extinction = lighting_table.entries[nearest_entry(lighting_density(p, surface.level))].a;
+        depth += extinction * share_that_shades(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
         way += length;
         step += 1u;
         if (step >= NEAR_STEPS) {

@@ -92,15 +92,29 @@ struct Sampled {
     level: f32,
 }
 
+// To which side of a surface opacity falls; of voxels that were classified, whose densities are opacities, away from them.
+fn side_at(density: f32) -> f32 {
+#if PRECLASSIFY
+    return 1.0;
+#else
+    return side_of(density);
+#endif
+}
+
 // The gradient, in scene space, that faces of what is seen have of their own, the grid's included: into the solid that
 // ends there, in which opacity rises, as density does or against it.
 fn face_slope(p: vec3f, level: f32, density: f32) -> vec3f {
-    let turned = select(1.0, -1.0, ONE_SIDED && side_of(density) < 0.0);
+    let turned = select(1.0, -1.0, ONE_SIDED && side_at(density) < 0.0);
+#if PRECLASSIFY
+    // What voxels mean ends with them by itself.
+    let faces = face_gradient(eye.seen, p, level);
+#else
 #if MISSING
     // Beyond the grid, too, nothing is there.
     let faces = face_gradient(eye.seen, p, level) + presence_slope(p, level);
 #else
     let faces = face_gradient(eye.faces, p, level);
+#endif
 #endif
     return turned * gradient_to_scene(eye.space, faces);
 }
@@ -119,7 +133,7 @@ fn surface_of(found: Sampled) -> Surface {
         slope * (-1.0 / max(steepness, 1e-9)),
         steep2 / (steep2 + s.surface_gradient * s.surface_gradient),
         away * (1.0 / max(length(away), 1e-9)),
-        select(1.0, side_of(found.density), ONE_SIDED),
+        select(1.0, side_at(found.density), ONE_SIDED),
         found.level,
     );
 }

@@ -1,5 +1,5 @@
 // A ray from a point of the volume towards a light (P eq. 7 and 8). The shader that imports this
-// says what attenuates light, by light_extinction(density) and light_distance(cell).
+// says what attenuates light, by ray_density(frame, ray, k), light_extinction(density) and light_distance(cell).
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
 
@@ -49,7 +49,7 @@ fn shadow_ray(
             break;
         }
         let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
-        depth += light_extinction(slab_density(frame, ray, f32(k))) * share * ray_step * scale;
+        depth += light_extinction(ray_density(frame, ray, f32(k))) * share * ray_step * scale;
         if (depth > dark) {
             break;
         }
@@ -60,7 +60,7 @@ fn shadow_ray(
     if (frame.first_depth < reach && all(end > vec3f(-2.0)) && all(end < grid.dims + 1.0)) {
         frame.slab = reach - frame.first_depth;
         let share = share_that_shades(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
-        depth += light_extinction(slab_density(frame, ray, 0.0)) * share * frame.slab * scale;
+        depth += light_extinction(ray_density(frame, ray, 0.0)) * share * frame.slab * scale;
     }
     return exp(-depth);
 }

@@ -1,7 +1,8 @@
 // Gradients of a level of the pyramid at its texels, so that one fetch replaces six: differences between
 // neighbours and linear interpolation between texels may be taken in either order.
-#import "volume/resample.wgsl"
+#import "volume/levels.wgsl"
 
+@group(0) @binding(0) var source: texture_3d<f32>;
 @group(0) @binding(4) var gradients: texture_storage_3d<rgba16float, write>;
 
 fn value(texel: vec3i) -> f32 {

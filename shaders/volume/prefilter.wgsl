@@ -6,6 +6,8 @@
 
 const OFFSET = 1.0 / 6.0;
 
+@group(0) @binding(2) var level: texture_storage_3d<STORAGE_FORMAT, write>;
+
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     resample = bound_resample;
@@ -15,5 +17,5 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     }
     // The pyramid has four voxels of padding, the density texture one.
     let centre = vec3f(texel) - 4.0 + 1.0 + 0.5;
-    textureStore(level, texel, vec4f(mean_around(centre, OFFSET)));
+    textureStore(level, texel, vec4f(mean_around(centre, OFFSET).r));
 }

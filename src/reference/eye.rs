@@ -10,7 +10,7 @@ use super::back_project::Attenuation;
 use super::remains::cut::Remaining;
 use super::shade::{Sampled, Shader};
 use super::sheet::{Cutting, Sample, Stack};
-use crate::model::{BakedTransfer, Classification, THIN_SLABS};
+use crate::model::{BakedTransfer, THIN_SLABS};
 use crate::plan::SheetFrame;
 use crate::plan::picture_frame;
 
@@ -53,12 +53,6 @@ impl Reference<'_> {
             let slabs = first..(first + SLABS_AT_ONCE).min(frame.slab_count);
             let sheets = Sheets::new(&stack, slabs.start.saturating_sub(margin)..slabs.end + margin);
             let materials: Vec<_> = slabs.clone().into_par_iter().map(|k| stack.materials(k)).collect();
-            // Classified voxels have a density of their own only where it is reconstructed beside them.
-            let density = |pixel: usize, k: u32, point: DVec3, level: f64| {
-                let is_beside =
-                    self.settings.sampling.classification == Classification::Pre && !self.settings.scatters();
-                if is_beside { self.pyramid.fetch(point, level) } else { sheets.at(k)[pixel] }
-            };
             rays.par_iter_mut().enumerate().for_each(|(pixel, ray)| {
                 for k in slabs.clone() {
                     let Some(sample) =
@@ -73,7 +67,7 @@ impl Reference<'_> {
                     } else {
                         shader.gradient(sample.point, level)
                     };
-                    let density = density(pixel, k, sample.point, level);
+                    let density = sheets.at(k)[pixel];
                     // Faces look to where the solid ends, whichever way its opacity runs.
                     let gradient = gradient + self.ends(&faces, sample.point, level) * shader.turned(density);
                     let color =
@@ -96,8 +90,7 @@ impl Reference<'_> {
 
     fn eye_stack<'r>(&'r self, frame: &'r SheetFrame) -> Stack<'r> {
         let sampling = &self.settings.sampling;
-        let table = self.settings.baked_eye(self.range, &self.scene);
-        Stack::new(self, frame, sampling.kernel, sampling.quadrature, table, Cutting::Seen(self.seen()))
+        Stack::new(self, frame, sampling.kernel, sampling.quadrature, Cutting::Seen(self.seen()))
     }
 }
 

@@ -6,14 +6,21 @@
 use glam::DVec3;
 
 use super::Reference;
+use super::classified::Side;
 use super::kernel::{Profile, cubic_b_spline, cubic_b_spline_slope};
 use super::pyramid::MAX_LEVEL;
-use crate::model::{BakedTransfer, Kernel, Quadrature};
+use crate::model::{Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
 /// The density at an index-space point, with the kernel stretched 2^`level` times.
-pub(super) fn density(reference: &Reference<'_>, profile: &Profile, point: DVec3, level: f64) -> f64 {
-    let pyramid = &reference.pyramid;
+pub(super) fn density(
+    reference: &Reference<'_>,
+    side: Side,
+    profile: &Profile,
+    point: DVec3,
+    level: f64,
+) -> f64 {
+    let pyramid = reference.gathered_pyramid(side);
     let level = level.clamp(0.0, MAX_LEVEL as f64);
     if profile.kernel == Kernel::Prefiltered || level >= 1.0 {
         return pyramid.fetch(point, level);
@@ -43,73 +50,14 @@ fn weights(profile: &Profile, point: DVec3) -> [[f64; 4]; 3] {
 
 /// Σ ρ(v) · w(v) with these weights along each axis.
 fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f64 {
-    neighbours(reference, point, weights).map(|tap| tap.weight * tap.density).sum()
-}
-
-/// A voxel near a point.
-struct Tap {
-    /// w(v).
-    weight: f64,
-    /// ρ(v).
-    density: f64,
-    /// Whether it is a voxel of the grid, and not its border's repetition.
-    is_there: bool,
-}
-
-/// The 4³ voxels around a point.
-fn neighbours(
-    reference: &Reference<'_>,
-    point: DVec3,
-    [wx, wy, wz]: [[f64; 4]; 3],
-) -> impl Iterator<Item = Tap> {
+    let [wx, wy, wz] = weights;
     let [x, y, z] = point.floor().to_array().map(|c| c as i64 - 1);
-    (0..64).map(move |at| {
+    let term = |at: usize| {
         let [dx, dy, dz] = [at % 4, at / 4 % 4, at / 16];
-        let voxel = [x + dx as i64, y + dy as i64, z + dz as i64];
-        let [x, y, z] = voxel;
-        Tap {
-            weight: wx[dx] * wy[dy] * wz[dz],
-            density: reference.field.at(x, y, z),
-            is_there: reference.field.has(x, y, z),
-        }
-    })
-}
-
-/// What stands at a point when voxels are classified before they are spread: colours times extinction,
-/// and extinction. A stretched kernel finds the blurred volume classified instead.
-pub(super) fn material(
-    reference: &Reference<'_>,
-    profile: &Profile,
-    table: &BakedTransfer,
-    point: DVec3,
-    level: f64,
-) -> [f64; 4] {
-    let level = level.clamp(0.0, MAX_LEVEL as f64);
-    let blurred = |level: f64| {
-        let there = reference.presence(profile, point, level);
-        associated(table.sample(reference.pyramid.fetch(point, level))).map(|channel| channel * there)
+        let density = reference.field.at(x + dx as i64, y + dy as i64, z + dz as i64);
+        wx[dx] * wy[dy] * wz[dz] * density
     };
-    if level >= 1.0 {
-        return blurred(level);
-    }
-    let mut narrow = [0.0; 4];
-    let taps = neighbours(reference, point, weights(profile, point));
-    // Where voxels are missing others stand in for them, and the sum fades with what is there.
-    let has_missing = reference.presence.is_some();
-    for tap in taps.filter(|tap| tap.is_there || has_missing) {
-        let voxel = associated(table.sample(tap.density));
-        for (sum, value) in narrow.iter_mut().zip(voxel) {
-            *sum += tap.weight * value;
-        }
-    }
-    if has_missing {
-        narrow = narrow.map(|channel| channel * reference.presence(profile, point, 0.0));
-    }
-    if level == 0.0 {
-        return narrow;
-    }
-    let wide = blurred(1.0);
-    std::array::from_fn(|channel| narrow[channel] + (wide[channel] - narrow[channel]) * level)
+    (0..64).map(term).sum()
 }
 
 /// A material with its colours weighted by its extinction.
@@ -122,22 +70,21 @@ pub(super) fn straight([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
     if extinction <= 0.0 { [0.0; 4] } else { [r / extinction, g / extinction, b / extinction, extinction] }
 }
 
-/// The mean density over slab `k` along the ray of pixel (i, j): the mean over the quadrature's
+/// The mean over slab `k` along the ray of pixel (i, j) of what is found at a point and a level: over the quadrature's
 /// points, each with the stretch of its own depth.
 pub(super) fn slab_mean(
     reference: &Reference<'_>,
     frame: &SheetFrame,
-    profile: &Profile,
     quadrature: Quadrature,
     [i, j, k]: [f64; 3],
+    of: impl Fn(DVec3, f64) -> f64,
 ) -> f64 {
     let offsets = quadrature.offsets();
     let sum: f64 = offsets
         .iter()
         .map(|offset| {
             let depth = frame.depth_of(k) + offset * frame.slab;
-            let point = frame.point(i, j, depth) + reference.kernel_shift();
-            density(reference, profile, point, frame.stretch_level(depth))
+            of(frame.point(i, j, depth) + reference.kernel_shift(), frame.stretch_level(depth))
         })
         .sum();
     sum / offsets.len() as f64

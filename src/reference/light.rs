@@ -36,15 +36,8 @@ impl Reference<'_> {
 
     fn march(&self, light: &SceneLight, view: LightView) -> ViewSheets {
         let shadows = &self.settings.shadows;
-        let table = self.settings.baked_lighting(self.range, &self.scene);
-        let stack = Stack::new(
-            self,
-            &view.frame,
-            shadows.kernel,
-            shadows.quadrature,
-            table,
-            Cutting::Shading(self.shading()),
-        );
+        let cutting = Cutting::Shading(self.shading());
+        let stack = Stack::new(self, &view.frame, shadows.kernel, shadows.quadrature, cutting);
         // Materials do not depend on light, so all slabs at once; then light, slab by slab.
         let materials: Vec<_> =
             (0..view.frame.slab_count).into_par_iter().map(|k| stack.materials(k)).collect();

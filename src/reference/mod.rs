@@ -9,6 +9,7 @@
 //! | stage | file | to compare |
 //! |---|---|---|
 //! | prefiltered volume and its pyramid | `pyramid` | [`Reference::density`] |
+//! | voxels classified before they are spread | `classified` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
 //! | what is there at all | `remains/presence` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | crop box and clip plane | `remains/cut` | [`Reference::light_sheets`], [`Reference::picture`] |
@@ -19,6 +20,7 @@
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
+mod classified;
 mod eye;
 mod field;
 mod floor;
@@ -44,7 +46,8 @@ use glam::DVec3;
 
 use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
-use crate::model::{Kernel, SceneLight, Settings};
+use crate::model::{BakedTransfer, Classification, Kernel, SceneLight, Settings};
+use classified::{Classified, Side};
 use kernel::Profile;
 
 /// Whose weights the sums are taken with.
@@ -107,6 +110,8 @@ pub struct Reference<'a> {
     pyramid: Pyramid,
     /// The share of kernels that lies on voxels that are there, where some are missing.
     presence: Option<Pyramid>,
+    /// Voxels as the eye and light see them, where they are classified before kernels spread them.
+    classified: Option<Box<[Classified; 2]>>,
 }
 
 impl<'a> Reference<'a> {
@@ -121,13 +126,52 @@ impl<'a> Reference<'a> {
             let presence = Pyramid::of(&field, kernel_width(options.fault), None);
             if options.rounding.is_some() { presence.in_steps(255.0) } else { presence }
         });
-        Self { settings, options, scene: volume.scene(), range, field, pyramid, presence }
+        let scene = volume.scene();
+        let classified = (settings.sampling.classification == Classification::Pre).then(|| {
+            let tables = [settings.baked_eye(range, &scene), settings.baked_lighting(range, &scene)];
+            let (width, rounding) = (kernel_width(options.fault), options.rounding);
+            Box::new(tables.map(|table| Classified::of(&field, &table, presence.as_ref(), width, rounding)))
+        });
+        Self { settings, options, scene, range, field, pyramid, presence, classified }
+    }
+
+    /// Voxels as they are classified before kernels spread them, if they are.
+    fn classified(&self, side: Side) -> Option<&Classified> {
+        let [eye, lighting] = &**self.classified.as_ref()?;
+        Some(match side {
+            Side::Eye => eye,
+            Side::Lighting => lighting,
+        })
+    }
+
+    /// The pyramid of what is gathered: of densities, or of shares of the largest extinction.
+    fn gathered_pyramid(&self, side: Side) -> &Pyramid {
+        self.classified(side).map_or(&self.pyramid, |classified| &classified.shares)
+    }
+
+    /// The kernel of what is gathered: classified voxels are spread by the prefiltered one.
+    fn gathered_kernel(&self, chosen: Kernel) -> Kernel {
+        if self.classified.is_some() { Kernel::Prefiltered } else { chosen }
+    }
+
+    /// What the density that is gathered means.
+    fn gathered_table(&self, side: Side) -> BakedTransfer {
+        match (self.classified(side), side) {
+            (Some(classified), _) => classified.table.clone(),
+            (None, Side::Eye) => self.settings.baked_eye(self.range, &self.scene),
+            (None, Side::Lighting) => self.settings.baked_lighting(self.range, &self.scene),
+        }
+    }
+
+    /// The share of what is gathered that is there; classified voxels end by themselves.
+    fn gathered_presence(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
+        if self.classified.is_some() { 1.0 } else { self.presence(profile, point, level) }
     }
 
     /// The density at an index-space point as the GPU gathers it, with the kernel stretched
     /// 2^`level` times.
     pub fn density(&self, kernel: Kernel, point: DVec3, level: f64) -> f64 {
-        gather::density(self, &self.profile(kernel), point + self.kernel_shift(), level)
+        gather::density(self, Side::Eye, &self.profile(kernel), point + self.kernel_shift(), level)
     }
 
     /// Light `index`, its position in the scene.

@@ -32,8 +32,27 @@ impl Pyramid {
     /// Blurs a field and halves the result three times. `width` is that of the kernel relative to
     /// the right one; every level is rounded as it is stored.
     pub fn of(field: &Field, width: f64, rounding: Option<Rounding>) -> Self {
+        Self::faded(field, width, rounding, None)
+    }
+
+    /// The same, where the blurred field fades with a share of what is there.
+    pub(super) fn faded(
+        field: &Field,
+        width: f64,
+        rounding: Option<Rounding>,
+        presence: Option<&Self>,
+    ) -> Self {
         let round = |value: f64| rounding.map_or(value, |round| f64::from(round(value as f32)));
-        let mut levels = vec![prefiltered(field, width, round)];
+        let mut finest = prefiltered(field, width);
+        if let Some(presence) = presence {
+            finest
+                .values
+                .iter_mut()
+                .zip(&presence.levels[0].values)
+                .for_each(|(value, share)| *value *= share);
+        }
+        finest.values.iter_mut().for_each(|value| *value = round(*value));
+        let mut levels = vec![finest];
         for finer in 0..MAX_LEVEL {
             levels.push(halved(&levels[finer], round));
         }
@@ -67,7 +86,7 @@ impl Pyramid {
 }
 
 /// Σ over the 27 neighbours of a, 1 − 2a or a per axis. Variance 2a + 1/6 (the tent's) = ⅓.
-fn prefiltered(field: &Field, width: f64, round: impl Fn(f64) -> f64 + Sync) -> Level {
+fn prefiltered(field: &Field, width: f64) -> Level {
     let a = (width * width / 3.0 - 1.0 / 6.0) / 2.0;
     let weights = [a, 1.0 - 2.0 * a, a];
     let dims = field.dims.map(|n| (n + 2 * PAD).next_multiple_of(1 << MAX_LEVEL));
@@ -81,7 +100,7 @@ fn prefiltered(field: &Field, width: f64, round: impl Fn(f64) -> f64 + Sync) -> 
                 }
             }
         }
-        round(sum)
+        sum
     });
     Level { dims, values }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
+use super::classified::Side;
 use super::kernel::Profile;
 use super::pyramid::MAX_LEVEL;
 use super::remains::cut::Remaining;
@@ -97,10 +98,10 @@ impl<'r> Shader<'r> {
             reference,
             lamps: settings.lights.iter().enumerate().filter(|(_, light)| light.on).map(lamp).collect(),
             opacity_unit: settings.opacity_unit.in_scene(&reference.scene).max(1e-9),
-            lighting: settings.baked_lighting(reference.range, &reference.scene),
+            lighting: reference.gathered_table(Side::Lighting),
             profile: reference.profile(Kernel::Prefiltered),
             remaining: reference.shading(),
-            sides: sides(&settings.baked_eye(reference.range, &reference.scene)),
+            sides: sides(&reference.gathered_table(Side::Eye)),
         }
     }
 
@@ -188,8 +189,9 @@ impl<'r> Shader<'r> {
             let width = (NearField::width_voxels(step) + ahead) * scene.smallest_edge();
             let length = width.min(distance - way);
             let middle = at(way + 0.5 * length);
-            let extinction = self.lighting.sample(self.reference.pyramid.fetch(middle, sample.level))[3];
-            let there = self.reference.presence(&self.profile, middle, sample.level);
+            let density = self.reference.gathered_pyramid(Side::Lighting).fetch(middle, sample.level);
+            let extinction = self.lighting.sample(density)[3];
+            let there = self.reference.gathered_presence(&self.profile, middle, sample.level);
             depth += there * extinction * self.reference.share_that_shades(&self.remaining, middle) * length;
             way += length;
         }
@@ -239,7 +241,7 @@ impl<'r> Shader<'r> {
     /// the fourth order: f′(x) ≈ [8 (f(x + h) − f(x − h)) − (f(x + 2h) − f(x − 2h))] / 12h.
     fn gradient_of_level(&self, point: DVec3, level: f64) -> DVec3 {
         let step = level.exp2();
-        let fetch = |at: DVec3| self.reference.pyramid.fetch(at, level);
+        let fetch = |at: DVec3| self.reference.gathered_pyramid(Side::Eye).fetch(at, level);
         let along = |axis: DVec3| {
             let change = |steps: f64| fetch(point + axis * steps * step) - fetch(point - axis * steps * step);
             (8.0 * change(1.0) - change(2.0)) / (12.0 * step)

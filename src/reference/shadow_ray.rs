@@ -5,6 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
+use super::classified::Side;
 use super::kernel::Profile;
 use super::remains::cut::Remaining;
 use super::{Reference, gather};
@@ -31,9 +32,9 @@ impl<'r> ShadowRays<'r> {
         Self {
             reference,
             light: reference.light(index),
-            profile: reference.profile(kernel),
+            profile: reference.profile(reference.gathered_kernel(kernel)),
             quadrature,
-            table: reference.settings.baked_lighting(reference.range, &reference.scene),
+            table: reference.gathered_table(Side::Lighting),
             remaining: reference.shading(),
         }
     }
@@ -76,11 +77,11 @@ impl<'r> ShadowRays<'r> {
                 let offsets = self.quadrature.offsets();
                 let density = |offset: &f64| {
                     let at = point + forward * (middle + offset * length) + reference.kernel_shift();
-                    gather::density(reference, &self.profile, at, 0.0)
+                    gather::density(reference, Side::Lighting, &self.profile, at, 0.0)
                 };
                 let there = |offset: &f64| {
                     let at = point + forward * (middle + offset * length) + reference.kernel_shift();
-                    reference.presence(&self.profile, at, 0.0)
+                    reference.gathered_presence(&self.profile, at, 0.0)
                 };
                 let there = offsets.iter().map(there).sum::<f64>() / offsets.len() as f64;
                 let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;

@@ -4,6 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::classified::{Classified, Side};
 use super::field::Field;
 use super::kernel::Profile;
 use super::remains::cut::Remaining;
@@ -19,8 +20,11 @@ pub(super) struct Stack<'r> {
     reference: &'r Reference<'r>,
     /// Rays and slabs.
     pub frame: &'r SheetFrame,
+    side: Side,
+    /// Of the kernel that spreads densities, or classified voxels.
     profile: Profile,
     quadrature: Quadrature,
+    /// What the densities of the sheets mean.
     table: BakedTransfer,
     remaining: Cutting,
 }
@@ -50,10 +54,18 @@ impl<'r> Stack<'r> {
         frame: &'r SheetFrame,
         kernel: Kernel,
         quadrature: Quadrature,
-        table: BakedTransfer,
         remaining: Cutting,
     ) -> Self {
-        Self { reference, frame, profile: reference.profile(kernel), quadrature, table, remaining }
+        let side = match remaining {
+            Cutting::Seen(_) => Side::Eye,
+            Cutting::Shading(_) => Side::Lighting,
+        };
+        let kernel = match reference.weights() {
+            Weights::Gather => reference.gathered_kernel(kernel),
+            Weights::Footprint | Weights::Scatter => kernel,
+        };
+        let (profile, table) = (reference.profile(kernel), reference.gathered_table(side));
+        Self { reference, frame, side, profile, quadrature, table, remaining }
     }
 
     /// The mean densities of slab `k`, row by row; 0 outside the volume's support. What is splatted is divided by the
@@ -64,6 +76,10 @@ impl<'r> Stack<'r> {
             weights @ (Weights::Footprint | Weights::Scatter) => {
                 let points = (weights == Weights::Scatter).then_some(*quadrature);
                 let shift = reference.kernel_shift();
+                if let Some(classified) = reference.classified(self.side) {
+                    // Of what is there the sums alone.
+                    return footprint::splat(&classified.field, frame, profile, points, shift, k);
+                }
                 let sums = footprint::splat(&reference.field, frame, profile, points, shift, k);
                 let mean = |(pixel, sum): (usize, f64)| {
                     let [i, j] = self.place_of(pixel as u32);
@@ -84,17 +100,21 @@ impl<'r> Stack<'r> {
     /// Linear colour and extinction of slab `k`, row by row: the densities classified, or the classified
     /// voxels spread.
     pub(super) fn materials(&self, k: u32) -> Vec<[f64; 4]> {
-        let Self { reference, frame, profile, quadrature, table, remaining: _ } = self;
-        if reference.settings.sampling.classification == Classification::Post {
+        let Self { reference, frame, side, profile, quadrature, table, remaining: _ } = self;
+        let Some(classified) = reference.classified(*side) else {
             return self.densities(k).into_iter().map(|density| table.sample(density)).collect();
-        }
+        };
         let weights = reference.weights();
+        let Classified { field, colors, .. } = classified;
         if weights != Weights::Gather {
+            let voxels = match side {
+                Side::Eye => reference.settings.baked_eye(reference.range, &reference.scene),
+                Side::Lighting => reference.settings.baked_lighting(reference.range, &reference.scene),
+            };
             let points = (weights == Weights::Scatter).then_some(*quadrature);
-            let field = &reference.field;
             let channels: [Vec<f64>; 4] = std::array::from_fn(|channel| {
-                let of_voxel = |&density: &f64| gather::associated(table.sample(density))[channel];
-                let densities = field.densities.iter().map(of_voxel).collect();
+                let of_voxel = |&density: &f64| gather::associated(voxels.sample(density))[channel];
+                let densities = reference.field.densities.iter().map(of_voxel).collect();
                 let field = Field { dims: field.dims, densities, beyond: field.beyond };
                 footprint::splat(&field, frame, profile, points, reference.kernel_shift(), k)
             });
@@ -110,25 +130,21 @@ impl<'r> Stack<'r> {
             };
             return (0..self.pixel_count()).map(material).collect();
         }
-        let width = frame.size[0];
-        let material = |pixel: u32| {
-            let at @ [i, j, k] = [pixel % width, pixel / width, k].map(f64::from);
-            if self.material_at(at).is_none() {
+        let material = |pixel: usize| {
+            let [i, j] = self.place_of(pixel as u32);
+            let place = [i, j, f64::from(k)];
+            let share = self.density_at(place);
+            if share <= 0.0 {
                 return [0.0; 4];
             }
-            let offsets = quadrature.offsets();
-            let mut sum = [0.0; 4];
-            for offset in offsets {
-                let depth = frame.depth_of(k) + offset * frame.slab;
-                let point = frame.point(i, j, depth) + reference.kernel_shift();
-                let found = gather::material(reference, profile, table, point, frame.stretch_level(depth));
-                for (sum, found) in sum.iter_mut().zip(found) {
-                    *sum += found / offsets.len() as f64;
-                }
-            }
-            gather::straight(sum)
+            let [r, g, b] = colors.each_ref().map(|color| {
+                gather::slab_mean(reference, frame, *quadrature, place, |point, level| {
+                    color.fetch(point, level)
+                }) / share
+            });
+            [r, g, b, table.sample(share)[3]]
         };
-        (0..width * frame.size[1]).into_par_iter().map(material).collect()
+        (0..self.pixel_count()).into_par_iter().map(material).collect()
     }
 
     /// The middle of slab `k` on a pixel's ray, if there can be material.
@@ -200,11 +216,13 @@ impl<'r> Stack<'r> {
     /// The density with the GPU's weights in the middle of slab `k` on the ray of pixel (i, j); 0 outside the
     /// volume's support.
     pub(super) fn density_at(&self, at: [f64; 3]) -> f64 {
-        let Self { reference, frame, profile, quadrature, .. } = self;
+        let Self { reference, frame, side, profile, quadrature, .. } = self;
         if self.material_at(at).is_none() {
             return 0.0;
         }
-        gather::slab_mean(reference, frame, profile, *quadrature, at)
+        gather::slab_mean(reference, frame, *quadrature, at, |point, level| {
+            gather::density(reference, *side, profile, point, level)
+        })
     }
 
     /// A pixel's column and row.

@@ -60,13 +60,13 @@ pub(crate) fn draw(
         0,
         &[
             buffer("bound_floor_disc", &uniform),
-            buffer("table", &tables.lighting.buffer),
+            buffer("table", tables.lighting.gathered()),
             view_of("distances", &tables.light_distances),
             view_of("picture", picture),
             view_of("floor_light", floor_light),
         ],
     );
-    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
+    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest, tables.lighting_pyramids(volume));
     pass::dispatch(encoder, "Floor::pass", &pipeline, &[&own, &of_volume], tiles);
     Ok(())
 }

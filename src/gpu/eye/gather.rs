@@ -5,8 +5,7 @@ use crate::gpu::light::packed::{LightInput, light_bind_group, pack_light};
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{
-    Constants, Ends, LightCount, Reconstruction, ShadingVariant, Variant, classification_constant,
-    deposit_constant, flag, is_cut,
+    Constants, Ends, LightCount, Reconstruction, ShadingVariant, Variant, deposit_constant, flag, is_cut,
 };
 use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
@@ -116,8 +115,11 @@ impl EyePass {
         SamplingVariant { has_gradients, ..self.variant.sampling }
     }
 
-    /// The texture of gradients, if there is one.
+    /// The texture of gradients, if there is one: of densities.
     pub(crate) fn gradients<'a>(&self, gpu: Gpu<'a>) -> Option<&'a wgpu::TextureView> {
+        if self.variant.shading.classification == Classification::Pre {
+            return None;
+        }
         gpu.volume.gradients_views.as_ref().map(|views| self.levels.choose(views))
     }
 
@@ -157,15 +159,15 @@ impl EyePass {
             0,
             &[
                 buffer("bound_eye", &uniform),
-                buffer("table", &tables.eye.buffer),
+                buffer("table", tables.eye.gathered()),
                 view_of("distances", &tables.eye_distances),
                 view_of("picture", picture),
-                buffer("lighting_table", &tables.lighting.buffer),
+                buffer("lighting_table", tables.lighting.gathered()),
                 view_of("light_distances", &tables.light_distances),
                 view_of("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
-        let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels);
+        let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels, tables.pyramids(gpu.volume));
         let of_lights = light_bind_group(gpu, &pipeline, attenuation);
         pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
         Ok(())
@@ -176,7 +178,6 @@ impl EyePass {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct GatherVariant {
     reconstruction: Reconstruction,
-    classification: Classification,
     /// Pixels are wider than voxels somewhere.
     is_stretched: bool,
     sampling: SamplingVariant,
@@ -219,8 +220,7 @@ impl GatherVariant {
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
         let near_steps = if lights.shadowed > 0 { settings.near_field().steps() } else { 0 };
         Self {
-            reconstruction: Reconstruction::new(sampling.kernel, sampling.quadrature),
-            classification: sampling.classification,
+            reconstruction: Reconstruction::new(settings.eye_kernel(), sampling.quadrature),
             is_stretched,
             sampling: SamplingVariant {
                 sheet_gradients: settings.has_sheet_gradients(),
@@ -235,6 +235,7 @@ impl GatherVariant {
                 // Rays to lights are the eye pass's own.
                 is_cut: is_cut(cuts.seen()) || (casts_rays || near_steps > 0) && is_cut(cuts.shading()),
                 sides: shading.sides,
+                classification: sampling.classification,
             },
             rays: casts_rays.then_some(shadows.deposit),
         }
@@ -268,7 +269,6 @@ impl Variant for GatherVariant {
         let mut constants = self.reconstruction.constants();
         constants.extend(self.shading.constants());
         constants.extend([
-            classification_constant(self.classification),
             flag("STRETCH", self.is_stretched),
             flag("BY_NEED", self.by_need),
             flag("KERNEL_GRADIENTS", self.kernel_gradients),

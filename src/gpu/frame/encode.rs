@@ -46,6 +46,12 @@ impl Job<'_> {
                 self.report.runs.volume += 1;
                 gradients::fill(context, &self.tools.shaders, volume, *level, bricks, encoder)
             }
+            Step::Materials(side, level, bricks) => {
+                self.report.runs.materials += 1;
+                let table = side.of(&self.loaded.value.tables.value);
+                let Some(materials) = &table.materials else { return Ok(()) };
+                materials.fill(Gpu::new(self.tools, volume), table, *level, bricks, encoder)
+            }
             Step::March(light) => self.encode_light(light, Self::march_view, encoder),
             Step::Backproject(light) => self.encode_light(light, Self::backproject_view, encoder),
             Step::Raycast(build, bricks) => self.encode_raycast(*build, bricks, encoder),
@@ -81,6 +87,11 @@ impl Job<'_> {
             let target = self.targets.get_mut(self.role);
             match product {
                 Product::Volume => self.loaded.finish(),
+                Product::Materials(side) => {
+                    if let Some(materials) = &side.of(&self.loaded.value.tables.value).materials {
+                        materials.finish();
+                    }
+                }
                 Product::Light(build) => {
                     let light = &mut self.loaded.value.lights[self.builds[*build].slot];
                     light.value.finish();

@@ -8,6 +8,7 @@ use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::scatter::voxels::ScatterVoxels;
 use crate::gpu::volume::GpuVolume;
+use crate::gpu::volume::materials::Materials;
 use crate::gpu::volume::presence::Presence;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{Context, GpuError};
@@ -23,6 +24,8 @@ pub(crate) struct Loaded {
     pub dataset: Dataset,
     /// Both transfer functions, and where they show anything.
     pub tables: Cached<TablesKey, Tables>,
+    /// Voxels as these classify them, once a picture has asked for that.
+    materials: Vec<Arc<Materials>>,
     /// Attenuation volumes, most recently used first.
     pub lights: Vec<Cached<LightKey, LightVolume>>,
     /// The diffuse light of all of them in one.
@@ -48,7 +51,8 @@ impl Loaded {
         let (tables, _) = Tables::new(context, &volume, settings, tables_key, None)?;
         let tables = Cached::complete(tables_key.clone(), tables);
         let dataset = dataset.clone();
-        Ok(Self { volume, dataset, tables, lights: Vec::new(), combined: None, voxels: None })
+        let materials = Vec::new();
+        Ok(Self { volume, dataset, tables, materials, lights: Vec::new(), combined: None, voxels: None })
     }
 
     /// Whether it was made from voxels of the type of these: the same numbers of another type are stored otherwise.
@@ -74,6 +78,42 @@ impl Loaded {
         let (fresh, baked) = Tables::new(context, &self.volume, settings, key, known)?;
         self.tables = Cached::complete(key.clone(), fresh);
         Ok(baked)
+    }
+
+    /// Has the tables know what they make of voxels, where the settings have these classified before they are spread;
+    /// some of it may have to be filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn refresh_materials(
+        &mut self,
+        context: &Context,
+        settings: &Settings,
+    ) -> Result<(), GpuError> {
+        let tables = &mut self.tables.value;
+        (tables.eye.materials, tables.lighting.materials) = (None, None);
+        if settings.sampling.classification == Classification::Post {
+            return Ok(());
+        }
+        let baked = [&tables.eye, &tables.lighting].map(|table| Arc::clone(table.baked()));
+        // What earlier tables made of voxels leaves its room.
+        let (needed, mut left): (Vec<_>, Vec<_>) = std::mem::take(&mut self.materials)
+            .into_iter()
+            .partition(|known| baked.iter().any(|baked| known.is_of(baked)));
+        self.materials = needed;
+        for (baked, table) in baked.iter().zip([&mut tables.eye, &mut tables.lighting]) {
+            let known = self.materials.iter().find(|known| known.is_of(baked));
+            let materials = if let Some(known) = known {
+                Arc::clone(known)
+            } else {
+                let left = left.pop().and_then(Arc::into_inner);
+                let fresh = Arc::new(Materials::new(context, &self.volume, baked, left)?);
+                self.materials.push(Arc::clone(&fresh));
+                fresh
+            };
+            table.materials = Some(materials);
+        }
+        Ok(())
     }
 
     /// The voxels that a picture scatters.
@@ -106,6 +146,7 @@ impl Loaded {
     /// Bytes of all textures and buffers.
     pub(crate) fn bytes(&self) -> u64 {
         let voxels = self.voxels.as_ref().map_or(0, |voxels| voxels.bytes());
-        self.volume.bytes() + voxels + self.light_bytes()
+        let materials = self.materials.iter().map(|materials| materials.bytes()).sum::<u64>();
+        self.volume.bytes() + materials + voxels + self.light_bytes()
     }
 }

@@ -1,12 +1,13 @@
 //! Planning a picture: compares what it needs with what is there, and lists the steps that make the difference.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::job::Job;
 use super::light_cache::{PlacedLights, Wanted};
 use super::loaded::Loaded;
 use super::report::Report;
-use super::step::{Product, Step};
+use super::step::{Product, Side, Step};
 use super::targets::{Role, shown_key};
 use crate::data::Dataset;
 use crate::gpu::eye::gather::EyePass;
@@ -17,7 +18,9 @@ use crate::gpu::output::target::Shape;
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::scatter::eye::SLABS_PER_STEP;
 use crate::gpu::scatter::voxels::Scattering;
+use crate::gpu::volume::materials::Materials;
 use crate::gpu::volume::presence::Presence;
+use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{GpuVolume, prefilter};
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::{Depth, SheetOrder};
@@ -96,6 +99,8 @@ impl Renderer {
                 self.tools.pool.forget_groups();
             }
             self.report.runs.tables += baked;
+            loaded.value.refresh_materials(&self.tools.context, &request.settings)?;
+            steps.extend(material_steps(&loaded.value.tables.value));
             self.report.bricks_ms += start.elapsed().as_secs_f64() * 1000.0;
         }
         if role.is_none() {
@@ -205,6 +210,23 @@ impl Renderer {
             request,
         })
     }
+}
+
+/// What is to be classified anew.
+fn material_steps(tables: &Tables) -> Vec<Step> {
+    let mut steps = Vec::new();
+    let mut begun: Option<&Arc<Materials>> = None;
+    for side in [Side::Eye, Side::Lighting] {
+        let Some(materials) = &side.of(tables).materials else { continue };
+        // Mostly both are the same.
+        if materials.is_complete() || begun.is_some_and(|begun| Arc::ptr_eq(begun, materials)) {
+            continue;
+        }
+        steps.extend(materials.steps().map(|(level, bricks)| Step::Materials(side, level, bricks)));
+        steps.push(Step::Finish(Product::Materials(side)));
+        begun = Some(materials);
+    }
+    steps
 }
 
 /// What a target for a request has room for.

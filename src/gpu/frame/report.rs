@@ -51,6 +51,8 @@ pub struct Report {
 pub struct Runs {
     /// Blocks of the volume that were uploaded or prefiltered.
     pub volume: u32,
+    /// Blocks of voxels that were classified, or of coarser levels of them.
+    pub materials: u32,
     /// Lookup tables that were baked.
     pub tables: u32,
     /// Light volumes whose filling began.

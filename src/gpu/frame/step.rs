@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use crate::gpu::eye::floor;
 use crate::gpu::resources::part::Part;
+use crate::gpu::volume::transfer_tables::{Table, Tables};
 
 /// What a step belongs to, for reports and for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,10 +39,29 @@ pub(super) struct LightStep {
     pub part: Part,
 }
 
+/// A transfer function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Eye,
+    Lighting,
+}
+
+impl Side {
+    /// Its table.
+    pub(super) fn of(self, tables: &Tables) -> &Table {
+        match self {
+            Self::Eye => &tables.eye,
+            Self::Lighting => &tables.lighting,
+        }
+    }
+}
+
 /// Something that a picture needs, and that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Product {
     Volume,
+    /// What a table makes of voxels.
+    Materials(Side),
     /// The volume that a light build fills.
     Light(usize),
     CombinedLight,
@@ -62,6 +82,8 @@ pub(super) enum Step {
     Pyramid(u32, Range<usize>),
     /// Level, and which of its bricks.
     Gradients(u32, Range<usize>),
+    /// By which table voxels are classified, level, and which of its bricks.
+    Materials(Side, u32, Range<usize>),
     March(LightStep),
     Backproject(LightStep),
     /// Index of the light build, and which of its bricks.
@@ -84,7 +106,7 @@ impl Step {
     pub(super) fn stage(&self) -> Option<Stage> {
         Some(match self {
             Self::Upload(_) | Self::Presence(_) => Stage::Upload,
-            Self::Pyramid(..) | Self::Gradients(..) => Stage::Pyramid,
+            Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) | Self::Combine(_) => Stage::LightBackproject,
             Self::Raycast(..) => Stage::LightRaycast,

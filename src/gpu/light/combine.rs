@@ -107,13 +107,13 @@ impl CombinedLight {
             0,
             &[
                 buffer("bound_eye", &eye),
-                buffer("table", &tables.eye.buffer),
+                buffer("table", tables.eye.gathered()),
                 buffer("bound_combine", &uniform),
                 buffer("bricks", &list),
                 view_of("combined", &self.view),
             ],
         );
-        let of_volume = gpu.bind_pyramid(&pipeline);
+        let of_volume = gpu.bind_pyramid(&pipeline, tables.eye.pyramid(volume));
         let of_lights = light_bind_group(gpu, &pipeline, &attenuation);
         pass::dispatch(
             encoder,

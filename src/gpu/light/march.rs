@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::gpu::pipelines::binding::{Named, buffer, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{
-    Constants, Ends, Reconstruction, Variant, classification_constant, deposit_constant, flag, is_cut,
+    Constants, Ends, Reconstruction, Variant, deposit_constant, flag, is_cut,
 };
 use crate::gpu::resources::pass;
 use crate::gpu::resources::ring::Ring;
@@ -15,7 +15,7 @@ use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::Region;
-use crate::model::{Classification, Deposit, SceneLight, Settings};
+use crate::model::{Deposit, SceneLight, Settings};
 use crate::plan::{LightView, sample_reach};
 
 /// Slabs that share a texel of the ring.
@@ -93,7 +93,6 @@ impl Sheets {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct MarchVariant {
     reconstruction: Reconstruction,
-    classification: Classification,
     /// Pixels are wider than voxels somewhere.
     is_stretched: bool,
     is_cut: bool,
@@ -105,8 +104,7 @@ impl MarchVariant {
     pub(crate) fn of(settings: &Settings, is_stretched: bool) -> Self {
         let shadows = &settings.shadows;
         Self {
-            reconstruction: Reconstruction::new(shadows.kernel, shadows.quadrature),
-            classification: settings.sampling.classification,
+            reconstruction: Reconstruction::new(settings.light_kernel(), shadows.quadrature),
             is_stretched,
             is_cut: is_cut(settings.cuts.shading()),
             deposit: shadows.deposit,
@@ -128,7 +126,6 @@ impl Variant for MarchVariant {
     fn constants(&self) -> Constants {
         let mut constants = self.reconstruction.constants();
         constants.extend([
-            classification_constant(self.classification),
             flag("STRETCH", self.is_stretched),
             flag("CUT", self.is_cut),
             deposit_constant(self.deposit),
@@ -191,10 +188,11 @@ pub(crate) fn march(
     let uniform = gpu.uniform("March::uniform", uniform);
     let list = gpu.list_with_room("March::tiles", &shared_out(tiles, pass::threads(context)), TILE_ROOM);
     let mut entries =
-        sheets.march_entries(&uniform, &tables.lighting.buffer, &tables.light_distances).to_vec();
+        sheets.march_entries(&uniform, tables.lighting.gathered(), &tables.light_distances).to_vec();
     entries.push(buffer("tiles", &list));
     let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
-    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::of(is_stretched));
+    let levels = Levels::of(is_stretched);
+    let of_volume = gpu.bind_volume(&pipeline, dilation, levels, tables.lighting_pyramids(volume));
     pass::dispatch(encoder, "March::pass", &pipeline, &[&own, &of_volume], single_workgroups(count));
     Ok(())
 }

@@ -32,7 +32,7 @@ impl RaycastVariant {
     pub(crate) fn of(settings: &Settings) -> Self {
         let shadows = &settings.shadows;
         Self {
-            reconstruction: Reconstruction::new(shadows.kernel, shadows.quadrature),
+            reconstruction: Reconstruction::new(settings.light_kernel(), shadows.quadrature),
             deposit: shadows.deposit,
             is_cut: is_cut(settings.cuts.shading()),
         }
@@ -94,13 +94,13 @@ pub(crate) fn raycast(
         0,
         &[
             buffer("bound_raycast", &uniform),
-            buffer("table", &tables.lighting.buffer),
+            buffer("table", tables.lighting.gathered()),
             view_of("distances", &tables.light_distances),
             buffer("bricks", &list),
             view_of("attenuation", &target.view),
         ],
     );
-    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest);
+    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest, tables.lighting_pyramids(volume));
     pass::dispatch(
         encoder,
         "Raycast::pass",

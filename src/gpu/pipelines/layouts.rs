@@ -16,6 +16,8 @@ const PYRAMID_TEXTURE: Slot = Slot::sampled(2, "pyramid_texture", Shape::Volume)
 const CLAMPED: Slot = Slot::sampler(3, "clamped");
 const PRESENCE_TEXTURE: Slot = Slot::sampled(9, "presence_texture", Shape::Volume);
 
+const LIGHTING_PYRAMID: Slot = Slot::sampled(10, "lighting_pyramid", Shape::Volume);
+
 /// Density, with a pyramid for kernels that perspective stretches.
 const VOLUME: &[Slot] = &[
     GRID,
@@ -25,6 +27,10 @@ const VOLUME: &[Slot] = &[
     Slot::sampler(4, "nearest"),
     PRESENCE_TEXTURE,
 ];
+
+/// The same, with what rays nearby see of it.
+const VOLUME_AND_LIGHTING: &[Slot] =
+    &[VOLUME[0], VOLUME[1], VOLUME[2], VOLUME[3], VOLUME[4], VOLUME[5], LIGHTING_PYRAMID];
 
 /// The pyramid alone.
 const PYRAMID: &[Slot] = &[GRID, PYRAMID_TEXTURE, CLAMPED, PRESENCE_TEXTURE];
@@ -115,7 +121,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::sampled(5, "light_distances", Shape::Volume),
                 GRADIENTS,
             ],
-            VOLUME,
+            VOLUME_AND_LIGHTING,
             LIGHTS,
         ],
     ),
@@ -183,7 +189,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
         "scatter/eye.wgsl",
         &[
             &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume), LIGHTING_TABLE, GRADIENTS],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS, PRESENCE_TEXTURE],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS, PRESENCE_TEXTURE, LIGHTING_PYRAMID],
             LIGHTS,
         ],
     ),
@@ -265,11 +271,32 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
     ),
     ("volume/downsample.wgsl", &[RESAMPLE]),
     (
+        "volume/downsample_materials.wgsl",
+        &[&[
+            Slot::sampled(0, "source", Shape::Volume),
+            Slot::sampler(1, "clamped"),
+            Slot::target(2, "level", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
+            Slot::list(5, "bricks", 4, Access::Read),
+        ]],
+    ),
+    (
         "volume/gradients.wgsl",
         &[&[
             Slot::loaded(0, "source", Shape::Volume),
             Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
             Slot::target(4, "gradients", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            Slot::list(5, "bricks", 4, Access::Read),
+        ]],
+    ),
+    (
+        "volume/materials.wgsl",
+        &[&[
+            Slot::loaded(0, "source", Shape::Volume),
+            TABLE,
+            Slot::target(2, "level", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
+            Slot::loaded(4, "presence_level", Shape::Volume),
             Slot::list(5, "bricks", 4, Access::Read),
         ]],
     ),

@@ -127,6 +127,8 @@ pub(crate) struct ShadingVariant {
     pub is_combined: bool,
     pub is_cut: bool,
     pub sides: Sides,
+    /// Before voxels are spread, or after.
+    pub classification: Classification,
 }
 
 impl ShadingVariant {
@@ -135,6 +137,7 @@ impl ShadingVariant {
         let mut constants = self.lights.constants();
         constants.push(flag("CUT", self.is_cut));
         constants.push(flag("ONE_SIDED", self.sides == Sides::One));
+        constants.push(flag("PRECLASSIFY", self.classification == Classification::Pre));
         if self.is_combined {
             constants.push(("COMBINED", 1.0));
         }
@@ -145,11 +148,6 @@ impl ShadingVariant {
 /// A constant that is on or off.
 pub(crate) fn flag(name: &'static str, on: bool) -> (&'static str, f64) {
     (name, f64::from(u8::from(on)))
-}
-
-/// `PRECLASSIFY`.
-pub(crate) fn classification_constant(classification: Classification) -> (&'static str, f64) {
-    flag("PRECLASSIFY", classification == Classification::Pre)
 }
 
 /// `DEPOSIT_FRONT`.

@@ -152,7 +152,7 @@ impl EyeScatter {
                 buffer("bound_eye", &uniform),
                 buffer("table", &tables.eye.buffer),
                 view_of("distances", &self.distances),
-                buffer("lighting_table", &tables.lighting.buffer),
+                buffer("lighting_table", tables.lighting.gathered()),
                 view_of("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
@@ -181,7 +181,8 @@ impl EyeScatter {
                 1,
                 &[
                     buffer("bound_grid", &grid),
-                    view_of("pyramid_texture", eye.levels().choose(&volume.pyramid_views)),
+                    view_of("pyramid_texture", eye.levels().choose(tables.eye.pyramid(volume))),
+                    view_of("lighting_pyramid", eye.levels().choose(tables.lighting.pyramid(volume))),
                     view_of("presence_texture", gpu.presence(eye.levels())),
                     sampler("clamped", &volume.clamped),
                     buffer("bound_scatter", &slab),

@@ -13,6 +13,7 @@ use crate::gpu::pipelines::uniforms::Phase;
 use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::{Gpu, Levels};
+use crate::model::Classification;
 
 /// What tells one pipeline that composites footprints from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -106,7 +107,9 @@ impl Footprints {
             return Ok(());
         }
         let Gpu { context, shaders, .. } = gpu;
-        let variant = FootprintsVariant { shading: eye.shading_variant(), footprints: scatterer.variant() };
+        // Their densities are those of voxels.
+        let shading = ShadingVariant { classification: Classification::Post, ..eye.shading_variant() };
+        let variant = FootprintsVariant { shading, footprints: scatterer.variant() };
         let pipeline = shaders.pipeline(&variant)?;
         let own = pass::bind(
             context,

@@ -2,6 +2,7 @@
 
 pub(super) mod gradients;
 pub(super) mod listed_bricks;
+pub(super) mod materials;
 pub(super) mod prefilter;
 pub(super) mod presence;
 mod shapes;
@@ -83,8 +84,8 @@ impl Gpu<'_> {
         self.pool.bind(self.context, label, pipeline, group, entries)
     }
 
-    /// Bind group 1 of passes that look at the pyramid alone.
-    pub(crate) fn bind_pyramid(&self, pipeline: &Pipeline) -> wgpu::BindGroup {
+    /// Bind group 1 of passes that look at a pyramid alone.
+    pub(crate) fn bind_pyramid(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
         self.bind(
@@ -93,7 +94,7 @@ impl Gpu<'_> {
             1,
             &[
                 buffer("bound_grid", &grid),
-                view_of("pyramid_texture", &volume.pyramid_views.all),
+                view_of("pyramid_texture", &pyramid.all),
                 view_of("presence_texture", self.presence(Levels::All)),
                 sampler("clamped", &volume.clamped),
             ],
@@ -101,28 +102,39 @@ impl Gpu<'_> {
     }
 
     /// Bind group 1 of the passes that sample density.
-    pub(crate) fn bind_volume(&self, pipeline: &Pipeline, dilation: i32, levels: Levels) -> wgpu::BindGroup {
+    pub(crate) fn bind_volume(
+        &self,
+        pipeline: &Pipeline,
+        dilation: i32,
+        levels: Levels,
+        pyramids: Pyramids<'_>,
+    ) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(dilation));
-        self.bind(
-            "Volume::bind_group",
-            pipeline,
-            1,
-            &[
-                buffer("bound_grid", &grid),
-                view_of("density_texture", &volume.density_view),
-                view_of("pyramid_texture", levels.choose(&volume.pyramid_views)),
-                view_of("presence_texture", self.presence(levels)),
-                sampler("clamped", &volume.clamped),
-                sampler("nearest", &volume.nearest),
-            ],
-        )
+        let mut entries = vec![
+            buffer("bound_grid", &grid),
+            view_of("density_texture", &volume.density_view),
+            view_of("pyramid_texture", levels.choose(pyramids.own)),
+            view_of("presence_texture", self.presence(levels)),
+            sampler("clamped", &volume.clamped),
+            sampler("nearest", &volume.nearest),
+        ];
+        entries.extend(pyramids.lighting.map(|views| view_of("lighting_pyramid", levels.choose(views))));
+        self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
 
     /// The texture of what is there where voxels are missing, or what is bound in its place.
     pub(crate) fn presence(&self, levels: Levels) -> &wgpu::TextureView {
         self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
     }
+}
+
+/// The pyramids that a pass reads: of densities, or of what voxels mean ([`materials`]).
+#[derive(Clone, Copy)]
+pub(crate) struct Pyramids<'a> {
+    pub own: &'a LevelViews,
+    /// Of what attenuates light, for passes that look at both.
+    pub lighting: Option<&'a LevelViews>,
 }
 
 /// The levels of the pyramid that a pass may read.

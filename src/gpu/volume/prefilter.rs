@@ -48,7 +48,12 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture) -> Vec<Vec
 
 /// A level and its bricks, cut into short steps; finest first.
 pub(crate) fn steps(volume: &GpuVolume) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
-    (0..).zip(&volume.filled_levels).flat_map(|(level, bricks)| {
+    steps_of(&volume.filled_levels)
+}
+
+/// The same of lists of bricks, one for each level.
+pub(crate) fn steps_of(levels: &[Vec<u32>]) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
+    (0..).zip(levels).flat_map(|(level, bricks)| {
         // One step at least, so that the texture begins as nothing everywhere.
         let firsts = (0..bricks.len().max(1)).step_by(STEP_BRICKS);
         firsts.map(move |first| (level, first..bricks.len().min(first + STEP_BRICKS)))

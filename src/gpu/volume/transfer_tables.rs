@@ -4,7 +4,8 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::{GpuVolume, brick_dims};
+use super::materials::Materials;
+use super::{GpuVolume, LevelViews, Pyramids, brick_dims};
 use crate::data::CELL_EDGE;
 use crate::gpu::pipelines::variant::Ends;
 use crate::gpu::{Context, GpuError};
@@ -26,6 +27,8 @@ pub(crate) struct Table {
     clearance: u8,
     /// There is none.
     pub is_empty: bool,
+    /// What it makes of voxels, where these are classified before kernels spread them.
+    pub materials: Option<Arc<Materials>>,
 }
 
 impl Table {
@@ -37,11 +40,9 @@ impl Table {
         bounded: bool,
         known: impl IntoIterator<Item = &'a Self>,
     ) -> Self {
-        let numbers: Vec<f32> =
-            baked.entries.iter().flatten().chain(&baked.sides).chain(&baked.peaks).copied().collect();
-        let buffer = context.buffer("Table::buffer", &numbers, wgpu::BufferUsages::STORAGE);
+        let buffer = context.buffer("Table::buffer", &baked.numbers(), wgpu::BufferUsages::STORAGE);
         if let Some(known) = known.into_iter().find(|known| baked.shows_like(&known.baked)) {
-            return Self { baked: Arc::new(baked), buffer, ..known.clone() };
+            return Self { baked: Arc::new(baked), buffer, materials: None, ..known.clone() };
         }
         let dims = volume.bricks.dims;
         let occupied = BrickSet::new(dims, volume.bricks.occupancy(baked.visibility()));
@@ -53,12 +54,24 @@ impl Table {
         let is_empty = masks.iter().all(|mask: &u64| *mask == 0);
         let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
         let clearance = distances.least_at_faces(volume.volume.dims().map(|n| (n - 1) / CELL_EDGE));
-        Self { baked: Arc::new(baked), buffer, occupied: Arc::new(occupied), distances, clearance, is_empty }
+        Self {
+            baked: Arc::new(baked),
+            buffer,
+            occupied: Arc::new(occupied),
+            distances,
+            clearance,
+            is_empty,
+            materials: None,
+        }
     }
 
     /// Where what it shows ends with the data, for samples that see `dilation` cells around theirs, with kernels stretched
     /// up to a level of the pyramid.
     pub(crate) fn ends(&self, volume: &GpuVolume, dilation: i32, level: f64) -> Ends {
+        if self.materials.is_some() {
+            // What voxels mean ends with them by itself.
+            return Ends::Nowhere;
+        }
         let all = volume.ends_of_all();
         // Kernels reach two of their widths to either side of a face, which lies half a voxel before the first cell.
         let layers = level.exp2().ceil() as i32;
@@ -66,14 +79,29 @@ impl Table {
         if is_away && all == Ends::AtFaces { Ends::Nowhere } else { all }
     }
 
+    /// What it was baked to.
+    pub(crate) fn baked(&self) -> &Arc<BakedTransfer> {
+        &self.baked
+    }
+
+    /// What the density that is gathered means: the transfer function, or the extinction of shares of the largest.
+    pub(crate) fn gathered(&self) -> &wgpu::Buffer {
+        self.materials.as_ref().map_or(&self.buffer, |materials| &materials.table)
+    }
+
+    /// The pyramid of what is gathered.
+    pub(crate) fn pyramid<'a>(&'a self, volume: &'a GpuVolume) -> &'a LevelViews {
+        self.materials.as_ref().map_or(&volume.pyramid_views, |materials| &materials.views)
+    }
+
     /// Whether the lowest density has any extinction.
     pub(crate) fn shows_empty_space(&self) -> bool {
-        self.baked.entries[0][3] > 0.0
+        self.baked.shows_lowest()
     }
 
     /// The largest extinction of any density, per scene unit.
     pub(crate) fn largest_extinction(&self) -> f32 {
-        self.baked.entries.iter().map(|[.., extinction]| *extinction).fold(0.0, f32::max)
+        self.baked.most_extinction()
     }
 }
 
@@ -173,6 +201,16 @@ impl Tables {
         )?;
         let needed = RefCell::default();
         Ok((Self { eye, lighting, eye_distances, light_distances, shown, needed }, baked))
+    }
+
+    /// The pyramids of passes of the eye.
+    pub(crate) fn pyramids<'a>(&'a self, volume: &'a GpuVolume) -> Pyramids<'a> {
+        Pyramids { own: self.eye.pyramid(volume), lighting: Some(self.lighting.pyramid(volume)) }
+    }
+
+    /// The pyramids of passes that look at light alone.
+    pub(crate) fn lighting_pyramids<'a>(&'a self, volume: &'a GpuVolume) -> Pyramids<'a> {
+        Pyramids { own: self.lighting.pyramid(volume), lighting: None }
     }
 
     /// Where what either shows ends with the data, for samples of the eye and rays from them.

@@ -240,6 +240,24 @@ impl Settings {
             && classification == Classification::Post
     }
 
+    /// The kernel of what the eye gathers: voxels that are classified first are spread by the prefiltered one, whichever
+    /// is chosen.
+    pub fn eye_kernel(&self) -> Kernel {
+        self.kernel_of_gathered(self.sampling.kernel)
+    }
+
+    /// The same of what light gathers on its way.
+    pub fn light_kernel(&self) -> Kernel {
+        self.kernel_of_gathered(self.shadows.kernel)
+    }
+
+    fn kernel_of_gathered(&self, chosen: Kernel) -> Kernel {
+        match self.sampling.classification {
+            Classification::Post => chosen,
+            Classification::Pre => Kernel::Prefiltered,
+        }
+    }
+
     /// How thick slabs are that look like those of the settings and are even, in smallest voxel edges: slabs by need
     /// cost, and err, as halves of the thickest do.
     pub fn mean_slab(&self) -> f64 {
@@ -275,8 +293,8 @@ impl Settings {
     /// Whether normals are those of what the kernel reconstructs: not where voxels are splatted and no density is
     /// sampled, and only of the B-spline, whose slope is continuous.
     pub fn has_kernel_gradients(&self) -> bool {
-        let Sampling { gradients, kernel, .. } = self.sampling;
-        gradients == Gradients::Kernel && kernel == Kernel::BSpline && !self.scatters()
+        let is_smooth = self.eye_kernel() == Kernel::BSpline;
+        self.sampling.gradients == Gradients::Kernel && is_smooth && !self.scatters()
     }
 
     /// Whether voxels are composited one by one, and never summed in sheets.

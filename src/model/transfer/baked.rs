@@ -59,6 +59,27 @@ impl BakedTransfer {
         Self { sides: sides(&entries), peaks: peaks(&entries), entries }
     }
 
+    /// Extinctions that rise evenly from nothing to the largest, of no colour of their own: those of shares of it.
+    pub fn of_shares(largest: f32) -> Self {
+        let last = (LUT_SIZE - 1) as f32;
+        Self::new((0..LUT_SIZE).map(|entry| [1.0, 1.0, 1.0, largest * entry as f32 / last]).collect())
+    }
+
+    /// All numbers one after the other, as shaders declare them (`density/table.wgsl`).
+    pub(crate) fn numbers(&self) -> Vec<f32> {
+        self.entries.iter().flatten().chain(&self.sides).chain(&self.peaks).copied().collect()
+    }
+
+    /// The largest extinction of any density, per scene unit.
+    pub fn most_extinction(&self) -> f32 {
+        self.entries.iter().map(|[.., extinction]| *extinction).fold(0.0, f32::max)
+    }
+
+    /// Whether the lowest density has any extinction.
+    pub(crate) fn shows_lowest(&self) -> bool {
+        self.entries[0][3] > 0.0
+    }
+
     /// Whether both have extinction at the same densities: only how much, and of which colour, differs.
     pub fn shows_like(&self, other: &Self) -> bool {
         let pairs = self.entries.iter().zip(&other.entries);

@@ -59,6 +59,7 @@ struct SamplingKey {
 #[derive(Debug, Clone, PartialEq)]
 struct RaysKey {
     opacity: OpacityKey,
+    classification: Classification,
     shadows: Shadows,
 }
 
@@ -73,7 +74,11 @@ impl SamplingKey {
 
 impl RaysKey {
     fn of(settings: &Settings) -> Self {
-        Self { opacity: OpacityKey::of(settings), shadows: settings.shadows.clone() }
+        Self {
+            opacity: OpacityKey::of(settings),
+            classification: settings.sampling.classification,
+            shadows: settings.shadows.clone(),
+        }
     }
 }
 

@@ -123,12 +123,8 @@ impl LightKey {
             hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
             density_scale: *density_scale,
             algorithm: *algorithm,
+            classification: *classification,
             // Rays need no sheets.
-            classification: if *algorithm == ShadowAlgorithm::Splat {
-                *classification
-            } else {
-                Classification::Post
-            },
             engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
             opacity: OpacityKey::of(&request.settings),
             first_touch: *first_touch,

@@ -26,9 +26,9 @@ impl Reference<'_> {
         self.remaining(&[CutEffect::Removed, CutEffect::Shadowless])
     }
 
-    /// Where what the eye sees ends: at cuts, and at the grid's own faces, unless presence says so already.
+    /// Where what the eye sees ends: at cuts, and at the grid's own faces, unless what is there says so already.
     pub(in crate::reference) fn faces(&self) -> Remaining {
-        if self.presence.is_some() {
+        if self.presence.is_some() || self.classified.is_some() {
             return self.seen();
         }
         let crop = &self.settings.cuts.crop;

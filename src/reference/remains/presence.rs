@@ -42,7 +42,7 @@ impl Reference<'_> {
 
     /// The gradient in scene space of something solid that ends where voxels are missing.
     pub(in crate::reference) fn missing_gradient(&self, point: DVec3, level: f64) -> DVec3 {
-        if self.presence.is_none() {
+        if self.presence.is_none() || self.classified.is_some() {
             return DVec3::ZERO;
         }
         let profile = self.profile(self.settings.sampling.kernel);

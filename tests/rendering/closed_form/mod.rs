@@ -9,6 +9,7 @@ use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
 mod absorption;
 mod brightness;
 mod kernels;
+mod labels;
 mod lights;
 mod path_tracer;
 mod presence;

@@ -4,7 +4,7 @@ use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
     Classification, ControlPoint, Engine, Interpolation, Kernel, Settings, TransferFunction,
 };
-use chiaroscuro::reference::cubic_b_spline;
+use chiaroscuro::reference::{cubic_b_spline, tent};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
@@ -48,9 +48,14 @@ fn constant(value: u8) -> Dataset {
     Dataset::new(Volume::with_spacing("constant", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
 }
 
-/// The share of the B-spline's weights on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
-fn edge_profile(depth: f64) -> f64 {
-    (0..4).map(|voxel| cubic_b_spline(depth - 0.5 - f64::from(voxel))).sum()
+/// The share of a kernel's weights on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
+fn edge_profile(kernel: Kernel, depth: f64) -> f64 {
+    let weight = |away: f64| match kernel {
+        // [1, 10, 1] / 12, and the tent of a linear fetch.
+        Kernel::Prefiltered => (10.0 * tent(away) + tent(away - 1.0) + tent(away + 1.0)) / 12.0,
+        _ => cubic_b_spline(away),
+    };
+    (0..4).map(|voxel| weight(depth - 0.5 - f64::from(voxel))).sum()
 }
 
 /// Along an axis, a ray sees 1 − e^(−μ·n) of a volume of one value, times the kernel's edge profile beside it.
@@ -81,7 +86,9 @@ fn a_constant_volume_ends_at_its_faces(engine: Engine) {
                 let index = scene.index_from_scene.transform_point3(origin);
                 // The camera looks along y: x is across.
                 let depth = (index.x + 0.5).min(N as f64 - 0.5 - index.x);
-                let share = if depth > 1.5 { 1.0 } else { edge_profile(depth.max(-1.5)) };
+                // Gathered voxels that are classified first are spread by the prefiltered kernel.
+                let kernel = if engine == Engine::Gather { settings.eye_kernel() } else { Kernel::BSpline };
+                let share = if depth > 1.5 { 1.0 } else { edge_profile(kernel, depth.max(-1.5)) };
                 let expected = 1.0 - (-per_voxel * N as f64 * share).exp();
                 let found = f64::from(picture.light[48 * 96 + column as usize][3]);
                 assert!(

@@ -1,0 +1,24 @@
+// What fills the levels of a pyramid: listed bricks of 8³ texels. Elsewhere is nothing, as textures begin.
+#import "common/listed_bricks.wgsl"
+
+struct Resample {
+    // Bricks listed for this dispatch.
+    bricks: u32,
+    // Of the level's texels, in voxels.
+    spacing: f32,
+    pad0: u32,
+    pad1: u32,
+}
+
+@group(0) @binding(3) var<uniform> bound_resample: Resample;
+var<private> resample: Resample;
+@group(0) @binding(5) var<storage, read> bricks: array<u32>;
+
+// The texel that an invocation fills; beyond every level if there is none.
+fn texel_of(group: vec3u, local: vec3u) -> vec3u {
+    let listed = listed_brick(group);
+    if (listed >= resample.bricks) {
+        return vec3u(~0u);
+    }
+    return voxel_in(bricks[listed], group, local);
+}

@@ -1,0 +1,74 @@
+// Level 0 of classified voxels: what each of them means, blurred as densities are (volume/prefilter.wgsl). First the
+// extinction as a share of the table's largest, then colours times that, so that all of it can be summed.
+//
+// A workgroup classifies its 8 × 8 × 4 texels and those around them, each once.
+#import "density/table.wgsl"
+#import "volume/levels.wgsl"
+
+// Voxels, with the border once more around them.
+@group(0) @binding(0) var source: texture_3d<f32>;
+@group(0) @binding(2) var level: texture_storage_3d<rgba16float, write>;
+// The share of what is blurred that lies on voxels that are there.
+@group(0) @binding(4) var presence_level: texture_3d<f32>;
+
+const WIDTH = 10u;
+const DEPTH = 6u;
+const COUNT = 600u;
+// Invocations of a workgroup.
+const INVOCATIONS = 256u;
+
+var<workgroup> voxels: array<vec4f, COUNT>;
+
+// What a voxel means; beyond the grid is nothing.
+fn meaning(place: vec3i) -> vec4f {
+    let last = vec3i(textureDimensions(source)) - 1;
+    // Texels of the border are no voxels.
+    let voxel = clamp(place + 1, vec3i(1), last - 1);
+    let material = classify(textureLoad(source, voxel, 0).r);
+    // The largest of all entries.
+    let share = material.a / max(table.peaks[10u * TABLE_SIZE], 1e-20);
+#if MISSING
+    // Others stand in for voxels that are missing, and the sum fades with what is there.
+    let is_there = true;
+#else
+    let is_there = all(voxel == place + 1);
+#endif
+    return select(vec4f(0.0), vec4f(share, material.rgb * share), is_there);
+}
+
+@compute @workgroup_size(8, 8, 4)
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(local_invocation_index) index: u32,
+) {
+    resample = bound_resample;
+    let listed = min(listed_brick(group), resample.bricks - 1u);
+    // The pyramid begins four voxels before the grid, and the blur a texel before those that are filled.
+    let first = vec3i(voxel_in(bricks[listed], group, vec3u(0u))) - 5;
+    for (var turn = 0u; turn < COUNT; turn += INVOCATIONS) {
+        let at = min(turn + index, COUNT - 1u);
+        voxels[at] = meaning(first + vec3i(vec3u(at % WIDTH, at / WIDTH % WIDTH, at / (WIDTH * WIDTH))));
+    }
+    workgroupBarrier();
+    var sum = vec4f(0.0);
+    for (var z = 0u; z < 3u; z += 1u) {
+        for (var y = 0u; y < 3u; y += 1u) {
+            for (var x = 0u; x < 3u; x += 1u) {
+                let side = vec3u(x, y, z);
+                // [1, 10, 1] / 12 along each axis.
+                let weights = select(vec3f(1.0 / 12.0), vec3f(5.0 / 6.0), side == vec3u(1u));
+                let at = local + side;
+                sum += weights.x * weights.y * weights.z * voxels[at.x + WIDTH * (at.y + WIDTH * at.z)];
+            }
+        }
+    }
+    let texel = texel_of(group, local);
+    if (any(texel >= textureDimensions(level))) {
+        return;
+    }
+#if MISSING
+    sum *= textureLoad(presence_level, texel, 0).r;
+#endif
+    textureStore(level, texel, sum);
+}

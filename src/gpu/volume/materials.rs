@@ -1,0 +1,178 @@
+//! What the voxels mean, where they are classified before kernels spread them: a pyramid like that of densities, with four
+//! channels. The first is the extinction as a share of the largest, which takes the place of the density: normals are of
+//! it, light is attenuated by it, and a table says how much extinction it is. The others are colours times that.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::listed_bricks::workgroups;
+use super::prefilter::{self, level_of, uniform_and_list};
+use super::shapes::padded;
+use super::transfer_tables::Table;
+use super::{Gpu, GpuVolume, LevelViews, texture_3d};
+use crate::data::BRICK_EDGE;
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::pipelines::variant::{Constants, Only, Variant, flag};
+use crate::gpu::resources::pass;
+use crate::gpu::volume::listed_bricks::packed;
+use crate::gpu::{Context, GpuError};
+use crate::model::BakedTransfer;
+use crate::plan::MAX_STRETCH_LEVEL;
+
+/// Classified voxels.
+#[derive(Debug)]
+pub(crate) struct Materials {
+    /// The transfer function.
+    baked: Arc<BakedTransfer>,
+    texture: wgpu::Texture,
+    pub views: LevelViews,
+    /// How much extinction a share of the largest is, in place of the transfer function.
+    pub table: wgpu::Buffer,
+    /// Bricks of its levels that may hold anything.
+    bricks: Vec<Vec<u32>>,
+    /// All bricks are among them.
+    holds_all: bool,
+    is_complete: AtomicBool,
+}
+
+impl Materials {
+    /// Room for the voxels of a volume, or the room that others leave; nothing is classified yet.
+    ///
+    /// # Errors
+    /// When the adapter cannot hold them.
+    pub(crate) fn new(
+        context: &Context,
+        volume: &GpuVolume,
+        baked: &Arc<BakedTransfer>,
+        left: Option<Self>,
+    ) -> Result<Self, GpuError> {
+        let shares = BakedTransfer::of_shares(baked.most_extinction());
+        let table = context.buffer("Materials::table", &shares.numbers(), wgpu::BufferUsages::STORAGE);
+        let (texture, held_all) = match left {
+            Some(left) => (left.texture, left.holds_all),
+            None => (Self::texture(context, volume.volume.dims())?, false),
+        };
+        // The lowest density is what bricks hold that are not listed.
+        let holds_all = held_all || baked.shows_lowest();
+        let bricks = if holds_all { all_bricks(&texture) } else { volume.filled_levels.clone() };
+        Ok(Self {
+            baked: Arc::clone(baked),
+            views: LevelViews::new(&texture),
+            texture,
+            table,
+            bricks,
+            holds_all,
+            is_complete: AtomicBool::new(false),
+        })
+    }
+
+    fn texture(context: &Context, dims: [usize; 3]) -> Result<wgpu::Texture, GpuError> {
+        context.texture(&wgpu::TextureDescriptor {
+            mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
+            ..texture_3d(
+                "Materials::texture",
+                padded(dims),
+                wgpu::TextureFormat::Rgba16Float,
+                wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+            )
+        })
+    }
+
+    /// Whether it is what a transfer function makes of voxels.
+    pub(crate) fn is_of(&self, baked: &BakedTransfer) -> bool {
+        self.baked.entries == baked.entries
+    }
+
+    /// Everything of it is there from now on.
+    pub(crate) fn finish(&self) {
+        self.is_complete.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether everything of it is there.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.is_complete.load(Ordering::Relaxed)
+    }
+
+    /// Levels and their bricks, cut into short steps; finest first.
+    pub(crate) fn steps(&self) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
+        prefilter::steps_of(&self.bricks)
+    }
+
+    /// Fills some bricks of one level. The finer level must be complete. `table` is that of the transfer function.
+    pub(crate) fn fill(
+        &self,
+        gpu: Gpu<'_>,
+        table: &Table,
+        level: u32,
+        range: &Range<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Gpu { context, shaders, volume, placeholder, .. } = gpu;
+        let bricks = &self.bricks[level as usize][range.clone()];
+        let pipeline = match level {
+            0 => shaders.pipeline(&MaterialsVariant { has_missing: volume.presence.is_some() })?,
+            _ => shaders.pipeline(&Only("volume/downsample_materials.wgsl"))?,
+        };
+        let source = match level {
+            0 => volume.density_view.clone(),
+            _ => level_of(&self.texture, level - 1),
+        };
+        let presence = volume.presence.as_ref().map(|presence| level_of(&presence.texture, 0));
+        let (uniform, list) = uniform_and_list(context, level, bricks);
+        let target = level_of(&self.texture, level);
+        let mut entries = vec![
+            view_of("source", &source),
+            view_of("level", &target),
+            buffer("bound_resample", &uniform),
+            buffer("bricks", &list),
+        ];
+        match level {
+            0 => entries.extend([
+                buffer("table", &table.buffer),
+                view_of("presence_level", presence.as_ref().unwrap_or(placeholder)),
+            ]),
+            _ => entries.push(sampler("clamped", &volume.clamped)),
+        }
+        let bind_group = pass::bind(context, "Materials::bind_group", &pipeline, 0, &entries);
+        let groups = workgroups(bricks.len().max(1) as u32);
+        pass::dispatch(encoder, "Materials::fill", &pipeline, &[&bind_group], groups);
+        Ok(())
+    }
+
+    /// Bytes of its texture.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.texture.size();
+        let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
+        // The coarser levels add a seventh.
+        texels * 64 / 7
+    }
+}
+
+/// What tells one pipeline that classifies voxels from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct MaterialsVariant {
+    has_missing: bool,
+}
+
+impl Variant for MaterialsVariant {
+    fn shader(&self) -> &'static str {
+        "volume/materials.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        vec![flag("MISSING", self.has_missing)]
+    }
+}
+
+/// All bricks of each level of a texture.
+fn all_bricks(texture: &wgpu::Texture) -> Vec<Vec<u32>> {
+    let size = texture.size();
+    let size = [size.width, size.height, size.depth_or_array_layers];
+    let of_level = |level: u32| {
+        let [nx, ny, nz] = size.map(|n| ((n >> level).max(1) as usize).div_ceil(BRICK_EDGE));
+        let place = |at: usize| [at % nx, at / nx % ny, at / (nx * ny)];
+        (0..nx * ny * nz).map(|at| packed(place(at))).collect()
+    };
+    (0..texture.mip_level_count()).map(of_level).collect()
+}

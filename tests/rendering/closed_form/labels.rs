@@ -1,0 +1,102 @@
+//! Numbers of labels are never mixed: between labels 3 and 9 is no shell of those from 4 to 8.
+
+use chiaroscuro::data::{Samples, Volume};
+use chiaroscuro::model::{
+    Classification, ControlPoint, Engine, Kernel, NearField, Settings, ShadowAlgorithm, TransferFunction,
+};
+use glam::DVec3;
+
+use super::{base, renderer, with_both_engines};
+use crate::common::{Dataset, render};
+
+with_both_engines! {
+    labels_between_are_not_seen
+}
+
+/// Voxels along an edge.
+const N: usize = 32;
+
+/// A ball of label 9 within one of label 3, amid nothing.
+fn nested_balls() -> Dataset {
+    let label = |at: usize| {
+        let p = DVec3::new((at % N) as f64, (at / N % N) as f64, (at / N / N) as f64);
+        match p.distance(DVec3::splat(0.5 * (N - 1) as f64)) {
+            d if d < 7.0 => 9,
+            d if d < 13.0 => 3,
+            _ => 0,
+        }
+    };
+    let values = (0..N * N * N).map(label).collect();
+    Dataset::new(Volume::with_spacing("balls", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
+}
+
+/// Label 3 is blue and faint, label 9 red; all others are green.
+fn look(engine: Engine) -> Settings {
+    let steps = [
+        (0.5, [0.0, 1.0, 0.0], 0.0),
+        (2.5, [0.0, 1.0, 0.0], 0.9),
+        (3.5, [0.0, 0.0, 1.0], 0.05),
+        (8.5, [0.0, 1.0, 0.0], 0.9),
+        (9.5, [1.0, 0.0, 0.0], 0.6),
+    ];
+    let mut from = -0.5;
+    let mut points = Vec::new();
+    for (to, color, opacity) in steps {
+        points.extend([from + 1e-3, to - 1e-3].map(|value| ControlPoint::new(value, color, opacity)));
+        from = to;
+    }
+    let transfer = TransferFunction { points, ..TransferFunction::default() };
+    let mut settings = Settings { transfer, ..base(engine, 0.1) };
+    settings.sampling.classification = Classification::Pre;
+    settings.shading.specular = 0.0;
+    settings
+}
+
+fn labels_between_are_not_seen(engine: Engine) {
+    let loaded = nested_balls();
+    let mut renderer = renderer();
+    let mut brightest = |settings: &Settings| {
+        let picture = render(&mut renderer, &loaded, settings, [72, 72]);
+        let most = |channel: usize| picture.light.iter().map(|texel| texel[channel]).fold(0.0, f32::max);
+        [0, 1, 2].map(most)
+    };
+    for kernel in [Kernel::BSpline, Kernel::Prefiltered] {
+        for distance in [3.0, 16.0] {
+            let mut settings = look(engine);
+            settings.sampling.kernel = kernel;
+            settings.camera.distance = distance;
+            let [red, green, blue] = brightest(&settings);
+            assert!(red > 0.1 && blue > 0.02, "{kernel:?} from {distance}: {red} {blue}");
+            assert!(green == 0.0, "{kernel:?} from {distance}: {green}");
+            // If what is spread is classified, the shells are there.
+            settings.sampling.classification = Classification::Post;
+            let [_, green, _] = brightest(&settings);
+            assert!(green > 0.02, "{kernel:?} from {distance}: {green}");
+        }
+    }
+    // Light, too, meets none of them: with its own table green is the only thing that attenuates it.
+    let mut settings = look(engine);
+    settings.lighting.linked = false;
+    settings.lighting.curve = TransferFunction {
+        points: settings
+            .transfer
+            .points
+            .iter()
+            .map(|point| {
+                let is_green = point.color[1] > 0.5;
+                ControlPoint::new(point.value, [1.0; 3], if is_green { point.opacity } else { 0.0 })
+            })
+            .collect(),
+        ..TransferFunction::default()
+    };
+    for near_field in [NearField::Off, NearField::Long] {
+        settings.shadows.near_field = near_field;
+        settings.shadows.algorithm = ShadowAlgorithm::Splat;
+        let shadowed = brightest(&settings);
+        settings.shadows.algorithm = ShadowAlgorithm::Off;
+        let unshadowed = brightest(&settings);
+        for (a, b) in shadowed.into_iter().zip(unshadowed) {
+            assert!((a - b).abs() < 1e-3 * b.max(0.1), "{near_field:?}: {shadowed:?} {unshadowed:?}");
+        }
+    }
+}
