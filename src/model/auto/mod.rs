@@ -1,8 +1,9 @@
-//! A first look at a volume that needs no touch: transfer function, camera and lights from the
-//! values alone.
+//! A first look at a volume that needs no touch: transfer function, camera, floor and lights from its values, and from
+//! what its file says of them.
 //!
-//! What is around the object is recognised by the volume's own border: most scans have a margin.
-//! The opacity ramp starts above it, at the value that best splits the volume in two (Otsu 1979).
+//! The kind of data decides what is shown: every label, both sides of zero, bone. Of other data what is around the
+//! object is recognised by the volume's own border, since most scans have a margin, and opacity begins between that and
+//! the value that best splits the volume in two (Otsu 1979).
 
 mod domain;
 mod floor;
@@ -15,18 +16,20 @@ mod palette;
 mod robustness;
 mod threshold;
 mod transfer;
+mod treated;
 mod view;
 mod visible;
 
 pub use self::floor::{floor_color, wants_floor};
 pub use self::looks::{Proposal, looks};
+pub use self::treated::treated_as;
 
 use self::domain::Domain;
 use self::object::Object;
 pub use self::visible::{densest, show_something};
 use super::{
-    Camera, Classification, DensityRange, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading,
-    Shadows, TransferFunction,
+    Camera, Classification, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading, Shadows,
+    TransferFunction,
 };
 use crate::data::{DataKind, Histogram, KindName, Volume};
 
@@ -84,7 +87,7 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
     Quality::Standard.apply(&mut settings);
     if let DataKind::LabelMap { .. } = kind {
         // Between two labels there is none of the numbers between them, and none of them is an outlier.
-        settings.range = DensityRange::Full;
+        settings.range = transfer::range_of_labels(volume);
         settings.sampling.classification = Classification::Pre;
     }
     aim(&mut settings, volume);
@@ -158,11 +161,6 @@ pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
     transfer_as(volume, histogram, None)
 }
 
-/// A transfer function that shows what begins at the density `start`.
-fn ramp(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction {
-    transfer::beginning_at(volume, histogram, start)
-}
-
 /// A transfer function as if the volume held data of that kind; of its own where none is named.
 pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> TransferFunction {
     with_what_matters(volume, histogram, |volume, histogram| {
@@ -170,9 +168,9 @@ pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<Ki
     })
 }
 
-/// The labels of a label map that settings do not show.
+/// How many labels of a label map settings do not show, or not in the colour that they give them.
 pub fn labels_lost(settings: &Settings, volume: &Volume) -> usize {
-    transfer::lost_labels(&settings.transfer, volume)
+    transfer::lost_labels(settings, volume)
 }
 
 /// What of a histogram lies above a density.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::isosurfaces::Isosurfaces;
 use super::object::Object;
-use super::{aim, ramp, threshold, transfer};
+use super::{aim, threshold, transfer};
 use crate::data::{DataKind, Histogram, ValueRange, Volume};
 use crate::model::{
     ControlPoint, DensityRange, FRAME_ASPECT, Interpolation, LightingTransfer, Settings, TransferFunction,
@@ -35,8 +35,11 @@ pub(super) fn or_another(
     }
     let robust = |transfer: TransferFunction| Settings { transfer, ..first.clone() };
     let others: [&dyn Fn() -> Settings; 4] = [
-        &|| robust(ramp(volume, histogram, threshold::otsu(histogram))),
-        &|| robust(ramp(volume, histogram, Isosurfaces::of(volume).best().unwrap_or(0.5))),
+        &|| robust(transfer::beginning_at(volume, histogram, threshold::otsu(histogram))),
+        &|| {
+            let start = Isosurfaces::of(volume).best().unwrap_or(0.5);
+            robust(transfer::beginning_at(volume, histogram, start))
+        },
         &|| {
             let all = volume.showing(volume.value_range());
             let transfer = transfer::find(&all, &Histogram::of(&all), kind).transfer;
