@@ -33,7 +33,7 @@ fn info_says_what_kind_of_data_it_is_and_what_the_file_says_of_it() {
     let file = [header.as_bytes(), &[0, 3, 3, 0, 3, 3, 0, 7]].concat();
     std::fs::write(folder.path("s.nrrd"), file).expect("a file");
     let facts: Value = serde_json::from_str(&folder.succeed("info s.nrrd --json")).expect("valid JSON");
-    assert_eq!(facts["kind"], serde_json::json!({ "name": "labels", "labels": 2 }));
+    assert_eq!(facts["kind"], serde_json::json!({ "name": "labels", "labels": 1 }), "without padding");
     assert!(facts["kind_why"].as_str().is_some_and(|why| why.contains("the file says")));
     let hints = &facts["hints"];
     assert_eq!(
@@ -101,6 +101,17 @@ fn what_is_named_is_not_decided() {
     assert_eq!(flat["shadows"]["algorithm"], "off");
     flat["shadows"]["algorithm"] = first["shadows"]["algorithm"].clone();
     assert_eq!(flat, first, "lights, balance and exposure do not depend on it");
+}
+
+#[test]
+fn a_floor_is_as_dark_as_the_exposure_asks() {
+    let folder = Folder::new();
+    folder.succeed("render builtin:box:24 -o p.png --size 48x36 --report r.json");
+    let settings = folder.json("r.json")["settings"].clone();
+    assert_eq!(settings["floor"]["on"], true, "a box stands");
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let shown = number(&settings["floor"]["color"][0]) * number(&settings["output"]["exposure"]);
+    assert!((shown - 0.36).abs() < 1e-5, "{shown}");
 }
 
 #[test]
