@@ -156,12 +156,8 @@ fn voxels_of_file(volume: &Volume) -> f64 {
     (count(volume.dims()) / count(volume.file_dims())).cbrt()
 }
 
-/// A transfer function that shows the object and hides what is around it.
-pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
-    transfer_as(volume, histogram, None)
-}
-
-/// A transfer function as if the volume held data of that kind; of its own where none is named.
+/// A transfer function that shows the object and hides what is around it, as if the volume held data of a kind; of its own
+/// where none is named.
 pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> TransferFunction {
     with_what_matters(volume, histogram, |volume, histogram| {
         transfer::find(volume, histogram, kind_of(volume, treated_as)).transfer
@@ -276,7 +272,7 @@ mod tests {
     fn the_object_is_shown_and_its_surroundings_are_not() {
         for (inside, outside) in [(200.0, 0.0), (1200.0, -1000.0), (60.0, 40.0)] {
             let volume = ball(inside, outside);
-            let function = transfer(&volume, &Histogram::of(&volume));
+            let function = transfer_as(&volume, &Histogram::of(&volume), None);
             assert_eq!(function.opacity_at(f64::from(outside) + 6.0), 0.0, "{inside} {outside}");
             assert!(function.opacity_at(f64::from(inside) + 6.0) > 0.1, "{inside} {outside}");
         }
@@ -314,7 +310,7 @@ mod tests {
             Volume::with_spacing("one", [8; 3], DVec3::ONE, Samples::U8(values)).unwrap()
         };
         for volume in [constant, one] {
-            let function = transfer(&volume, &Histogram::of(&volume));
+            let function = transfer_as(&volume, &Histogram::of(&volume), None);
             assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{function:?}");
         }
     }

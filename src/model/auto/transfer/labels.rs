@@ -43,9 +43,12 @@ pub(in crate::model::auto) fn range(volume: &Volume) -> DensityRange {
     if 2.0 * volume.value_range().span() <= steps {
         return DensityRange::Full;
     }
-    // Else an entry lies on each number, if there are enough; the first is that of nothing.
-    let nothing = first as f64 - 1.0;
-    let span = (last as f64 - nothing).max(steps);
+    // Else the first entry is that of nothing, and the second lies on the lowest number: one on each number, if there are
+    // enough. If not, numbers beside each other may share a colour, but the lowest do not fade into nothing, unless they
+    // are so near zero, which is what is around.
+    let step = ((last - first) as f64 / (steps - 1.0)).max(1.0);
+    let nothing = (first as f64 - step).max(0.0);
+    let span = steps * step;
     // Numbers beyond all that can be told apart have no range.
     ValueRange::spread(nothing, nothing + span).map_or(DensityRange::Full, DensityRange::Typed)
 }

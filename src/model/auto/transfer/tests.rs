@@ -180,6 +180,13 @@ fn labels_are_told_apart_in_the_table_where_it_has_an_entry_for_each() {
         let is_enough = first + count <= 512;
         assert_eq!(labels_lost(&all, &volume) == 0, is_enough, "{count} from {first}");
     }
+    // Where there are too few entries, the lowest is seen all the same.
+    let many = regions(5000, 3000);
+    let settings = look(&many);
+    let range = settings.shown_range(&many.ranges());
+    let table = settings.transfer.bake(range, 1.0, 1.0);
+    assert!(table.sample(many.showing(range).density_of(5000.0))[3] > 0.5);
+    assert_eq!(table.sample(many.showing(range).density_of(0.0))[3], 0.0);
     // No range has an entry for each of these.
     for volume in [
         regions(1, 3000),
