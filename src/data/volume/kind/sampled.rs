@@ -243,7 +243,7 @@ pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
     values.get(at.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
 }
 
-/// What a volume's file says is no value; also where the volume is nothing else, or was averaged since.
+/// What a volume's file says is no value; also where the volume has no other, which is shown as it is then.
 fn declared_padding(volume: &Volume) -> Option<f64> {
     volume.padding_value().or(volume.hints().padding)
 }
