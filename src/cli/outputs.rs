@@ -108,6 +108,13 @@ pub(super) fn warn_line(text: &str) {
     writeln!(std::io::stderr(), "{}", without_controls(text)).ok();
 }
 
+/// Says that pictures show nothing of a volume, and what helps.
+pub(super) fn warn_of_nothing() {
+    warn_line(
+        "warning: nothing of the volume is visible; --set range=full, another --preset, or none, may help",
+    );
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

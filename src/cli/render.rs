@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::CliError;
 use super::image_args::ImageArgs;
-use super::outputs::{destination, finish, hand_over, warn_line};
+use super::outputs::{destination, finish, hand_over, warn_line, warn_of_nothing};
 use super::scene::SceneArgs;
 use crate::export::{Destination, check_picture, check_writable, write_atomically, write_picture};
 use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
@@ -99,9 +99,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     };
     write_picture(output.path(), &shot, Some(&record), &mut rows)?;
     if renderer.shows_nothing() {
-        warn_line(
-            "warning: nothing of the volume is visible; --set range=full, another --preset, or none, may help",
-        );
+        warn_of_nothing();
     }
     // A report without its picture would mislead.
     let is_told = report_to.as_ref().is_some_and(Destination::is_standard_output);

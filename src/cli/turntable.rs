@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::CliError;
-use super::outputs::{print_line, warn_line};
+use super::outputs::{print_line, warn_line, warn_of_nothing};
 use super::scene::{SceneArgs, parse_size};
 use crate::export::{Animation, AnimationFormat, AnimationSpec, frame_names};
 use crate::gpu::{RenderOptions, Renderer};
@@ -79,9 +79,7 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
         }
     }
     if renderer.shows_nothing() {
-        warn_line(
-            "warning: nothing of the volume is visible; --set range=full, another --preset, or none, may help",
-        );
+        warn_of_nothing();
     }
     file.finish()?;
     print_line(&format!("{}", args.output.display()))?;

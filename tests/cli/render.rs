@@ -205,9 +205,27 @@ fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
     folder.fail("render builtin:sphere:24 -o no.png --as something", 2);
 }
 
-/// The report has the settings: a volume that is stood up is lit and framed as it stands.
+/// The sphere alone, which floats above a plate.
 #[test]
-fn a_single_setting_stands_the_object_up() {
+fn the_floor_lies_under_what_is_shown() {
+    let folder = Folder::new();
+    let height = |arguments: &str| {
+        folder
+            .succeed(&format!("render builtin:sphere:24 -o p.png --size 32x24 --report r.json {arguments}"));
+        folder.json("r.json")["settings"]["floor"]["height"].as_f64().expect("a number")
+    };
+    let points = r#"[{"value": 150, "opacity": 0}, {"value": 190, "opacity": 0.9}]"#;
+    folder.write("sphere.json", format!(r#"{{"transfer": {{"points": {points}}}}}"#));
+    let [under_plate, under_sphere] = ["", "--preset sphere.json"].map(height);
+    assert!(under_plate < -0.6, "{under_plate}");
+    // A third below its middle at a quarter, and the voxels have twelve to a scene unit.
+    assert!((under_sphere + 1.0 / 12.0).abs() < 0.1, "{under_sphere}");
+    assert_eq!(height("--preset sphere.json --set floor.height=-0.9"), -0.9);
+}
+
+/// The report has the settings: a volume that is stood up is lit and framed as it stands, however that is said.
+#[test]
+fn whoever_names_what_is_up_stands_the_object_up() {
     let folder = Folder::new();
     let render = "render builtin:chair:24 -o p.png --size 32x24 --report r.json";
     folder.succeed(render);
@@ -218,5 +236,12 @@ fn a_single_setting_stands_the_object_up() {
         |settings: &serde_json::Value| settings["lights"][0]["position"][2].as_f64().expect("a number");
     assert!(height(&upright) > 0.0 && height(&on_its_head) < 0.0, "the light comes from above");
     assert_ne!(upright["floor"]["height"], on_its_head["floor"]["height"]);
+    folder.write("up.json", r#"{"camera": {"up": "minus_z"}}"#);
+    // Without a space, which would end the argument.
+    let camera = format!("--set camera={}", on_its_head["camera"]);
+    for how in ["--preset up.json", "--session up.json", &camera] {
+        folder.succeed(&format!("{render} {how}"));
+        assert_eq!(folder.json("r.json")["settings"], on_its_head, "{how}");
+    }
     assert!(folder.fail(&format!("{render} --set camera.up=sideways"), 2).contains("camera.up"));
 }

@@ -58,17 +58,19 @@ fn first_look_flaws(volume: &Volume) -> Vec<String> {
     let settings = auto::first_settings(volume, &Histogram::of(volume));
     let mut found = Vec::new();
     let values: Vec<f64> = settings.transfer.points.iter().map(|point| point.value).collect();
-    if !values.windows(2).all(|pair| pair[0] < pair[1]) {
+    if !values.windows(2).all(|pair| pair[0] <= pair[1]) {
         found.push(format!("control points do not ascend: {values:?}"));
     }
-    let visible: usize = (0..volume.dims()[2])
-        .map(|z| {
-            let slice = volume.slice_densities(z);
-            let opacity = |density: f32| settings.transfer.opacity_at(volume.value_of(f64::from(density)));
-            slice.into_iter().filter(|&density| opacity(density) > 0.05).count()
-        })
-        .sum();
-    let share = visible as f64 / volume.voxel_count() as f64;
+    // As pictures show it: what is missing is not there, and values beyond the range are the nearest in it.
+    let shown = volume.showing(settings.shown_range(&volume.ranges()));
+    let [nx, ny, nz] = shown.dims();
+    let places = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+    let (mut there, mut visible) = (0usize, 0usize);
+    for density in places.filter_map(|place| shown.density_at(place)) {
+        there += 1;
+        visible += usize::from(settings.transfer.opacity_at(shown.value_of(density)) > 0.05);
+    }
+    let share = visible as f64 / there as f64;
     println!("{}: {:.1} % of the voxels are visible", volume.name(), share * 100.0);
     // Less is a picture of nothing; more than two thirds is a block without a shape. (The
     // Marschner–Lobb signal fills more of its cube than any scan.)

@@ -29,7 +29,7 @@ impl Bench<'_> {
         let settings = found.as_ref().map_or_else(|| first.clone(), |found| found.apply(&first));
         let mut unshadowed = settings.clone();
         unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
-        let size = self.args.size.map(|edge| edge.min(MOST_SIZE));
+        let size = within(self.args.size, MOST_SIZE);
         let mut light = |settings| {
             self.renderer
                 .render(self.loaded, settings, size, &RenderOptions::default())
@@ -60,6 +60,15 @@ impl Bench<'_> {
         }));
         Ok(())
     }
+}
+
+/// A size of the same shape whose longest edge is no longer than `most`.
+fn within(size: [u32; 2], most: u32) -> [u32; 2] {
+    let longest = size[0].max(size[1]);
+    if longest <= most {
+        return size;
+    }
+    size.map(|edge| ((f64::from(edge) * f64::from(most) / f64::from(longest)).round() as u32).max(1))
 }
 
 /// CPU time of this process, from one call to the next.
@@ -122,4 +131,22 @@ pub(super) fn lines(cases: &[Value]) -> Vec<String> {
         );
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_pictures_keep_their_shape() {
+        for (size, expected) in [
+            ([512, 512], [400, 400]),
+            ([1600, 900], [400, 225]),
+            ([900, 1600], [225, 400]),
+            ([300, 200], [300, 200]),
+            ([10_000, 1], [400, 1]),
+        ] {
+            assert_eq!(within(size, 400), expected, "{size:?}");
+        }
+    }
 }

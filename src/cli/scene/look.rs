@@ -1,9 +1,10 @@
 //! The look that arguments describe, with what the program decides where nobody else does.
 
 use super::LookArgs;
+use super::overlay::Overlay;
 use crate::cli::CliError;
 use crate::data::Dataset;
-use crate::gpu::{Open, Renderer, finish_look, small_volume};
+use crate::gpu::{Open, Renderer, finish_look};
 use crate::model::{Settings, auto};
 
 /// Parts of a look that the program decides where nobody else does, by the paths of their settings.
@@ -32,9 +33,8 @@ impl Named {
     }
 }
 
-/// A look of a list that is proposed for a volume, counted from 1.
-pub(super) fn proposal(number: usize, first: &Settings, loaded: &Dataset) -> Result<Settings, CliError> {
-    let small = small_volume(loaded)?;
+/// A look of a list that is proposed for a volume, counted from 1; `small` is a small copy of the volume.
+pub(super) fn proposal(number: usize, first: &Settings, small: &Dataset) -> Result<Settings, CliError> {
     let mut looks = auto::looks(first, small.volume(), small.histogram());
     let count = looks.len();
     let at = number.checked_sub(1).filter(|&at| at < count);
@@ -47,20 +47,49 @@ pub(super) fn proposal(number: usize, first: &Settings, loaded: &Dataset) -> Res
     Ok(looks.swap_remove(at).settings)
 }
 
+/// Settings with those parts decided that are open.
+fn finished(
+    renderer: &mut Renderer,
+    loaded: &Dataset,
+    settings: &Settings,
+    open: &[Open],
+) -> Result<Settings, CliError> {
+    let mut look = finish_look(renderer, loaded, settings, open)?;
+    if look.floor.on && !settings.floor.on {
+        // How long the picture is exposed has been found since the floor was laid.
+        look.floor.color = auto::floor_color(look.output.exposure);
+    }
+    Ok(look)
+}
+
+/// A look that is made from the finished first one.
+#[derive(Debug)]
+pub(super) struct Proposed {
+    /// Which one, counted from 1.
+    pub(super) number: usize,
+    /// The first look before it is finished.
+    pub(super) automatic: Settings,
+    /// A small copy of the volume.
+    pub(super) small: Dataset,
+    /// What is laid over it.
+    pub(super) overlays: Vec<Overlay>,
+    /// The arguments.
+    pub(super) of: LookArgs,
+}
+
 /// A look that is complete but for what needs the GPU to be decided.
 #[derive(Debug)]
 pub(in crate::cli) struct Look {
     settings: Settings,
     named: Named,
-    /// What it is laid over.
-    automatic: Settings,
-    of: LookArgs,
+    /// Instead of the settings, where another look than the first was asked for.
+    proposed: Option<Proposed>,
 }
 
 impl Look {
     /// Settings that are laid over automatic ones, as the arguments say, and the parts that these name.
-    pub(super) fn new(settings: Settings, named: Named, automatic: Settings, of: LookArgs) -> Self {
-        Self { settings, named, automatic, of }
+    pub(super) fn new(settings: Settings, named: Named, proposed: Option<Proposed>) -> Self {
+        Self { settings, named, proposed }
     }
 
     /// The settings. Lights are placed and balanced, and the picture exposed, as the viewer does on load, unless preset,
@@ -71,16 +100,14 @@ impl Look {
         loaded: &Dataset,
     ) -> Result<Settings, CliError> {
         let open = self.named.open();
-        let number = self.of.look.unwrap_or(1);
-        if number == 1 {
-            return Ok(finish_look(renderer, loaded, &self.settings, &open)?);
-        }
-        // Others are made from the finished first look.
-        let first = finish_look(renderer, loaded, &self.automatic, &Named::default().open())?;
-        let proposed = proposal(number, &first, loaded)?;
+        let Some(Proposed { number, automatic, small, overlays, of }) = &self.proposed else {
+            return finished(renderer, loaded, &self.settings, &open);
+        };
+        let first = finished(renderer, loaded, automatic, &Named::default().open())?;
+        let proposed = proposal(*number, &first, small)?;
         // Warnings have been given.
-        let (settings, _) = self.of.laid_over(proposed, loaded, |_| {})?;
+        let (settings, _) = of.laid_over(proposed, overlays, loaded, |_| {})?;
         let brightness = [Open::Balance, Open::Exposure].into_iter().filter(|part| open.contains(part));
-        Ok(finish_look(renderer, loaded, &settings, &brightness.collect::<Vec<_>>())?)
+        finished(renderer, loaded, &settings, &brightness.collect::<Vec<_>>())
     }
 }

@@ -2,6 +2,7 @@
 
 mod choices;
 mod look;
+mod overlay;
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +10,18 @@ use clap::{Args, ValueEnum};
 
 use self::choices::{EngineArg, KindArg, QualityArg, ShadowArg};
 pub(super) use self::look::Look;
-use self::look::{Named, proposal};
+use self::look::{Named, Proposed, proposal};
+use self::overlay::Overlay;
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
 use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
-use crate::data::{Dataset, KindName, Volume, VoxelType, open, read_small};
-use crate::export::{PictureFormat, read_record};
-use crate::gpu::{Context, fitted};
+use crate::data::{Dataset, KindName, ValueRanges, Volume, VoxelType, open};
+use crate::gpu::{Context, fitted, small_volume};
 use crate::model::auto::Wishes;
-use crate::model::{Engine, MAX_EDGE, Preset, Quality, Record, Settings, ShadowAlgorithm, assign, auto};
+use crate::model::{Engine, MAX_EDGE, Quality, SceneAxis, Settings, ShadowAlgorithm, assign, auto};
+
+/// How high the floor lies, by its path.
+const FLOOR_HEIGHT: &str = "floor.height";
 
 /// How a volume is read.
 #[derive(Debug, Clone, Args)]
@@ -209,19 +213,30 @@ impl LookArgs {
         Ok(checked(downsampled_to_fit(source, whole, context)?))
     }
 
-    /// The automatic look, of a volume that stands as a single setting says: lights and floor are where they belong
-    /// then.
-    fn first_settings(&self, loaded: &Dataset) -> Settings {
-        let of_up = |assignment: &String| {
-            let (path, value) = assignment.split_once('=').filter(|(path, _)| path.trim() == "camera.up")?;
+    /// The preset and the session that the arguments name, the one that counts last.
+    fn overlays(&self) -> Result<Vec<Overlay>, CliError> {
+        let named = [("preset", &self.preset), ("session", &self.session)];
+        named.into_iter().filter_map(|(what, path)| Some(Overlay::read(what, path.as_ref()?))).collect()
+    }
+
+    /// The axis that is to point up, if preset, session or single settings name one.
+    fn up(&self, overlays: &[Overlay], ranges: &ValueRanges) -> Option<SceneAxis> {
+        let of_setting = |assignment: &String| {
+            let (path, value) = assignment.split_once('=')?;
+            let path = Some(path.trim()).filter(|path| ["camera", "camera.up"].contains(path))?;
             // What cannot be understood is said when it is its turn.
-            assign(&Settings::default(), path.trim(), value.trim())
-                .ok()
-                .map(|(settings, _)| settings.camera.up)
+            let (settings, _) = assign(&Settings::default(), path, value.trim()).ok()?;
+            Some(settings.camera.up)
         };
+        let of_overlays = overlays.iter().filter_map(|overlay| overlay.up(ranges));
+        of_overlays.chain(self.set.iter().filter_map(of_setting)).last()
+    }
+
+    /// The automatic look, of a volume that stands as somebody says: lights and floor are where they belong then.
+    fn first_settings(&self, overlays: &[Overlay], loaded: &Dataset) -> Settings {
         let (volume, histogram) = (loaded.volume(), loaded.histogram());
         let treated_as = self.treat_as.map(KindName::from);
-        let Some(up) = self.set.iter().rev().find_map(of_up) else {
+        let Some(up) = self.up(overlays, &volume.ranges()) else {
             return auto::first_settings_with(volume, histogram, Wishes { treated_as, ..Wishes::default() });
         };
         let mut settings = auto::first_settings_with(volume, histogram, Wishes { treated_as, up });
@@ -233,40 +248,44 @@ impl LookArgs {
     /// The automatic look, with preset, session and single settings laid over it.
     /// All of them are checked here, before anything slow begins.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
-        let automatic = self.first_settings(loaded);
-        let (settings, named) = self.laid_over(automatic.clone(), loaded, warn_line)?;
-        let number = self.look.unwrap_or(1);
-        if number != 1 {
-            // Whether there is one, and what it is laid under; lights are found later.
-            proposal(number, &automatic, loaded)?;
-        }
-        Ok(Look::new(settings, named, automatic, self.clone()))
+        let overlays = self.overlays()?;
+        let automatic = self.first_settings(&overlays, loaded);
+        let (settings, named) = self.laid_over(automatic.clone(), &overlays, loaded, warn_line)?;
+        let proposed = match self.look {
+            None | Some(1) => None,
+            Some(number) => {
+                let small = small_volume(loaded)?;
+                // Whether there is one; what it is made from is found later.
+                proposal(number, &automatic, &small)?;
+                Some(Proposed { number, automatic, small, overlays, of: self.clone() })
+            }
+        };
+        Ok(Look::new(settings, named, proposed))
     }
 
     /// Settings with preset, session and single settings laid over them, and which open parts these name.
     fn laid_over(
         &self,
         mut settings: Settings,
+        overlays: &[Overlay],
         loaded: &Dataset,
         warn: impl Fn(&str),
     ) -> Result<(Settings, Named), CliError> {
+        let volume = loaded.volume();
+        let before = settings.clone();
         let mut named = Named::default();
-        let overlays = [("preset", &self.preset), ("session", &self.session)];
-        for (what, path) in overlays {
-            let Some(path) = path else { continue };
-            let (record, name) = read_look(what, path)?;
-            named.add(|part| record.names(part));
-            let (next, warnings) = record
-                .apply(&settings, &loaded.volume().ranges())
-                .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
-            for warning in warnings {
-                warn(&format!("warning: {what}: {warning} ({name})"));
-            }
-            settings = next;
+        for overlay in overlays {
+            named.add(|part| overlay.names(part));
+            settings = overlay.over(&settings, &volume.ranges(), &warn)?;
         }
-        let single = self.single_settings(settings, warn)?;
+        let mut settings = self.single_settings(settings, warn)?;
         named.add(|part| self.sets(part));
-        Ok((single, named))
+        let says_how_high = self.sets(FLOOR_HEIGHT) || overlays.iter().any(|one| one.names(FLOOR_HEIGHT));
+        let shows = |look: &Settings| (look.transfer.clone(), look.range, look.camera.up);
+        if !says_how_high && shows(&settings) != shows(&before) {
+            auto::lay_floor(&mut settings, volume);
+        }
+        Ok((settings, named))
     }
 
     /// Whether a single setting of the command line is one, or a part or the whole of it. Whoever names it means it.
@@ -314,24 +333,6 @@ impl LookArgs {
         }
         Ok(settings)
     }
-}
-
-/// Reads a preset or session, and what it is called: a built-in's name, a file, or the record of an exported picture.
-fn read_look(what: &'static str, path: &Path) -> Result<(Record, String), CliError> {
-    let name = path.display().to_string();
-    let builtin = Preset::find(&name).filter(|_| what == "preset");
-    let text = match builtin {
-        Some(preset) => preset.text().as_bytes().to_vec(),
-        None if PictureFormat::with_record(path).is_some() => {
-            let unusable =
-                || CliError::Replay { path: name.clone(), why: "it carries no settings".to_owned() };
-            read_record(path)?.ok_or_else(unusable)?.into_bytes()
-        }
-        None => read_small(path).map_err(|source| CliError::Read { what, path: name.clone(), source })?,
-    };
-    let record =
-        Record::from_bytes(&text).map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
-    Ok((record, name))
 }
 
 #[cfg(test)]

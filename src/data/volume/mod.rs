@@ -142,7 +142,7 @@ impl Volume {
         &self.hints
     }
 
-    /// What kind of data it holds. The first to ask waits until that is found: about a tenth of a second.
+    /// What kind of data it holds. The first to ask waits until that is found.
     pub fn kind(&self) -> &KindFound {
         self.kind.get_or_init(|| KindFound::of(self))
     }
@@ -263,6 +263,13 @@ impl Volume {
         self.samples.value(x + self.dims[0] * (y + self.dims[1] * z))
     }
 
+    /// The density of a voxel; `None` where it holds nothing.
+    pub fn density_at(&self, [x, y, z]: [usize; 3]) -> Option<f64> {
+        let voxel = x + self.dims[0] * (y + self.dims[1] * z);
+        let is_missing = self.missing().is_some_and(|missing| missing.contains(voxel));
+        (!is_missing).then(|| self.density_of(self.samples.value(voxel)))
+    }
+
     /// A value in data units as a density in [0, 1]: 0 at the lowest value that is shown and below, 1 at the highest and
     /// above. Values that are not finite have density 0.
     pub fn density_of(&self, value: f64) -> f64 {
@@ -311,6 +318,7 @@ mod tests {
         assert_eq!(volume.slice_densities(0), [0.0, 0.0, 0.5, 1.0]);
         assert!(volume.missing().is_some_and(|missing| missing.count() == 1 && missing.contains(0)));
         assert_eq!(volume.value_of(0.5), 0.0);
+        assert_eq!([0, 1, 2].map(|x| volume.density_at([x, 0, 0])), [None, Some(0.0), Some(0.5)]);
     }
 
     #[test]

@@ -106,28 +106,26 @@ pub(super) fn roughness(volume: &Volume) -> f64 {
 const LOOKED_AT: f64 = (1u64 << 20) as f64;
 
 impl Texture {
-    /// Of the voxels with some densities.
+    /// Of the voxels with some densities, between neighbours that hold something.
     fn of(volume: &Volume, densities: Range<f64>) -> Self {
         let [nx, ny, nz] = volume.dims();
         let step = (volume.voxel_count() as f64 / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
-        let density = |x: usize, y: usize, z: usize| volume.density_of(volume.value(x, y, z));
         let inner = |n: usize| (1..n.saturating_sub(1)).step_by(step);
         let found: Vec<[f64; 2]> = inner(nz)
             .collect::<Vec<_>>()
             .into_par_iter()
             .flat_map_iter(|z| inner(ny).flat_map(move |y| inner(nx).map(move |x| [x, y, z])))
-            .filter_map(|[x, y, z]| {
-                let here = density(x, y, z);
-                densities.contains(&here).then(|| {
-                    let along = [
-                        [density(x - 1, y, z), density(x + 1, y, z)],
-                        [density(x, y - 1, z), density(x, y + 1, z)],
-                        [density(x, y, z - 1), density(x, y, z + 1)],
-                    ];
-                    let bend = along.map(|[before, after]| (before - 2.0 * here + after).abs());
-                    let slope = along.map(|[before, after]| (after - before).abs());
-                    [bend.iter().sum(), slope.iter().sum()]
-                })
+            .filter_map(|place| {
+                let here = volume.density_at(place).filter(|here| densities.contains(here))?;
+                let mut found = [0.0; 2];
+                for axis in 0..3 {
+                    let [mut before, mut after] = [place; 2];
+                    (before[axis], after[axis]) = (place[axis] - 1, place[axis] + 1);
+                    let (before, after) = (volume.density_at(before)?, volume.density_at(after)?);
+                    found[0] += (before - 2.0 * here + after).abs();
+                    found[1] += (after - before).abs();
+                }
+                Some(found)
             })
             .collect();
         let [bends, slopes] = [0, 1].map(|part| found.iter().map(|one| one[part]).sum::<f64>());

@@ -15,17 +15,31 @@ const COMPACT: f64 = 0.7;
 /// Degrees from which an eye looks down onto a floor, and not along it.
 const LOOKING_DOWN_DEG: f64 = 8.0;
 
+/// How bright a floor under full light is shown in a first look, as a share of white in sRGB: as much as material, and
+/// dark enough that the eye stays with that.
+const GREY: f64 = 0.36;
+
+/// Greys that a floor may have. A darker one would show no shadow (a tenth of sRGB is a hundredth of the light), and none
+/// is lighter than the floor of settings that nobody has touched.
+const GREYS: [f64; 2] = [0.1, 0.6];
+
+/// The colour of a floor under what a look shows: however long the picture is exposed, the floor is no brighter than what
+/// stands on it.
+pub fn floor_color(exposure: f64) -> [f32; 3] {
+    [(GREY / exposure).clamp(GREYS[0], GREYS[1]) as f32; 3]
+}
+
 /// Whether the first look has a floor.
 ///
 /// Under what stands on something, and under what is compact and has hardly a shadow itself (`shadowed`: its share). Not
 /// under what goes on where the data end, as heads do below the neck: that would
-/// stand on its cut.
+/// stand on its cut; nor under nothing.
 pub fn wants_floor(settings: &Settings, volume: &Volume, shadowed: f64) -> bool {
     if settings.camera.elevation_deg < LOOKING_DOWN_DEG || volume.is_anatomical() {
         return false;
     }
     let object = Object::shown_by(settings, volume);
-    if object.compactness() < COMPACT {
+    if object.is_empty() || object.compactness() < COMPACT {
         return false;
     }
     match Base::of(&object, volume, settings.camera.up.direction()) {
@@ -107,18 +121,14 @@ fn box_around(points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
 mod tests {
     use super::*;
     use crate::data::Samples;
-    use crate::model::{ControlPoint, TransferFunction};
+    use crate::model::auto::lay_floor;
+    use crate::model::auto::tests::shows_what_is_bright;
 
     const N: usize = 40;
 
     /// Looks down onto what is above 100.
     fn look() -> Settings {
-        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
-        let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
-        let mut settings = Settings {
-            transfer: TransferFunction { points, ..TransferFunction::default() },
-            ..Settings::default()
-        };
+        let mut settings = shows_what_is_bright();
         settings.camera.elevation_deg = 25.0;
         settings
     }
@@ -177,6 +187,38 @@ mod tests {
         assert!(!wants_floor(&look(), &volume(shell), 0.01));
         let specks = |p: DVec3| block(p) && (p.x + 2.0 * p.y + 3.0 * p.z).rem_euclid(5.0) < 1.0;
         assert!(!wants_floor(&look(), &volume(specks), 0.01));
+    }
+
+    #[test]
+    fn nothing_has_no_floor_and_leaves_it_where_it_is() {
+        let nothing = volume(|_| false);
+        assert!(!wants_floor(&look(), &nothing, 0.01));
+        let mut settings = look();
+        settings.floor.height = -0.3;
+        lay_floor(&mut settings, &nothing);
+        assert_eq!(settings.floor.height, -0.3);
+    }
+
+    #[test]
+    fn the_floor_is_laid_under_what_is_shown() {
+        let ball = volume(ball);
+        let mut settings = look();
+        lay_floor(&mut settings, &ball);
+        // The ball's radius is twelve of forty voxels, and a scene unit twenty.
+        assert!((settings.floor.height + 12.0 / 20.0).abs() < 0.05, "{}", settings.floor.height);
+        assert_eq!(
+            settings,
+            Settings { floor: settings.floor.clone(), ..look() },
+            "and nothing else changes"
+        );
+    }
+
+    #[test]
+    fn floors_are_no_brighter_for_a_longer_exposure() {
+        let shown = |exposure: f64| f64::from(floor_color(exposure)[0]) * exposure;
+        assert!((shown(1.0) - GREY).abs() < 1e-6 && (shown(1.8) - GREY).abs() < 1e-6);
+        assert_eq!(floor_color(0.0)[0], GREYS[1] as f32);
+        assert_eq!(floor_color(1e9)[0], GREYS[0] as f32);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::object::Object;
 use crate::data::Volume;
-use crate::model::{FRAME_ASPECT, Fit, Settings};
+use crate::model::{Camera, FRAME_ASPECT, Fit, Settings};
 
 /// Share of the frame's height, or of its width, that the object fills: whichever it reaches first.
 const FILL: f64 = 0.8;
@@ -33,23 +33,40 @@ fn range(points: &[DVec2], along: impl Fn(&DVec2) -> f64) -> [f64; 2] {
     [beyond, last - beyond].map(|at| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
+/// The outline of an object in scene space.
+fn corners(volume: &Volume, object: &Object) -> Vec<DVec3> {
+    let scene_from_index = volume.scene().scene_from_index;
+    object.outline().into_iter().map(|point| scene_from_index.transform_point3(point)).collect()
+}
+
+/// Puts the floor under the object, if there is one.
+pub(super) fn lay_floor(settings: &mut Settings, volume: &Volume, object: &Object) {
+    let corners = corners(volume, object);
+    if !corners.is_empty() {
+        settings.floor.height =
+            floor_under(&corners, settings.camera.up.direction()) - volume.scene().smallest_edge() / 2.0;
+    }
+}
+
 /// Points the camera at the object, near enough that it fills the frame, which lies within pictures of any shape. Puts
 /// the floor under it.
 pub(super) fn frame(settings: &mut Settings, volume: &Volume, object: &Object) {
     settings.camera.fit = Fit::Frame;
-    let scene_from_index = volume.scene().scene_from_index;
-    let corners: Vec<DVec3> =
-        object.outline().into_iter().map(|point| scene_from_index.transform_point3(point)).collect();
+    // From where first looks begin: the same view is framed in the same way, whatever it was framed as before.
+    settings.camera.distance = Camera::default().distance;
+    let corners = corners(volume, object);
     if corners.is_empty() {
         return;
     }
-    settings.floor.height =
-        floor_under(&corners, settings.camera.up.direction()) - volume.scene().smallest_edge() / 2.0;
+    lay_floor(settings, volume, object);
     let camera = &mut settings.camera;
     let view = camera.scene_from_view();
     let half_angle_tan = camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
-    // Two rounds: perspective shifts the middle a little once the distance is known.
-    let mut target = DVec3::ZERO;
+    let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    // What turns about the target stays in the picture if that lies within the object, also as far as it is from the eye.
+    let mut target = (low + high) / 2.0;
+    // Three rounds: under perspective the middle depends on the distance, and the distance on the middle.
     for _ in 0..3 {
         let eye = target + view.z_axis * camera.distance;
         let seen: Vec<DVec2> = corners
@@ -86,8 +103,8 @@ pub(super) fn frame(settings: &mut Settings, volume: &Volume, object: &Object) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Histogram;
     use crate::data::synthetic::builtin;
+    use crate::data::{Histogram, Samples};
     use crate::model::auto::first_settings;
     use crate::model::auto::tests::ball;
 
@@ -98,6 +115,31 @@ mod tests {
         let (_, top, _) = settings.camera.pixel_from_scene(DVec3::ZERO, 400.0, 300.0).unwrap();
         assert!((top - 150.0).abs() < 20.0, "the ball's centre is at row {top}");
         assert!(settings.camera.distance > 1.0 && settings.camera.distance < 8.0);
+    }
+
+    /// A ball of six voxels in the corner of a volume that is nearest to the usual eye, and in the one that is furthest.
+    #[test]
+    fn the_camera_turns_about_the_object_wherever_it_lies() {
+        let n = 48;
+        let towards_eye = Camera::default().scene_from_view().z_axis;
+        for side in [-1.0, 1.0] {
+            let middle = DVec3::splat((n - 1) as f64 / 2.0) + side * 15.0 * towards_eye.signum();
+            let value = |at: usize| {
+                let place = DVec3::from([at % n, at / n % n, at / n / n].map(|c| c as f64));
+                if place.distance(middle) < 6.0 { 200 } else { 0 }
+            };
+            let voxels = Samples::U8((0..n * n * n).map(value).collect());
+            let volume = Volume::with_spacing("corner", [n; 3], DVec3::ONE, voxels).unwrap();
+            let mut settings = first_settings(&volume, &Histogram::of(&volume));
+            let wanted = volume.scene().scene_from_index.transform_point3(middle);
+            let apart = DVec3::from(settings.camera.target).distance(wanted);
+            // A voxel is a twenty-fourth of a scene unit.
+            assert!(apart < 1.0 / 24.0, "{side}: {apart}");
+            let framed = settings.camera.clone();
+            settings.camera.distance *= 7.0;
+            super::super::frame(&mut settings, &volume);
+            assert_eq!(settings.camera, framed, "from wherever it is framed");
+        }
     }
 
     /// Where the shown voxels of a volume lie in a picture: corners of the box around them, in pixels.

@@ -90,10 +90,11 @@ fn running_down(counts: &[f64]) -> Vec<f64> {
 }
 
 impl Isosurfaces {
-    /// Looks at a volume.
+    /// Looks at a volume. Voxels that hold nothing are on neither side of anything.
     pub(super) fn of(volume: &Volume) -> Self {
         let [nx, ny, nz] = volume.dims();
         let voxels = volume.voxel_count() as f64;
+        let missing = volume.missing();
         let step = (voxels / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
         // Each voxel that is looked at stands for a block of them; on a face, for a square.
         let (block, square) = ((step * step * step) as f64, (step * step) as f64);
@@ -104,18 +105,23 @@ impl Isosurfaces {
             .fold(Changes::none, |mut changes, z| {
                 let slice = volume.slice_densities(z);
                 let next = (z + 1 < nz).then(|| volume.slice_densities(z + 1));
+                let is_there =
+                    |z: usize, at: usize| missing.is_none_or(|missing| !missing.contains(z * nx * ny + at));
                 for y in (0..ny).step_by(step) {
                     for x in (0..nx).step_by(step) {
                         let at = y * nx + x;
+                        if !is_there(z, at) {
+                            continue;
+                        }
                         let here = slice[at];
                         changes.inside[bin(here)] += block;
-                        if x + 1 < nx {
+                        if x + 1 < nx && is_there(z, at + 1) {
                             changes.pair(here, slice[at + 1], block);
                         }
-                        if y + 1 < ny {
+                        if y + 1 < ny && is_there(z, at + nx) {
                             changes.pair(here, slice[at + nx], block);
                         }
-                        if let Some(next) = &next {
+                        if let Some(next) = next.as_ref().filter(|_| is_there(z + 1, at)) {
                             changes.pair(here, next[at], block);
                         }
                     }
@@ -124,21 +130,24 @@ impl Isosurfaces {
             })
             .reduce(Changes::none, |a, b| a.add(&b));
         let mut on_faces = vec![0.0; HISTOGRAM_BINS];
-        let mut face = |density: f64| on_faces[bin(density as f32)] += square;
+        let mut face = |place: [usize; 3]| {
+            if let Some(density) = volume.density_at(place) {
+                on_faces[bin(density as f32)] += square;
+            }
+        };
         let at = |n: usize| (0..n).step_by(step);
-        let density = |x, y, z| volume.density_of(volume.value(x, y, z));
         // A slice that is a voxel thick has two faces all the same.
         for (x, y) in at(nx).flat_map(|x| at(ny).map(move |y| (x, y))) {
-            face(density(x, y, 0));
-            face(density(x, y, nz - 1));
+            face([x, y, 0]);
+            face([x, y, nz - 1]);
         }
         for (x, z) in at(nx).flat_map(|x| at(nz).map(move |z| (x, z))) {
-            face(density(x, 0, z));
-            face(density(x, ny - 1, z));
+            face([x, 0, z]);
+            face([x, ny - 1, z]);
         }
         for (y, z) in at(ny).flat_map(|y| at(nz).map(move |z| (y, z))) {
-            face(density(0, y, z));
-            face(density(nx - 1, y, z));
+            face([0, y, z]);
+            face([nx - 1, y, z]);
         }
         Self {
             area: running(&changes.area),

@@ -3,9 +3,8 @@
 
 use glam::DVec3;
 
-use super::object::Object;
 use super::threshold::otsu;
-use super::{above, frame};
+use super::{LEAST_SHOWN, above, floor_color, frame};
 use crate::data::{Histogram, Volume};
 use crate::model::{
     Background, Camera, ControlPoint, Easing, Interpolation, Light, Rig, Settings, TransferFunction,
@@ -22,16 +21,13 @@ pub struct Proposal {
     pub settings: Settings,
 }
 
-/// Opacity per unit from which something is there.
-const SHOWN: f64 = 0.05;
-
 /// What share of what a first look shows its inner structure may be: not a few specks, nor nearly all of it.
 const INSIDE: std::ops::RangeInclusive<f64> = 0.01..=0.7;
 
 /// How much of the opacity of what is outside a veil keeps: the eye goes through it, and sees that it is there.
 const VEIL: f64 = 0.06;
 
-/// How much of its opacity the whole keeps where no inner structure is known.
+/// How much of its opacity the whole keeps where what lies behind is to show through.
 const TRANSLUCENT: f64 = 0.3;
 
 /// Degrees above the floor from which it is looked down upon.
@@ -44,23 +40,13 @@ const LEFT_PROFILE_DEG: f64 = 120.0;
 /// Fired clay, as modellers use it to judge form by light alone.
 const CLAY: [f32; 3] = [0.80, 0.76, 0.72];
 
-/// A floor that is darker than what lies on it, so that the eye stays with that.
-const FLOOR: [f32; 3] = [0.36; 3];
-
-/// Looks of a volume, the first one first: six to nine. It need not have all of its voxels.
+/// Looks of a volume, the first one first: eight, and two more where it has an inner structure. The volume need not have
+/// all of its voxels.
+///
+/// Those that every volume has come first, so that the same number is the same look of whatever is shown.
 pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Proposal> {
     let proposal = |name, differs, settings| Proposal { name, differs, settings };
     let mut all = vec![proposal("First look", "as the volume is opened", first.clone())];
-    if let Some(start) = inner_start(&first.transfer, volume, histogram) {
-        let inner = Settings { transfer: inner(&first.transfer, start), ..first.clone() };
-        all.push(proposal("Inner structure", "only the densest material", framed(inner, first, volume)));
-        let veil = Settings { transfer: veil(&first.transfer, start), ..first.clone() };
-        all.push(proposal("Veil", "the outside is a veil around the densest material", veil));
-    } else {
-        let mut thin = first.clone();
-        scale_opacity(&mut thin.transfer, TRANSLUCENT);
-        all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
-    }
     let lit = |rig: Rig| Settings { lights: rig.lights(&first.camera), ..first.clone() };
     all.push(proposal("Rim light", "lit from behind: outlines shine", lit(Rig::Rim)));
     all.push(proposal("Relief", "one hard light from the side", lit(Rig::ThreeQuarter)));
@@ -68,7 +54,7 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
     let mut above = first.clone();
     above.camera.elevation_deg = FROM_ABOVE_DEG;
     above.floor.on = true;
-    above.floor.color = FLOOR;
+    above.floor.color = floor_color(first.output.exposure);
     let above = framed(above, first, volume);
     all.push(proposal("From above", "looked down upon, on a floor that takes the shadow", above));
     let mut other = first.clone();
@@ -78,6 +64,15 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
     paper.output.background = Background { top: [1.0; 3], bottom: [0.94; 3] };
     paper.floor.shadow_only = true;
     all.push(proposal("On paper", "before white, as in print", paper));
+    let mut thin = first.clone();
+    scale_opacity(&mut thin.transfer, TRANSLUCENT);
+    all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
+    if let Some(start) = inner_start(&first.transfer, volume, histogram) {
+        let inner = Settings { transfer: inner(&first.transfer, start), ..first.clone() };
+        all.push(proposal("Inner structure", "only the densest material", framed(inner, first, volume)));
+        let veil = Settings { transfer: veil(&first.transfer, start), ..first.clone() };
+        all.push(proposal("Veil", "the outside is a veil around the densest material", veil));
+    }
     for Proposal { settings, .. } in &mut all {
         settings.sanitise();
     }
@@ -87,8 +82,7 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
 /// The settings with the camera as near as what they show of the volume allows, and the lights where they were as seen
 /// from there.
 fn framed(mut settings: Settings, first: &Settings, volume: &Volume) -> Settings {
-    let object = Object::shown_by(&settings, volume);
-    frame::frame(&mut settings, volume, &object);
+    frame(&mut settings, volume);
     settings.lights = carried(&settings.lights, &first.camera, &settings.camera);
     settings
 }
@@ -114,7 +108,7 @@ fn inner_start(function: &TransferFunction, volume: &Volume, histogram: &Histogr
     let bins = histogram.counts.len();
     let shown = (0..bins)
         .map(|bin| bin as f64 / bins as f64)
-        .find(|&density| function.opacity_at(volume.value_of(density)) > SHOWN)?;
+        .find(|&density| function.opacity_at(volume.value_of(density)) > LEAST_SHOWN)?;
     // What is shown falls into two again.
     let above = above(histogram, shown);
     let start = otsu(&above);
@@ -166,9 +160,10 @@ fn clay(first: &Settings) -> Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::KindName;
     use crate::data::synthetic::builtin;
-    use crate::model::auto::first_settings;
     use crate::model::auto::tests::ball;
+    use crate::model::auto::{Wishes, first_settings, first_settings_with};
 
     fn proposals(volume: &Volume) -> Vec<Proposal> {
         let histogram = Histogram::of(volume);
@@ -176,12 +171,12 @@ mod tests {
     }
 
     #[test]
-    fn looks_are_six_to_nine_that_differ() {
+    fn looks_are_eight_or_ten_that_differ() {
         for volume in
             [ball(200.0, 0.0), builtin("chair", Some(32)).unwrap(), builtin("cloud", Some(32)).unwrap()]
         {
             let all = proposals(&volume);
-            assert!((6..=9).contains(&all.len()), "{}", all.len());
+            assert!([8, 10].contains(&all.len()), "{}", all.len());
             assert_eq!(all[0].settings, first_settings(&volume, &Histogram::of(&volume)));
             for (at, one) in all.iter().enumerate() {
                 let others = &all[at + 1..];
@@ -238,6 +233,21 @@ mod tests {
         let opaque = ControlPoint::new(first.transfer.points[0].value - 1.0, [0.2, 0.3, 0.9], 0.9);
         first.transfer.points.insert(0, opaque);
         let all = looks(&first, &volume, &histogram);
-        assert!(all.iter().any(|one| one.name == "Translucent") && all.iter().all(|one| one.name != "Veil"));
+        assert!(all.iter().all(|one| one.name != "Veil"));
+    }
+
+    #[test]
+    fn a_number_is_the_same_look_whatever_is_shown() {
+        let volume = builtin("chair", Some(32)).unwrap();
+        let histogram = Histogram::of(&volume);
+        let names = |treated_as: Option<KindName>| -> Vec<&str> {
+            let wishes = Wishes { treated_as, ..Wishes::default() };
+            let first = first_settings_with(&volume, &histogram, wishes);
+            looks(&first, &volume, &histogram).iter().map(|look| look.name).collect()
+        };
+        let all: Vec<_> = KindName::choices().map(names).collect();
+        let longest = all.iter().max_by_key(|names| names.len()).unwrap();
+        assert!(all.iter().all(|names| longest.starts_with(names)), "{all:?}");
+        assert!(all.iter().any(|names| names.len() < longest.len()), "{all:?}");
     }
 }

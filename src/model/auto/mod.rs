@@ -1,8 +1,9 @@
-//! A first look at a volume that needs no touch: transfer function, camera and lights from the
-//! values alone.
+//! A first look at a volume that needs no touch: transfer function, camera, floor and lights from its values, and from
+//! what its file says of them.
 //!
-//! What is around the object is recognised by the volume's own border: most scans have a margin.
-//! The opacity ramp starts above it, at the value that best splits the volume in two (Otsu 1979).
+//! The kind of data decides what is shown: every label, both sides of zero, bone. Of other data what is around the
+//! object is recognised by the volume's own border, since most scans have a margin, and opacity begins between that and
+//! the value that best splits the volume in two (Otsu 1979).
 
 mod domain;
 mod floor;
@@ -15,20 +16,25 @@ mod palette;
 mod robustness;
 mod threshold;
 mod transfer;
+mod treated;
 mod view;
 mod visible;
 
-pub use self::floor::wants_floor;
+pub use self::floor::{floor_color, wants_floor};
 pub use self::looks::{Proposal, looks};
+pub use self::treated::treated_as;
 
 use self::domain::Domain;
 use self::object::Object;
 pub use self::visible::{densest, show_something};
 use super::{
-    Camera, Classification, DensityRange, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading,
-    Shadows, TransferFunction,
+    Camera, Classification, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading, Shadows,
+    TransferFunction,
 };
 use crate::data::{DataKind, Histogram, KindName, Volume};
+
+/// Opacity per opacity unit from which something counts as shown: of white in full light, 63 of 255 before black.
+const LEAST_SHOWN: f64 = 0.05;
 
 /// What a first look is to respect that the volume itself does not say.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -46,12 +52,25 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
 
 /// Settings for a volume that nobody has touched yet, as somebody wishes them to be.
 pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
-    // Whatever was shown before.
+    with_what_matters(volume, histogram, |volume, histogram| look_of_what_matters(volume, histogram, wishes))
+}
+
+/// Asks something of a volume that shows the values that matter, whatever it shows now, and of its histogram then.
+fn with_what_matters<T>(
+    volume: &Volume,
+    histogram: &Histogram,
+    ask: impl FnOnce(&Volume, &Histogram) -> T,
+) -> T {
     let robust = volume.ranges().robust;
-    if volume.shown_range() != robust {
-        let volume = volume.showing(robust);
-        return first_settings_with(&volume, &Histogram::of(&volume), wishes);
+    if volume.shown_range() == robust {
+        return ask(volume, histogram);
     }
+    let volume = volume.showing(robust);
+    ask(&volume, &Histogram::of(&volume))
+}
+
+/// A first look at a volume that shows the values that matter.
+fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
     let kind = kind_of(volume, wishes.treated_as);
     let found = transfer::find(volume, histogram, kind);
     let up = if volume.is_anatomical() { SceneAxis::PlusZ } else { wishes.up };
@@ -68,19 +87,20 @@ pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishe
     Quality::Standard.apply(&mut settings);
     if let DataKind::LabelMap { .. } = kind {
         // Between two labels there is none of the numbers between them, and none of them is an outlier.
-        settings.range = DensityRange::Full;
+        settings.range = transfer::range_of_labels(volume);
         settings.sampling.classification = Classification::Pre;
     }
     aim(&mut settings, volume);
     match kind {
         // Every number is shown already.
         DataKind::LabelMap { .. } | DataKind::Mask => settings,
-        _ => visible::or_another(settings, volume, histogram),
+        _ => visible::or_another(settings, volume, histogram, kind),
     }
 }
 
-/// Points camera and lights at what settings show.
+/// Points camera and lights at what settings show, from the usual view or a better one, wherever the camera was.
 fn aim(settings: &mut Settings, volume: &Volume) {
+    settings.camera = Camera { up: settings.camera.up, ..Camera::default() };
     let object = Object::shown_by(settings, volume);
     view::choose(&mut settings.camera, volume, &object);
     frame::frame(settings, volume, &object);
@@ -116,9 +136,13 @@ fn shading(domain: Domain) -> Shading {
 /// Frames what settings show of a volume from where their camera looks, and puts the floor under it.
 pub fn frame(settings: &mut Settings, volume: &Volume) {
     let object = Object::shown_by(settings, volume);
-    // From where first looks begin: the same view is framed in the same way, whatever it was framed as before.
-    settings.camera.distance = Camera::default().distance;
     frame::frame(settings, volume, &object);
+}
+
+/// Puts the floor under what settings show of a volume; it stays where it is if they show nothing.
+pub fn lay_floor(settings: &mut Settings, volume: &Volume) {
+    let object = Object::shown_by(settings, volume);
+    frame::lay_floor(settings, volume, &object);
 }
 
 /// The share of what settings show of a volume's surface that is not where material ends, but where the data do.
@@ -132,24 +156,17 @@ fn voxels_of_file(volume: &Volume) -> f64 {
     (count(volume.dims()) / count(volume.file_dims())).cbrt()
 }
 
-/// A transfer function that shows the object and hides what is around it.
-pub fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
-    transfer_as(volume, histogram, None)
-}
-
-/// A transfer function that shows what begins at the density `start`.
-fn ramp(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction {
-    transfer::beginning_at(volume, histogram, start)
-}
-
-/// A transfer function as if the volume held data of that kind; of its own where none is named.
+/// A transfer function that shows the object and hides what is around it, as if the volume held data of a kind; of its own
+/// where none is named.
 pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> TransferFunction {
-    transfer::find(volume, histogram, kind_of(volume, treated_as)).transfer
+    with_what_matters(volume, histogram, |volume, histogram| {
+        transfer::find(volume, histogram, kind_of(volume, treated_as)).transfer
+    })
 }
 
-/// The labels of a label map that settings do not show.
+/// How many labels of a label map settings do not show, or not in the colour that they give them.
 pub fn labels_lost(settings: &Settings, volume: &Volume) -> usize {
-    transfer::lost_labels(&settings.transfer, volume)
+    transfer::lost_labels(settings, volume)
 }
 
 /// What of a histogram lies above a density.
@@ -169,7 +186,18 @@ fn above(histogram: &Histogram, start: f64) -> Histogram {
 mod tests {
     use super::*;
     use crate::data::Samples;
+    use crate::model::ControlPoint;
     use glam::DVec3;
+
+    /// Settings that show what is above 100 of 255.
+    pub(super) fn shows_what_is_bright() -> Settings {
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
+        Settings {
+            transfer: TransferFunction { points, ..TransferFunction::default() },
+            ..Settings::default()
+        }
+    }
 
     /// A ball of the given value in a margin of another, with a ripple on both.
     pub(super) fn ball(inside: f32, outside: f32) -> Volume {
@@ -244,10 +272,33 @@ mod tests {
     fn the_object_is_shown_and_its_surroundings_are_not() {
         for (inside, outside) in [(200.0, 0.0), (1200.0, -1000.0), (60.0, 40.0)] {
             let volume = ball(inside, outside);
-            let function = transfer(&volume, &Histogram::of(&volume));
+            let function = transfer_as(&volume, &Histogram::of(&volume), None);
             assert_eq!(function.opacity_at(f64::from(outside) + 6.0), 0.0, "{inside} {outside}");
             assert!(function.opacity_at(f64::from(inside) + 6.0) > 0.1, "{inside} {outside}");
         }
+    }
+
+    #[test]
+    fn functions_are_made_from_the_values_that_matter_whatever_is_shown() {
+        let mut values: Vec<f32> = (0..32 * 32 * 32).map(|at| (at % 97) as f32).collect();
+        values[5] = 1e6;
+        let volume = Volume::with_spacing("t", [32; 3], DVec3::ONE, Samples::F32(values)).unwrap();
+        let all = volume.showing(volume.value_range());
+        assert_ne!(all.shown_range(), volume.shown_range());
+        for kind in KindName::choices() {
+            let made = |volume: &Volume| transfer_as(volume, &Histogram::of(volume), kind);
+            assert_eq!(made(&all), made(&volume), "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn a_look_that_is_tried_next_is_seen_from_where_first_looks_begin() {
+        let volume = rod();
+        let mut settings = first_settings(&volume, &Histogram::of(&volume));
+        let wanted = settings.camera.clone();
+        settings.camera = Camera { azimuth_deg: 7.0, elevation_deg: -80.0, distance: 0.4, ..wanted.clone() };
+        aim(&mut settings, &volume);
+        assert_eq!(settings.camera, wanted);
     }
 
     #[test]
@@ -259,7 +310,7 @@ mod tests {
             Volume::with_spacing("one", [8; 3], DVec3::ONE, Samples::U8(values)).unwrap()
         };
         for volume in [constant, one] {
-            let function = transfer(&volume, &Histogram::of(&volume));
+            let function = transfer_as(&volume, &Histogram::of(&volume), None);
             assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{function:?}");
         }
     }

@@ -4,12 +4,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::LEAST_SHOWN;
 use crate::data::{HISTOGRAM_BINS, Volume};
 use crate::math::SceneSpace;
 use crate::model::Settings;
-
-/// Opacity per voxel from which a voxel counts as shown.
-const SHOWN: f64 = 0.05;
 
 /// Most cells along an axis: single pixels of the views that are compared.
 const MOST_CELLS: usize = 128;
@@ -58,7 +56,8 @@ impl Object {
         // Whether each of many densities is shown: a look-up per voxel.
         let shown: Vec<bool> = (0..=HISTOGRAM_BINS)
             .map(|bin| {
-                settings.transfer.opacity_at(volume.value_of(bin as f64 / HISTOGRAM_BINS as f64)) > SHOWN
+                settings.transfer.opacity_at(volume.value_of(bin as f64 / HISTOGRAM_BINS as f64))
+                    > LEAST_SHOWN
             })
             .collect();
         let is_there = (0..cells[2])
@@ -101,6 +100,11 @@ impl Object {
             .zip(self.edge)
             .map(|(axis, edge)| scene.scene_from_index.transform_vector3(axis * edge as f64).length());
         edges.fold(0.0, f64::max) / 2.0
+    }
+
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        !self.is_there.contains(&true)
     }
 
     /// The cells in which the object is.
@@ -249,17 +253,7 @@ impl Object {
 mod tests {
     use super::*;
     use crate::data::Samples;
-    use crate::model::{ControlPoint, TransferFunction};
-
-    /// Shows what is above 100.
-    fn settings() -> Settings {
-        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
-        let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
-        Settings {
-            transfer: TransferFunction { points, ..TransferFunction::default() },
-            ..Settings::default()
-        }
-    }
+    use crate::model::auto::tests::shows_what_is_bright;
 
     fn object(dims: [usize; 3], is_bright: impl Fn([usize; 3]) -> bool) -> Object {
         let value = |at: usize| {
@@ -268,7 +262,7 @@ mod tests {
         };
         let voxels = (0..dims.iter().product()).map(value).collect();
         let volume = Volume::with_spacing("t", dims, DVec3::ONE, Samples::U8(voxels)).unwrap();
-        Object::shown_by(&settings(), &volume)
+        Object::shown_by(&shows_what_is_bright(), &volume)
     }
 
     /// The corners of what is framed.

@@ -7,6 +7,14 @@ use crate::data::{Histogram, Volume};
 /// blurred by the scanner, do not reach the split.
 const TOWARDS_SPLIT: f64 = 0.65;
 
+/// How far above its surroundings an object begins at least: five steps of 8-bit data.
+pub(super) const LEAST_ABOVE: f64 = 0.02;
+
+/// Where an object begins of which the surroundings end at `margin`, in data that `split` splits in two.
+pub(super) fn above_margin(margin: f64, split: f64) -> f64 {
+    (margin + TOWARDS_SPLIT * (split - margin)).max(margin + LEAST_ABOVE)
+}
+
 /// The density at which the object begins.
 pub(super) fn object_threshold(volume: &Volume, histogram: &Histogram) -> f64 {
     let start = above_surroundings(volume, histogram);
@@ -25,8 +33,8 @@ fn above_surroundings(volume: &Volume, histogram: &Histogram) -> f64 {
     let margin = if around < split { around } else { 0.0 };
     // The split lies halfway to the object's bulk; its thin parts are dimmer, down to the margin's
     // noise. Never so high that nothing is left.
-    let ceiling = histogram.percentile(0.995).max(0.02);
-    (margin + TOWARDS_SPLIT * (split - margin)).max(margin + 0.02).min(ceiling)
+    let ceiling = histogram.percentile(0.995).max(LEAST_ABOVE);
+    above_margin(margin, split).min(ceiling)
 }
 
 /// Voxels that never decide where Otsu's split lies, of the smaller class.
@@ -62,25 +70,24 @@ pub(super) fn otsu(histogram: &Histogram) -> f64 {
     (first as f64 + 1.0) / bins
 }
 
-/// What the volume's border looks like, in what `level` makes of densities: of the six faces, the median of their 98th percentiles. One
-/// face that cuts through the object, or two, do not matter.
+/// What the volume's border looks like, in what `level` makes of densities: of the six faces, the median of their 98th
+/// percentiles. One face that cuts through the object, or two, do not matter. Voxels that hold nothing do not count, and
+/// a border that holds nothing anywhere is at 0.
 pub(super) fn border_level(volume: &Volume, level: impl Fn(f64) -> f64) -> f64 {
     let [nx, ny, nz] = volume.dims();
     let face = |u: usize, v: usize, at: &dyn Fn(usize, usize) -> [usize; 3]| {
         // At most 128² voxels of a face tell enough.
         let (du, dv) = (u.div_ceil(128), v.div_ceil(128));
-        let mut densities: Vec<f64> = (0..u)
+        let mut levels: Vec<f64> = (0..u)
             .step_by(du)
             .flat_map(|i| (0..v).step_by(dv).map(move |j| (i, j)))
-            .map(|(i, j)| {
-                let [x, y, z] = at(i, j);
-                level(volume.density_of(volume.value(x, y, z)))
-            })
+            .filter_map(|(i, j)| volume.density_at(at(i, j)).map(&level))
             .collect();
-        densities.sort_by(f64::total_cmp);
-        densities[(densities.len() - 1) * 98 / 100]
+        levels.sort_by(f64::total_cmp);
+        let last = levels.len().checked_sub(1)?;
+        Some(levels[last * 98 / 100])
     };
-    let mut levels = [
+    let faces = [
         face(ny, nz, &|i, j| [0, i, j]),
         face(ny, nz, &|i, j| [nx - 1, i, j]),
         face(nx, nz, &|i, j| [i, 0, j]),
@@ -88,6 +95,41 @@ pub(super) fn border_level(volume: &Volume, level: impl Fn(f64) -> f64) -> f64 {
         face(nx, ny, &|i, j| [i, j, 0]),
         face(nx, ny, &|i, j| [i, j, nz - 1]),
     ];
+    let mut levels: Vec<f64> = faces.into_iter().flatten().collect();
     levels.sort_by(f64::total_cmp);
-    f64::midpoint(levels[2], levels[3])
+    let Some(last) = levels.len().checked_sub(1) else { return 0.0 };
+    f64::midpoint(levels[last / 2], levels[last.div_ceil(2)])
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::data::Samples;
+    use crate::model::auto::domain::roughness;
+
+    /// Slopes along x from 100 on, in a margin of padding that is two voxels wide.
+    fn padded(n: usize, padding: i16) -> Volume {
+        let value = |at: usize| {
+            let place = [at % n, at / n % n, at / n / n];
+            if place.iter().all(|&c| (2..n - 2).contains(&c)) { 100 + at as i16 % 20 } else { padding }
+        };
+        let samples = Samples::I16((0..n * n * n).map(value).collect());
+        Volume::with_spacing("padded", [n; 3], DVec3::ONE, samples).unwrap()
+    }
+
+    #[test]
+    fn what_is_missing_is_no_border_and_has_no_texture() {
+        let whole = padded(20, -2000);
+        let volume = whole.clone().with_padding(-2000.0).unwrap();
+        // As bright as can be, if it were something.
+        let bright = padded(20, 2000).with_padding(2000.0).unwrap();
+        for volume in [&volume, &bright] {
+            assert_eq!(border_level(volume, |density| density), 0.0);
+            assert!(roughness(volume) < 1e-3, "{}", roughness(volume));
+            assert!(Isosurfaces::of(volume).unless_blocky(0.5) == 0.5);
+        }
+        assert!(roughness(&whole) > 0.1, "{}", roughness(&whole));
+    }
 }

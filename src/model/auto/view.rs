@@ -188,16 +188,7 @@ impl Surface {
 mod tests {
     use super::*;
     use crate::data::Samples;
-    use crate::model::{ControlPoint, Settings, TransferFunction};
-
-    fn settings() -> Settings {
-        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
-        let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
-        Settings {
-            transfer: TransferFunction { points, ..TransferFunction::default() },
-            ..Settings::default()
-        }
-    }
+    use crate::model::auto::tests::shows_what_is_bright;
 
     /// A plate with knobs on its side of high y.
     fn plate() -> Volume {
@@ -219,7 +210,7 @@ mod tests {
     #[test]
     fn the_side_with_something_on_it_is_seen() {
         let volume = plate();
-        let object = Object::shown_by(&settings(), &volume);
+        let object = Object::shown_by(&shows_what_is_bright(), &volume);
         let mut camera = Camera::default();
         choose(&mut camera, &volume, &object);
         // The usual view is from low y.
@@ -229,7 +220,7 @@ mod tests {
     #[test]
     fn people_are_seen_from_the_front() {
         let volume = plate().with_anatomy(true);
-        let object = Object::shown_by(&settings(), &volume);
+        let object = Object::shown_by(&shows_what_is_bright(), &volume);
         let mut camera = Camera::default();
         choose(&mut camera, &volume, &object);
         let towards_eye = camera.scene_from_view().z_axis;
@@ -240,7 +231,7 @@ mod tests {
     #[test]
     fn nothing_is_seen_from_the_usual_side() {
         let empty = Volume::with_spacing("empty", [8; 3], DVec3::ONE, Samples::U8(vec![0; 512])).unwrap();
-        let object = Object::shown_by(&settings(), &empty);
+        let object = Object::shown_by(&shows_what_is_bright(), &empty);
         let mut camera = Camera::default();
         choose(&mut camera, &empty, &object);
         assert_eq!(camera, Camera::default());

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::isosurfaces::Isosurfaces;
 use super::object::Object;
-use super::{aim, ramp, threshold, transfer};
-use crate::data::{Histogram, ValueRange, Volume};
+use super::{aim, threshold, transfer};
+use crate::data::{DataKind, Histogram, ValueRange, Volume};
 use crate::model::{
     ControlPoint, DensityRange, FRAME_ASPECT, Interpolation, LightingTransfer, Settings, TransferFunction,
 };
@@ -22,30 +22,38 @@ const MOST_SHOWN: f64 = 0.95;
 /// Share of the voxels that [`densest`] shows.
 const DENSEST: f64 = 0.05;
 
-/// A first look, or if it shows nothing, or nothing but the volume's box, another that shows something.
-pub(super) fn or_another(first: Settings, volume: &Volume, histogram: &Histogram) -> Settings {
-    if shown(&first, volume) == Shown::Object {
+/// A first look at data of a kind, or if it shows nothing, or nothing but the volume's box, another that shows something.
+pub(super) fn or_another(
+    first: Settings,
+    volume: &Volume,
+    histogram: &Histogram,
+    kind: DataKind,
+) -> Settings {
+    let found = shown(&first, volume);
+    if found == Shown::Object {
         return first;
     }
     let robust = |transfer: TransferFunction| Settings { transfer, ..first.clone() };
     let others: [&dyn Fn() -> Settings; 4] = [
-        &|| robust(ramp(volume, histogram, threshold::otsu(histogram))),
-        &|| robust(ramp(volume, histogram, Isosurfaces::of(volume).best().unwrap_or(0.5))),
+        &|| robust(transfer::beginning_at(volume, histogram, threshold::otsu(histogram))),
+        &|| {
+            let start = Isosurfaces::of(volume).best().unwrap_or(0.5);
+            robust(transfer::beginning_at(volume, histogram, start))
+        },
         &|| {
             let all = volume.showing(volume.value_range());
-            let transfer = transfer(&all, &Histogram::of(&all));
+            let transfer = transfer::find(&all, &Histogram::of(&all), kind).transfer;
             Settings { range: DensityRange::Full, transfer, ..first.clone() }
         },
         &|| robust(densest(volume)),
     ];
-    let is_box = shown(&first, volume) == Shown::Box;
     let mut next = None;
     for other in others {
         let mut settings = other();
         aim(&mut settings, volume);
         match shown(&settings, volume) {
             Shown::Object => return settings,
-            Shown::Box if !is_box && next.is_none() => next = Some(settings),
+            Shown::Box if found == Shown::Nothing && next.is_none() => next = Some(settings),
             _ => {}
         }
     }

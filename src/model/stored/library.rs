@@ -1,7 +1,8 @@
 //! Presets that come with the program: transfer functions and materials by domain.
 //!
-//! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the range
-//! that the look shows (`"_values": "relative"`). Camera, lights and shadows stay as they are.
+//! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the range that the
+//! look chooses (`"_values": "relative"`). Those of the paper also say how shadows and sheets are made, as the paper has
+//! it, and that of the benchmarks says everything; by all others camera, lights, shadows and sampling stay as they are.
 
 use serde_json::Value;
 

@@ -83,14 +83,16 @@ pub fn assign(
     let mut tree = serde_json::to_value(settings).map_err(PresetError::Form)?;
     // It says how a file is to be read, and nothing of how a picture looks.
     tree.as_object_mut().map(|fields| fields.shift_remove("schema"));
+    let current = current_path(path);
+    if let Some((parent, key)) = current.rsplit_once('.')
+        && is_other_variant(&tree, &pointer(parent), key)
+        && let Some(node) = tree.pointer_mut(&pointer(parent))
+    {
+        *node = Value::Object(std::iter::once((key.to_owned(), Value::Null)).collect());
+    }
     let mut node = &mut tree;
     let mut walked: Vec<&str> = Vec::new();
-    let current = current_path(path);
-    let mut keys = current.split('.').peekable();
-    while let Some(key) = keys.next() {
-        if keys.peek().is_none() && is_other_variant(node, key) {
-            *node = Value::Object(std::iter::once((key.to_owned(), Value::Null)).collect());
-        }
+    for key in current.split('.') {
         let known = match &*node {
             Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
             Value::Array(items) => format!("0 … {}", items.len().saturating_sub(1)),
@@ -125,20 +127,31 @@ pub fn assign(
     Ok((result, warning))
 }
 
-/// Whether a value is that of an enum, as it seems, and a key names another variant, which has numbers: one that is
-/// none is refused when the settings are made.
-fn is_other_variant(value: &Value, key: &str) -> bool {
-    match value {
-        Value::String(_) => key.parse::<usize>().is_err(),
-        Value::Object(fields) => fields.len() == 1 && !fields.contains_key(key),
-        _ => false,
-    }
+/// Whether what settings have at a place is an enum, and a key names another of its variants than the one that it is: the
+/// only thing that is refused there with a list of variants is what is none of them.
+fn is_other_variant(settings: &Value, at: &str, key: &str) -> bool {
+    let mut tried = settings.clone();
+    let Some(node) = tried.pointer_mut(at).filter(|node| node.get(key).is_none()) else { return false };
+    *node = Value::String(NO_VARIANT.to_owned());
+    serde_json::from_value::<Settings>(tried).is_err_and(|refused| {
+        let refused = refused.to_string();
+        refused.starts_with(&format!("unknown variant `{NO_VARIANT}`"))
+            && refused.contains(&format!("`{key}`"))
+    })
+}
+
+/// What no variant of an enum is called.
+const NO_VARIANT: &str = "?";
+
+/// A path as JSON pointers are written.
+fn pointer(path: &str) -> String {
+    format!("/{}", path.replace('.', "/"))
 }
 
 /// What a setting is, by its path.
 fn value_at(settings: &Settings, path: &str) -> Option<Value> {
     let tree = serde_json::to_value(settings).ok()?;
-    tree.pointer(&format!("/{}", path.replace('.', "/"))).cloned()
+    tree.pointer(&pointer(path)).cloned()
 }
 
 fn merge(base: &mut Value, overlay: &Value) {
@@ -184,7 +197,7 @@ fn list_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut Vec
 mod tests {
     use super::*;
     use crate::data::ValueRange;
-    use crate::model::{DensityRange, Kernel, Length, LightLock, LightStorage, MAX_LIGHTS};
+    use crate::model::{Camera, DensityRange, Kernel, Length, LightLock, LightStorage, MAX_LIGHTS};
 
     #[test]
     fn round_trip() {
@@ -249,6 +262,19 @@ mod tests {
         assert_eq!(set("opacity_unit.mm", "2").unwrap().opacity_unit, Length::Mm(2.0));
         let told = assign(&Settings::default(), "range.typed", "[300, -100]").unwrap();
         assert_eq!((told.0.range, told.1.is_some()), (typed, true));
+        // With numbers after one with numbers.
+        let in_mm = set("opacity_unit.mm", "2").unwrap();
+        assert_eq!(apply_path(&in_mm, "opacity_unit.voxels", "3").unwrap().opacity_unit, Length::Voxels(3.0));
+        // What has one entry, or is a text, need not be an enum.
+        let mut one_view = Settings::default();
+        one_view.views.insert(3, Camera::default());
+        let camera = serde_json::to_string(&Camera::default()).unwrap();
+        for path in ["views.5", "sampling.kernel.gaussian.sigmo", "lights.0.name.x", "shadows.strength.x"] {
+            let mut settings = one_view.clone();
+            settings.sampling.kernel = Kernel::Gaussian { sigma: 0.5 };
+            let refused = apply_path(&settings, path, &camera).unwrap_err();
+            assert!(matches!(refused, PresetError::UnknownPath { .. }), "{path}: {refused}");
+        }
         for (path, text) in [("range.robuster", "1"), ("range.typed", "3"), ("lights.0.name.x", "1")] {
             assert!(set(path, text).is_err(), "{path}");
         }

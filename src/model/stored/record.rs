@@ -320,6 +320,7 @@ mod tests {
         let elsewhere = VolumeRecord::new(&file, 7, Some(Path::new("/no/such/folder")));
         assert_eq!(Path::new(&elsewhere.source), file);
     }
+
     /// A name that is no text is that of the same file afterwards; bytes that say something else than what is shown
     /// are not believed.
     #[cfg(unix)]

@@ -7,8 +7,14 @@ use crate::data::{Hints, MAX_LABELS, Meaning, Modality};
 /// Keys of the modality, best first.
 const MODALITY: [&str; 3] = ["modality", "DICOM_0008_0060", "DICOM.Modality"];
 
-/// Keys of the values of voxels that were not measured.
-const PADDING: [&str; 4] = ["padding value", "PaddingValue", "PixelPaddingValue", "DICOM_0028_0120"];
+/// Keys of the values of voxels that were not measured: in the numbers of the file, …
+const PADDING: [&str; 2] = ["padding value", "PaddingValue"];
+
+/// … and as DICOM says it, in the numbers that the scanner stored. Where a header says how these were rescaled, the file
+/// has them rescaled (PS3.3, C.7.5.1.1.2 and C.11.1).
+const STORED_PADDING: [&str; 2] = ["PixelPaddingValue", "DICOM_0028_0120"];
+const RESCALE_SLOPE: [&str; 2] = ["RescaleSlope", "DICOM_0028_1053"];
+const RESCALE_INTERCEPT: [&str; 2] = ["RescaleIntercept", "DICOM_0028_1052"];
 
 /// Keys of descriptions of how the data were acquired: by hand, of the series, of the protocol.
 const ACQUISITION: [&str; 4] = ["acquisition", "SeriesDescription", "DICOM_0008_103E", "DICOM_0018_1030"];
@@ -44,7 +50,11 @@ impl Header {
         for unit in [self.get("sample units"), self.get_key(RESCALE_TYPE)].into_iter().flatten() {
             hints.set_unit(unit.trim_matches(['"', ' ']));
         }
-        if let Ok(padding) = first(&PADDING).trim().parse() {
+        let number = |keys: &[&str]| first(keys).trim().parse::<f64>().ok();
+        let rescaled = |stored: f64| {
+            number(&RESCALE_SLOPE).unwrap_or(1.0) * stored + number(&RESCALE_INTERCEPT).unwrap_or(0.0)
+        };
+        if let Some(padding) = number(&PADDING).or_else(|| number(&STORED_PADDING).map(rescaled)) {
             hints.set_padding(padding);
         }
         hints.set_acquisition(first(&ACQUISITION));

@@ -1,5 +1,6 @@
 //! Masks and label maps: few values, each of which fills regions.
 
+use super::inverted::{FACES, MOST_OF_OBJECT};
 use super::sampled::{Sampled, distinct_of_all};
 use super::{DataKind, KindFound};
 use crate::data::{MAX_LABELS, Volume};
@@ -9,11 +10,11 @@ use crate::data::{MAX_LABELS, Volume};
 const LEAST_EQUAL: f64 = 0.85;
 
 /// The same for the label in the middle of all, at least: the smallest may be specks. Values that only occur where an
-/// object ends, as between a thing and air, have hardly any neighbours like them.
+/// object ends, as between a thing and air, have hardly any neighbours like them; of a label that fills regions most are.
 const LEAST_EQUAL_OF_ONE: f64 = 0.5;
 
 /// Share of unequal neighbours that are not next to each other in the order of all values, at least. Along smooth
-/// fields of few values it is next to nothing, in label maps 0.84 and more.
+/// fields of few values it is next to nothing, in label maps 0.84 and more: well apart from both.
 const LEAST_JUMPS: f64 = 0.3;
 
 /// From so many values on there are jumps in label maps: of three labels around each other there are none. Those count
@@ -25,7 +26,7 @@ const LARGEST_LABEL: f64 = (1u64 << 32) as f64;
 
 /// How many labels a volume has, without the lowest value, which is what is around them.
 pub(super) fn count(volume: &Volume) -> usize {
-    let distinct = distinct_of_all(volume.samples(), MAX_LABELS + 1).map_or(MAX_LABELS + 1, |all| all.len());
+    let distinct = distinct_of_all(volume, MAX_LABELS + 1).map_or(MAX_LABELS + 1, |all| all.len());
     // Everything is labelled where the lowest value is above zero.
     distinct.saturating_sub(usize::from(volume.value_range().low <= 0.0))
 }
@@ -34,9 +35,11 @@ pub(super) fn count(volume: &Volume) -> usize {
 pub(super) fn mask(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> {
     // Most volumes have more among the first few voxels already.
     sampled.distinct(2)?;
-    let all = distinct_of_all(volume.samples(), 2)?;
+    let all = distinct_of_all(volume, 2)?;
     let [low, high] = all[..] else { return None };
-    let is_around = |value: f64| sampled.faces().iter().filter(|face| is_mostly(face, value)).count() >= 5;
+    let is_around =
+        |value: f64| sampled.faces().iter().filter(|face| is_mostly(face, value)).count() >= FACES;
+    // What surrounds an object of which there is more is its border.
     if is_around(high) && sampled.share_of(low) < 0.5 {
         return Some(KindFound::new(
             DataKind::DarkOnBright,
@@ -46,9 +49,10 @@ pub(super) fn mask(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> 
     Some(KindFound::new(DataKind::Mask, format!("there are two values, {low} and {high}")))
 }
 
-fn is_mostly(values: &[f64], value: f64) -> bool {
-    let equal = values.iter().filter(|&&other| other == value).count();
-    equal as f64 >= 0.95 * values.len() as f64
+/// Whether a face shows one value, but for the share that may be of an object.
+fn is_mostly(face: &[f64], value: f64) -> bool {
+    let equal = face.iter().filter(|&&other| other == value).count();
+    !face.is_empty() && equal as f64 >= (1.0 - MOST_OF_OBJECT) * face.len() as f64
 }
 
 /// Neighbours, counted.

@@ -1,6 +1,7 @@
 //! What kind of data a volume holds: what its file says, else what the values and their neighbourhoods tell.
 //!
-//! One pass over the voxels, of which at most two million are looked at. Nothing depends on how the grid lies or on the
+//! Of the voxels at most two million are looked at, but for those of masks and label maps, of which no value is left out.
+//! What holds nothing, as the file declares it, is no value. Nothing depends on how the grid lies or on the
 //! number type; what has no absolute meaning does not depend on scale and offset of the values either.
 
 mod inverted;
@@ -9,6 +10,7 @@ mod sampled;
 #[cfg(test)]
 mod tests;
 
+use self::inverted::MOST_OF_OBJECT;
 use self::sampled::{Sampled, quantile};
 use super::Volume;
 use crate::data::{Meaning, Modality};
@@ -150,9 +152,12 @@ impl KindFound {
 
 /// The value of water, where values are Hounsfield units: scanners that know no negative numbers add 1024.
 fn water(volume: &Volume) -> f64 {
-    // Noise around air goes below −1000 by less than this.
-    if volume.value_range().low < -200.0 { 0.0 } else { 1024.0 }
+    if volume.value_range().low < BELOW_FAT { 0.0 } else { 1024.0 }
 }
+
+/// Hounsfield units below which there is no tissue but lung. Scans that show air reach far below, and those to which 1024
+/// was added go below zero by noise alone.
+const BELOW_FAT: f64 = -200.0;
 
 /// Hounsfield units have peaks at air and at soft tissue, and little between them: what lies there is lungs, and the
 /// surfaces of everything.
@@ -164,11 +169,13 @@ fn hounsfield(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> {
         return None;
     }
     let share = |low: f64, high: f64| sampled.share(water + low, water + high);
+    // Air is −1000, and fat, water, muscle and blood lie within 150 of zero. Between them are lungs, and spongy bone beyond:
+    // windows well apart from both peaks, whose noise is a few tens.
     let (air, soft) = (share(-1050.0, -950.0), share(-150.0, 150.0));
     // Per Hounsfield unit, so that windows of different widths compare.
     let (between, beyond) = (share(-650.0, -250.0) / 400.0, share(350.0, 650.0) / 300.0);
     let are_peaks = air / 100.0 >= PEAK * between && soft / 300.0 >= PEAK * between.max(beyond);
-    // A scan may show no air, and then its header has to say what it is.
+    // A scan may show no air; then its header has to say what it is, and there is as much soft tissue as in both peaks.
     let is_found =
         (are_peaks && air >= LEAST_PEAK && soft >= LEAST_PEAK) || is_ct && soft >= 2.0 * LEAST_PEAK;
     is_found.then(|| {
@@ -190,14 +197,15 @@ const PEAK: f64 = 2.0;
 
 /// Signed fields reach about as far below zero as above, in lobes rather than in single voxels.
 fn signed(sampled: &Sampled<'_>) -> Option<KindFound> {
-    let (below, above) = sampled.nonzero_quantiles(0.002)?;
+    let (below, above) = sampled.nonzero_quantiles(OUTLIERS)?;
     let balance = below.abs().min(above) / below.abs().max(above);
     if below >= 0.0 || above <= 0.0 || balance < LEAST_BALANCE {
         return None;
     }
     // Around deviations there is none: what is far below zero all around is the dark margin of a scan.
-    let is_all_strong =
-        |face: &Vec<f64>| quantile(face, 0.95) <= below / 2.0 || quantile(face, 0.05) >= above / 2.0;
+    let is_all_strong = |face: &Vec<f64>| {
+        quantile(face, 1.0 - MOST_OF_OBJECT) <= below / 2.0 || quantile(face, MOST_OF_OBJECT) >= above / 2.0
+    };
     if sampled.faces().iter().filter(|face| is_all_strong(face)).count() >= STRONG_FACES {
         return None;
     }
@@ -211,11 +219,14 @@ fn signed(sampled: &Sampled<'_>) -> Option<KindFound> {
     })
 }
 
+/// Share of the values that are not zero at either end that are outliers: fewer make no lobe that is seen.
+const OUTLIERS: f64 = 0.002;
+
 /// How far a signed field reaches to its weaker side, as a share of the stronger, at least. Six of six signed fields
-/// have 0.49 and more, noise below zero beside a signal above it seldom 0.3.
+/// have 0.49 and more, noise below zero beside a signal above it seldom 0.3: well apart from both.
 const LEAST_BALANCE: f64 = 0.35;
 
-/// So many of the six faces are not around a signed field if all of their values are strong.
+/// So many of the six faces are not around a signed field if all of their values are strong: one may cut an object.
 const STRONG_FACES: usize = 5;
 
 /// How many neighbours of strong values are half as strong, at least. In lobes 0.9 and more; in white noise 0.1.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::data::{Samples, Volume};
+use crate::data::Volume;
 
 /// Voxels that are looked at: of larger volumes, one in so many along each axis.
 const LOOKED_AT: f64 = (1u64 << 21) as f64;
@@ -11,15 +11,22 @@ const LOOKED_AT: f64 = (1u64 << 21) as f64;
 const FACE_EDGE: usize = 128;
 
 /// A spike has at least this share of the voxels, and is apart from the others by this share of their range: edges of
-/// objects fill the gap between a background that was measured and what is in it.
+/// objects fill the gap between a background that was measured and what is in it. Both are those from which values are
+/// padding for the range that matters (`values/robust.rs`).
 const SPIKE_SHARE: f64 = 0.01;
 const SPIKE_GAP: f64 = 0.05;
+
+/// Share of the values at an end that are outliers where the range of the others is asked for: of the two million voxels
+/// that are looked at, two thousand.
+const OUTERMOST: f64 = 0.001;
 
 /// Values of voxels, in order.
 pub(super) struct Sampled<'a> {
     volume: &'a Volume,
-    /// Finite, ascending, without what the file says is padding.
+    /// Of those that hold something, ascending.
     pub(super) values: Vec<f64>,
+    /// What the file says is no value.
+    padding: Option<f64>,
     step: usize,
     /// The lowest and the highest value, where [`Self::without_spikes`] has found them to be none.
     spikes: [Option<f64>; 2],
@@ -29,7 +36,7 @@ impl<'a> Sampled<'a> {
     pub(super) fn of(volume: &'a Volume) -> Self {
         let [nx, ny, nz] = volume.dims();
         let step = (volume.voxel_count() as f64 / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
-        let padding = volume.padding_value().or(volume.hints().padding);
+        let padding = declared_padding(volume);
         let samples = volume.samples();
         let mut values: Vec<f64> = (0..nz)
             .step_by(step)
@@ -40,10 +47,10 @@ impl<'a> Sampled<'a> {
                 let voxels = rows.flat_map(move |row| (row..row + nx).step_by(step));
                 voxels.map(|voxel| samples.value(voxel))
             })
-            .filter(|value| value.is_finite() && Some(*value) != padding)
+            .filter(|value| holds_something(*value, padding))
             .collect();
         values.par_sort_unstable_by(f64::total_cmp);
-        Self { volume, values, step, spikes: [None; 2] }
+        Self { volume, values, padding, step, spikes: [None; 2] }
     }
 
     /// The value below which a share of the voxels lies.
@@ -124,7 +131,7 @@ impl<'a> Sampled<'a> {
         // Of what is left.
         let rest = (all - count) as f64;
         let next = at(&self.values, count);
-        let other_end = at(&self.values, all - 1 - (0.001 * rest) as usize);
+        let other_end = at(&self.values, all - 1 - (OUTERMOST * rest) as usize);
         ((next - first).abs() >= SPIKE_GAP * (other_end - next).abs()).then_some(first)
     }
 
@@ -143,7 +150,8 @@ impl<'a> Sampled<'a> {
         Some(distinct)
     }
 
-    /// For every pair of neighbours along an axis, of those voxels that are looked at, what `count` adds.
+    /// For every pair of neighbours along an axis that hold something, of those voxels that are looked at, what `count`
+    /// adds.
     pub(super) fn pairs<T: Send + Default>(
         &self,
         count: impl Fn(&mut T, f64, f64) + Sync,
@@ -160,9 +168,13 @@ impl<'a> Sampled<'a> {
                     for x in (0..nx).step_by(self.step) {
                         let at = (z * ny + y) * nx + x;
                         let here = samples.value(at);
-                        let mut pair = |is_there: bool, step: usize| {
-                            if is_there {
-                                count(&mut total, here, samples.value(at + step));
+                        if !holds_something(here, self.padding) {
+                            continue;
+                        }
+                        let mut pair = |is_inside: bool, step: usize| {
+                            let other = is_inside.then(|| samples.value(at + step));
+                            if let Some(other) = other.filter(|&other| holds_something(other, self.padding)) {
+                                count(&mut total, here, other);
                             }
                         };
                         pair(x + 1 < nx, 1);
@@ -175,7 +187,8 @@ impl<'a> Sampled<'a> {
             .reduce(T::default, sum)
     }
 
-    /// The finite values of each of the six faces, in order; some of them where there are many.
+    /// The values of each of the six faces that hold something, in order; some of them where there are many. A face that
+    /// holds nothing has none.
     pub(super) fn faces(&self) -> [Vec<f64>; 6] {
         let dims = self.volume.dims();
         std::array::from_fn(|face| {
@@ -190,7 +203,7 @@ impl<'a> Sampled<'a> {
                     (at[axis], at[u], at[v]) = (if is_last { dims[axis] - 1 } else { 0 }, i, j);
                     self.volume.value(at[0], at[1], at[2])
                 })
-                .filter(|value| value.is_finite())
+                .filter(|value| holds_something(*value, self.padding))
                 .collect();
             values.sort_unstable_by(f64::total_cmp);
             values
@@ -199,8 +212,9 @@ impl<'a> Sampled<'a> {
 
     /// The value that best splits all of them in two (Otsu 1979), in bins between the outermost thousandths.
     pub(super) fn split(&self) -> f64 {
+        // As many as 8-bit data have values.
         const BINS: usize = 256;
-        let (low, high) = (self.quantile(0.001), self.quantile(0.999));
+        let (low, high) = (self.quantile(OUTERMOST), self.quantile(1.0 - OUTERMOST));
         let value = |bin: usize| low + (high - low) * bin as f64 / BINS as f64;
         let total = self.values.len() as f64;
         let counts: Vec<f64> = (0..BINS).map(|bin| total * self.share(value(bin), value(bin + 1))).collect();
@@ -229,15 +243,26 @@ pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
     values.get(at.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
 }
 
-/// Different values of all voxels in order, if there are at most so many.
-pub(super) fn distinct_of_all(samples: &Samples, most: usize) -> Option<Vec<f64>> {
+/// What a volume's file says is no value; also where the volume has no other, which is shown as it is then.
+fn declared_padding(volume: &Volume) -> Option<f64> {
+    volume.padding_value().or(volume.hints().padding)
+}
+
+/// Whether there is something where a voxel has this value.
+fn holds_something(value: f64, padding: Option<f64>) -> bool {
+    value.is_finite() && Some(value) != padding
+}
+
+/// Different values of all voxels that hold something in order, if there are at most so many.
+pub(super) fn distinct_of_all(volume: &Volume, most: usize) -> Option<Vec<f64>> {
+    let (samples, padding) = (volume.samples(), declared_padding(volume));
     let mut distinct: Vec<f64> = Vec::new();
     let mut last = f64::NAN;
     for voxel in 0..samples.len() {
         // Of 0 and −0 there is one.
         let value = samples.value(voxel) + 0.0;
         // Neighbours are mostly equal.
-        if value == last || !value.is_finite() {
+        if value == last || !holds_something(value, padding) {
             continue;
         }
         last = value;

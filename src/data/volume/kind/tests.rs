@@ -319,3 +319,31 @@ fn built_in_volumes_are_what_they_are() {
         assert_eq!(volume.kind().kind.name(), kind, "{name} {n}: {}", volume.kind().why);
     }
 }
+
+#[test]
+fn declared_padding_is_no_value_no_neighbour_and_no_face() {
+    let with_padding = |values: Vec<f64>, padding: f64| {
+        volume_of(Samples::F64(values)).with_padding(padding).unwrap().kind().kind
+    };
+    // Here and there in a label map, whose neighbours would be equal in part only.
+    let here_and_there = |at: usize| noise(at, 9) > 0.2;
+    let labels = values(|p, at| if here_and_there(at) { 77.0 } else { regions(p, 12) });
+    let mut numbers: Vec<u8> = values(|p, _| regions(p, 12)).into_iter().map(|number| number as u8).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    assert_eq!(with_padding(labels.clone(), 77.0), DataKind::LabelMap { count: numbers.len() - 1 });
+    assert_eq!(kind(&labels), KindName::Scalar, "that it is the padding which hides them");
+    // A third value beside two.
+    let mask = values(|p, _| if p.x > 0.8 { -5.0 } else { f64::from(u8::from(p.length() < 0.6)) });
+    assert_eq!(with_padding(mask, -5.0), DataKind::Mask);
+    // Black corners of a bright field.
+    let dark = values(|p, at| {
+        let field = if p.length() < 0.5 { 300.0 } else { 900.0 };
+        if p.truncate().abs().min_element() > 0.7 { 0.0 } else { field + 10.0 * noise(at, 4) }
+    });
+    assert_eq!(with_padding(dark.clone(), 0.0), DataKind::DarkOnBright);
+    // A face that holds nothing is around nothing.
+    let hollow =
+        values(|p, _| if p.abs().max_element() > 0.9 { -5.0 } else { f64::from(u8::from(p.length() > 0.3)) });
+    assert_eq!(with_padding(hollow, -5.0), DataKind::Mask);
+}

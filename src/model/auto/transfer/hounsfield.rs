@@ -9,8 +9,21 @@ use crate::data::Volume;
 /// 80 (100 with agent in them).
 const BONE: f64 = 150.0;
 
-/// Share of the voxels that are bone or agent, at least: less is noise, or a scan without any.
+/// Share of the voxels that are bone or agent, at least: less is noise, or a scan without any. A rod of five voxels'
+/// width through a volume of 200 voxels' edge has as much.
 const LEAST_BONE: f64 = 0.0005;
+
+/// Hounsfield units of compact bone, wherever its middle is found: spongy bone ends at the first, and long shafts have more
+/// than the second.
+const COMPACT: [f64; 2] = [300.0, 700.0];
+
+/// Hounsfield units up to which bone becomes harder: what is beyond is enamel and metal. It is harder than compact bone by
+/// as much as that is than flesh, at least.
+const HARDEST: f64 = 1600.0;
+const HARDER: f64 = 150.0;
+
+/// Hounsfield units just below 3071, the last that scanners of 12 bits have.
+const END: f64 = 3000.0;
 
 /// Shows bone; nothing where there is none.
 pub(super) fn find(volume: &Volume, water: f64) -> Option<Found> {
@@ -23,14 +36,14 @@ pub(super) fn find(volume: &Volume, water: f64) -> Option<Found> {
         return None;
     }
     // Where compact bone is, of what is dense; a scan of soft bones, or of agent alone, has less of it.
-    let compact = quantile(&dense, 0.6).clamp(water + 300.0, water + 700.0);
-    let hard = quantile(&dense, 0.97).clamp(compact + 150.0, water + 1600.0);
+    let compact = quantile(&dense, 0.6).clamp(water + COMPACT[0], water + COMPACT[1]);
+    let hard = quantile(&dense, 0.97).clamp(compact + HARDER, water + HARDEST);
     let stops = [
         (start, 0.0, 0.0),
         (start + 0.3 * (compact - start), 0.25, 0.35),
         (compact, 0.6, 0.8),
         (hard, 0.9, 0.94),
-        (water + 3000.0, 1.0, 0.97),
+        (water + END, 1.0, 0.97),
     ];
     let stops = stops.map(|(value, place, opacity)| Stop { value, place, opacity });
     Some(Found { transfer: through(stops, Palette::of(Domain::Bone)), domain: Domain::Bone })

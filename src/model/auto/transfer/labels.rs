@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use super::super::LEAST_SHOWN;
 use super::super::palette::category;
-use crate::data::Volume;
-use crate::model::{ControlPoint, Easing, Interpolation, MAX_POINTS, Mixing, TransferFunction};
+use crate::data::{ValueRange, Volume};
+use crate::model::{
+    ControlPoint, DensityRange, Easing, Interpolation, LUT_SIZE, MAX_POINTS, Mixing, Settings,
+    TransferFunction, oklab_from_linear,
+};
 
 /// Opacity of all labels: one hides what is behind it within a voxel or two.
 const OPACITY: f64 = 0.9;
-
-/// Opacity below which a label counts as lost.
-const LEAST_OPACITY: f64 = 0.05;
 
 /// Labels are whole numbers: from halfway to the one below on, it is this one.
 const HALF: f64 = 0.5;
@@ -32,9 +33,45 @@ pub(super) fn transfer(volume: &Volume) -> TransferFunction {
     TransferFunction { points, interpolation: Interpolation::Opacity, mixing: Mixing::Light }
 }
 
-/// How many of the labels that there are a function does not show.
-pub(in crate::model::auto) fn lost_labels(function: &TransferFunction, volume: &Volume) -> usize {
-    numbers(volume).into_iter().filter(|&number| function.opacity_at(number as f64) < LEAST_OPACITY).count()
+/// The range in which labels are told apart as far as that can be. A table of a function has [`LUT_SIZE`] entries that are
+/// evenly spread over the range, and what lies between two of them is a mixture.
+pub(in crate::model::auto) fn range(volume: &Volume) -> DensityRange {
+    let numbers = numbers(volume);
+    let (Some(&first), Some(&last)) = (numbers.first(), numbers.last()) else { return DensityRange::Full };
+    let steps = (LUT_SIZE - 1) as f64;
+    // With two entries for each number or more, both of those beside it are its own.
+    if 2.0 * volume.value_range().span() <= steps {
+        return DensityRange::Full;
+    }
+    // Else the first entry is that of nothing, and the second lies on the lowest number: one on each number, if there are
+    // enough. If not, numbers beside each other may share a colour, but the lowest do not fade into nothing, unless they
+    // are so near zero, which is what is around.
+    let step = ((last - first) as f64 / (steps - 1.0)).max(1.0);
+    let nothing = (first as f64 - step).max(0.0);
+    let span = steps * step;
+    // Numbers beyond all that can be told apart have no range.
+    ValueRange::spread(nothing, nothing + span).map_or(DensityRange::Full, DensityRange::Typed)
+}
+
+/// How far a colour may be from another in Oklab to be taken for it: half of what the most alike of the colours of labels
+/// are apart.
+const ALIKE: f64 = 0.0075;
+
+/// How many of the labels that there are settings do not show, or in a colour that is not the one that they give it. What
+/// counts is the table that pictures are made with.
+pub(in crate::model::auto) fn lost_labels(settings: &Settings, volume: &Volume) -> usize {
+    let volume = volume.showing(settings.shown_range(&volume.ranges()));
+    let function = &settings.transfer;
+    let table = function.bake(volume.shown_range(), 1.0, 1.0);
+    let is_lost = |number: &i64| {
+        let value = *number as f64;
+        let [red, green, blue, depth] = table.sample(volume.density_of(value));
+        let opacity = 1.0 - (-depth).exp();
+        let [found, own] = [[red, green, blue], function.at(value).0].map(oklab_from_linear);
+        let apart = found.iter().zip(own).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        opacity < LEAST_SHOWN || apart > ALIKE
+    };
+    numbers(&volume).iter().filter(|number| is_lost(number)).count()
 }
 
 /// The labels that there are, lowest first; as many as a function can have points.

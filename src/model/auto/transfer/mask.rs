@@ -12,7 +12,7 @@ const WIDTH: f64 = 0.1;
 
 /// Shows one of the two.
 pub(super) fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
-    let range = volume.value_range();
+    let range = volume.ranges().robust;
     let half = match volume.kind().kind {
         DataKind::Mask => range.at(0.5),
         // Treated as one: whatever splits it best.

@@ -9,12 +9,14 @@ mod signed;
 #[cfg(test)]
 mod tests;
 
+use super::above;
 use super::domain::Domain;
 use super::palette::Palette;
 use crate::data::{DataKind, Histogram, Volume};
 use crate::model::{ControlPoint, Interpolation, Mixing, TransferFunction};
 
-pub(super) use self::labels::lost_labels;
+pub(super) use self::labels::{lost_labels, range as range_of_labels};
+pub(super) use self::scalar::beginning_at;
 
 /// What is shown of a volume, and what it is.
 pub(super) struct Found {
@@ -36,16 +38,30 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Fo
     }
 }
 
-/// A transfer function that shows what begins at a density.
-pub(super) fn beginning_at(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction {
-    scalar::beginning_at(volume, histogram, start)
-}
-
 /// A point before its value and its colour are known: how far along the scale, along the palette, and how opaque.
 struct Stop {
     value: f64,
     place: f64,
     opacity: f64,
+}
+
+/// Where opacities rise on a scale from 0 to 1, of which `histogram` counts the values, for an object that begins at a
+/// place of it: (place on the scale, place in the palette, opacity per unit).
+fn rising(histogram: &Histogram, start: f64) -> [(f64, f64, f64); 5] {
+    let object = above(histogram, start);
+    // The bulk of the object lies below `bulk`; its densest part is worth a colour of its own. A twenty-fifth of the scale
+    // at least for each, ten steps of 8-bit data, lest surfaces end as abruptly as voxels do.
+    let bulk = object.percentile(0.6).max(start + 0.04);
+    let dense = object.percentile(0.97).max(bulk + 0.04);
+    // The first step rises quickly, so that surfaces are crisp and shadows fall on something: what begins in the first
+    // third of the way to the bulk hides half of what is behind it within two units.
+    [
+        (start, 0.0, 0.0),
+        (start + 0.35 * (bulk - start), 0.2, 0.3),
+        (bulk, 0.5, 0.65),
+        (dense, 0.85, 0.88),
+        (1.0f64.max(dense + 0.01), 1.0, 0.96),
+    ]
 }
 
 /// A transfer function through stops in any order; colours mix as they are seen.

@@ -5,23 +5,32 @@ use super::super::palette::Palette;
 use super::{Found, Stop, of_points, quantile, some_values, through};
 use crate::data::Volume;
 
-/// Share of all energy (squares) that strong values have.
+/// Share of all energy (squares) that strong values have: what is shown is as much of the field as what is not.
 const ENERGY: f64 = 0.5;
 
 /// Strong values are beyond so many deviations of noise, of which the median of the magnitudes is a measure that
-/// strong values hardly change: 1.4826 medians are a deviation of normal noise.
+/// strong values hardly change: 1.4826 medians are a deviation of normal noise (1 / Φ⁻¹(3/4)), of which 1.2 % are beyond
+/// 2.5 deviations.
 const DEVIATIONS: f64 = 2.5;
 const DEVIATION_PER_MEDIAN: f64 = 1.4826;
 
-/// Roughness up to which a field has no noise: layers of rock have 0.05, statistical maps 0.44 and more.
+/// Roughness up to which a field has no noise: layers of rock have 0.05, statistical maps 0.44 and more; well apart
+/// from both.
 const SMOOTH: f64 = 0.2;
 
-/// Share of the values that is shown at least.
-const LEAST_SHOWN: f64 = 0.04;
+/// Share of the values that is shown at least, however strong noise is: three times what is left of normal noise.
+const LEAST_STRONG: f64 = 0.04;
+
+/// How far the bulk of what is strong is above where that begins at least, and its peaks above the bulk: as steep as
+/// opacities are at most, lest surfaces end as abruptly as voxels do.
+const STEEPEST: f64 = 1.15;
 
 /// Shows both sides; nothing where all values are zero.
 pub(super) fn find(volume: &Volume) -> Option<Found> {
-    let magnitudes = some_values(volume, |value| (value != 0.0).then_some(value.abs()));
+    // The energy of one outlier can be more than that of all others.
+    let matters = volume.ranges().robust;
+    let magnitudes =
+        some_values(volume, |value| (value != 0.0 && matters.contains(value)).then_some(value.abs()));
     // Fields without noise have none to hide.
     let has_noise = roughness(volume) > SMOOTH;
     let threshold = threshold(&magnitudes, has_noise);
@@ -30,8 +39,8 @@ pub(super) fn find(volume: &Volume) -> Option<Found> {
     }
     let strong = &magnitudes[magnitudes.partition_point(|&value| value < threshold)..];
     // As of other objects: the bulk of what is strong, and its peaks.
-    let bulk = quantile(strong, 0.6).max(threshold * 1.15);
-    let peak = quantile(strong, 0.97).max(bulk * 1.15);
+    let bulk = quantile(strong, 0.6).max(threshold * STEEPEST);
+    let peak = quantile(strong, 0.97).max(bulk * STEEPEST);
     let mut points = Vec::new();
     for is_negative in [true, false] {
         let sign = if is_negative { -1.0 } else { 1.0 };
@@ -61,5 +70,5 @@ fn threshold(magnitudes: &[f64], has_noise: bool) -> f64 {
         return of_energy;
     }
     let of_noise = DEVIATIONS * DEVIATION_PER_MEDIAN * quantile(magnitudes, 0.5);
-    of_energy.max(of_noise).min(quantile(magnitudes, 1.0 - LEAST_SHOWN))
+    of_energy.max(of_noise).min(quantile(magnitudes, 1.0 - LEAST_STRONG))
 }

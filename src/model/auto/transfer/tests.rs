@@ -6,7 +6,7 @@ use super::find;
 use crate::data::{DataKind, Hints, Histogram, KindName, Meaning, Modality, Samples, Volume};
 use crate::model::auto::domain::Domain;
 use crate::model::auto::{Wishes, first_settings_with, labels_lost, transfer_as};
-use crate::model::{Easing, MAX_POINTS, Settings, TransferFunction};
+use crate::model::{DensityRange, Easing, MAX_POINTS, Settings, TransferFunction};
 
 const N: usize = 32;
 
@@ -53,6 +53,19 @@ fn signed_fields_show_both_sides_and_not_zero() {
     let larger = volume(|p| 3000.0 * (bump(p, DVec3::X * 0.4) - bump(p, DVec3::X * -0.4)));
     for (a, b) in function.points.iter().zip(shown(&larger, KindName::Signed).points) {
         assert!((a.value * 1000.0 / b.value - 1.0).abs() < 1e-3, "{} {}", a.value, b.value);
+    }
+}
+
+#[test]
+fn one_outlier_does_not_decide_what_is_strong() {
+    let lobes = |p: DVec3| 3.0 * (bump(p, DVec3::X * 0.4) - bump(p, DVec3::X * -0.4));
+    let before = shown(&volume(lobes), KindName::Signed);
+    for odd in [1e30, -1e30, 500.0] {
+        let with = volume(|p| if p.min_element() > 0.99 { odd } else { lobes(p) });
+        let found = shown(&with, KindName::Signed);
+        for (a, b) in before.points.iter().zip(&found.points) {
+            assert!((a.value - b.value).abs() < 0.06, "{odd}: {} {}", a.value, b.value);
+        }
     }
 }
 
@@ -111,6 +124,14 @@ fn masks_have_their_surface_halfway() {
         assert_eq!(function.opacity_at(low + 0.35 * span), 0.0);
         assert!(function.opacity_at(low + 0.65 * span) > 0.8 && function.opacity_at(high) > 0.8);
     }
+    // Something else may be treated as one, and an outlier makes its surface no wider.
+    let ball = |p: DVec3| 100.0 * (-4.0 * p.length_squared()).exp();
+    let odd = volume(|p| if p.min_element() > 0.99 { 1e30 } else { ball(p) });
+    let (before, found) = (shown(&volume(ball), KindName::Mask), shown(&odd, KindName::Mask));
+    for (a, b) in before.points.iter().zip(&found.points) {
+        // But for the few brightest voxels, which are outliers beside it.
+        assert!((a.value - b.value).abs() < 5.0, "{} {}", a.value, b.value);
+    }
 }
 
 #[test]
@@ -133,6 +154,54 @@ fn every_label_is_shown_alike_in_a_color_of_its_own() {
     assert_eq!(labels_lost(&settings, &labels), 0);
     let ramp = Settings { transfer: shown(&labels, KindName::Scalar), ..Settings::default() };
     assert!(labels_lost(&ramp, &labels) > 0, "what it is for");
+}
+
+/// Regions with the numbers 0, `first`, `first` + 1 … `first` + `count` − 1.
+fn regions(first: usize, count: usize) -> Volume {
+    let values = (0..N * N * N).map(|at| {
+        let region = at / (N * N * N / (count + 1) + 1);
+        if region == 0 { 0 } else { (first + region - 1) as u32 }
+    });
+    Volume::with_spacing("t", [N; 3], DVec3::ONE, Samples::U32(values.collect())).unwrap()
+}
+
+#[test]
+fn labels_are_told_apart_in_the_table_where_it_has_an_entry_for_each() {
+    let look = |volume: &Volume| {
+        let wishes = Wishes { treated_as: Some(KindName::LabelMap), ..Wishes::default() };
+        first_settings_with(volume, &Histogram::of(volume), wishes)
+    };
+    for (first, count) in [(1, 40), (1, 500), (1, 600), (1, 900), (1, 1022), (5000, 800)] {
+        let volume = regions(first, count);
+        let settings = look(&volume);
+        assert_eq!(labels_lost(&settings, &volume), 0, "{count} from {first}");
+        // That it is the range which does it: over all values there are not enough entries.
+        let all = Settings { range: DensityRange::Full, ..settings };
+        let is_enough = first + count <= 512;
+        assert_eq!(labels_lost(&all, &volume) == 0, is_enough, "{count} from {first}");
+    }
+    // Where there are too few entries, the lowest is seen all the same.
+    let many = regions(5000, 3000);
+    let settings = look(&many);
+    let range = settings.shown_range(&many.ranges());
+    let table = settings.transfer.bake(range, 1.0, 1.0);
+    assert!(table.sample(many.showing(range).density_of(5000.0))[3] > 0.5);
+    assert_eq!(table.sample(many.showing(range).density_of(0.0))[3], 0.0);
+    // No range has an entry for each of these.
+    for volume in [
+        regions(1, 3000),
+        volume(|p| {
+            if p.x > 0.0 {
+                1.0
+            } else if p.y > 0.0 {
+                2.0
+            } else {
+                50_000.0
+            }
+        }),
+    ] {
+        assert!(labels_lost(&look(&volume), &volume) > 0);
+    }
 }
 
 #[test]

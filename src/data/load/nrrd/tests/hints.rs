@@ -27,6 +27,14 @@ fn what_values_are_is_understood() {
     assert!(hints_of(&["old min: -1000", "old max: 3000"]).is_rescaled);
     assert_eq!(hints_of(&["DICOM_0028_0120:=-2000"]).padding, Some(-2000.0));
     assert_eq!(hints_of(&["padding value:=0"]).padding, Some(0.0));
+    // DICOM's is a number of the scanner's, which were rescaled as the header says.
+    let rescale = ["DICOM_0028_1053:=2", "DICOM_0028_1052:=-1024"];
+    let with = |padding| hints_of(&[rescale[0], rescale[1], padding]).padding;
+    assert_eq!(with("DICOM_0028_0120:=-500"), Some(-2024.0));
+    assert_eq!(with("PixelPaddingValue:=-500"), Some(-2024.0));
+    assert_eq!(with("PaddingValue:=-500"), Some(-500.0), "in the numbers of the file");
+    assert_eq!(hints_of(&["RescaleIntercept:=-1000", "PixelPaddingValue:=0"]).padding, Some(-1000.0));
+    assert_eq!(hints_of(&["RescaleSlope:=1e308", "PixelPaddingValue:=100"]).padding, None, "no number");
     assert_eq!(hints_of(&["SeriesDescription:=T1 \u{1b}axial"]).acquisition(), Some("T1 ·axial"));
 }
 

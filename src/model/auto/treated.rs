@@ -1,0 +1,70 @@
+//! The first look of a volume that is treated as data of another kind, in the hands of somebody who has made settings
+//! already.
+
+use super::{Wishes, first_settings_with, stand};
+use crate::data::{Histogram, KindName, Volume};
+use crate::model::{Floor, Sampling, Settings};
+
+/// A first look at a volume as data of a kind, of its own where none is named, that stands as settings have it.
+///
+/// What has nothing to do with the kind stays as it is there: how the picture is made and shown, shadows, cuts, what the
+/// floor looks like, and saved views.
+pub fn treated_as(
+    settings: &Settings,
+    volume: &Volume,
+    histogram: &Histogram,
+    treated_as: Option<KindName>,
+) -> Settings {
+    let up = settings.camera.up;
+    let mut look = first_settings_with(volume, histogram, Wishes { treated_as, up });
+    // Whatever the file says.
+    stand(&mut look, volume, up);
+    let Settings { cuts, output, shadows, sampling, floor, views, .. } = settings.clone();
+    Settings {
+        sampling: Sampling { classification: look.sampling.classification, ..sampling },
+        floor: Floor { height: look.floor.height, ..floor },
+        cuts,
+        output,
+        shadows,
+        views,
+        ..look
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::auto::first_settings;
+    use crate::model::auto::tests::ball;
+    use crate::model::{Classification, Engine, SceneAxis, ShadowAlgorithm};
+
+    #[test]
+    fn only_what_the_kind_decides_is_another() {
+        let volume = ball(200.0, 0.0);
+        let histogram = Histogram::of(&volume);
+        let mut mine = first_settings(&volume, &histogram);
+        mine.camera.up = SceneAxis::PlusY;
+        mine.cuts.crop.on = true;
+        (mine.output.exposure, mine.output.background.top) = (1.4, [1.0; 3]);
+        (mine.shadows.algorithm, mine.shadows.strength) = (ShadowAlgorithm::Raycast, 0.5);
+        (mine.sampling.engine, mine.sampling.slab) = (Engine::Scatter, 2.0);
+        (mine.floor.on, mine.floor.color, mine.floor.height) = (true, [0.2; 3], 3.0);
+        mine.views.insert(3, mine.camera.clone());
+        let labels = treated_as(&mine, &volume, &histogram, Some(KindName::LabelMap));
+        let wishes = Wishes { treated_as: Some(KindName::LabelMap), up: SceneAxis::PlusY };
+        let first = first_settings_with(&volume, &histogram, wishes);
+        assert_eq!((&labels.transfer, labels.range), (&first.transfer, first.range));
+        assert_eq!((&labels.camera, &labels.lights), (&first.camera, &first.lights));
+        assert_eq!(labels.floor, Floor { height: first.floor.height, ..mine.floor.clone() });
+        assert_eq!(labels.sampling.classification, Classification::Pre);
+        assert_eq!(labels.sampling.engine, Engine::Scatter);
+        let kept = |look: &Settings| {
+            (look.cuts.clone(), look.output.clone(), look.shadows.clone(), look.views.clone())
+        };
+        assert_eq!(kept(&labels), kept(&mine));
+        // And back.
+        let again = treated_as(&labels, &volume, &histogram, None);
+        assert_eq!(again.sampling, mine.sampling);
+        assert_eq!(again.transfer, mine.transfer);
+    }
+}
