@@ -17,6 +17,16 @@ fn index_gradient(p: vec3f, level: f32) -> vec3f {
     ) / h;
 }
 
+// The level of the pyramid from which normals are taken where kernels are stretched to a level. PRECLASSIFY: labels are
+// there or not from one voxel to the next, and look like stairs from close by; twice as wide a kernel sees their slope.
+fn level_of_normals(level: f32) -> f32 {
+#if PRECLASSIFY
+    return min(level + 1.0, MAX_STRETCH_LEVEL);
+#else
+    return level;
+#endif
+}
+
 // Change of the density per step.
 fn slope_along(p: vec3f, step: vec3f, level: f32) -> f32 {
     let near = pyramid(p + step, level) - pyramid(p - step, level);

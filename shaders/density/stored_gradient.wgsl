@@ -11,5 +11,5 @@ fn volume_slope(p: vec3f, level: f32) -> vec3f {
     if (GRADIENT_TEXTURE) {
         return textureSampleLevel(gradients, clamped, (p + 4.5) * grid.pyramid_scale, level).xyz;
     }
-    return index_gradient(p, level);
+    return index_gradient(p, level_of_normals(level));
 }

@@ -13,6 +13,7 @@ use super::{Fault, Reference, gather};
 use crate::model::{
     BakedTransfer, Kernel, Light, LightKind, NearField, Projection, SceneLight, ShadowAlgorithm, Sides,
 };
+use crate::plan::MAX_STRETCH_LEVEL;
 
 /// The lights and the eye of one picture.
 pub(super) struct Shader<'r> {
@@ -216,6 +217,10 @@ impl<'r> Shader<'r> {
     /// The gradient in scene space.
     pub(super) fn gradient(&self, point: DVec3, level: f64) -> DVec3 {
         let level = level.clamp(0.0, MAX_LEVEL as f64);
+        if self.reference.classified.is_some() {
+            // Twice as wide: labels are there or not from one voxel to the next.
+            return self.prefiltered_gradient(point, (level + 1.0).min(MAX_STRETCH_LEVEL));
+        }
         if !self.reference.settings.has_kernel_gradients() || level >= 1.0 {
             return self.prefiltered_gradient(point, level);
         }

@@ -77,7 +77,9 @@ impl EyePass {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
         let dilation = if options.empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
-        let levels = Levels::of(stretch_level > 0.0);
+        // Normals of classified voxels are those of the next level.
+        let is_classified = settings.sampling.classification == Classification::Pre;
+        let levels = Levels::of(stretch_level > 0.0 || is_classified);
         let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
         let variant =
             GatherVariant::of(settings, count, stretch_level > 0.0).with_combined(combined.is_some());

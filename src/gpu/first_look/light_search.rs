@@ -26,10 +26,6 @@ const APART_DEG: f64 = 30.0;
 /// Share of a picture that must show something for its light to be judged: fewer than a hundred pixels say nothing.
 const LEAST_SEEN: f64 = 0.005;
 
-/// How bright a floor under full light is shown in a first look: as much as material, and dark enough that the eye stays
-/// with that.
-const FLOOR_GREY: f64 = 0.36;
-
 /// Which light's place is sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sought {
@@ -102,9 +98,7 @@ impl Found {
         settings.output.exposure *= chosen.exposure / self.start.exposure;
         if self.wants_floor && !settings.floor.on {
             settings.floor.on = true;
-            // However long the picture is exposed, the floor is no brighter than what stands on it.
-            let grey = (FLOOR_GREY / settings.output.exposure).clamp(0.1, 0.6) as f32;
-            settings.floor.color = [grey; 3];
+            settings.floor.color = auto::floor_color(settings.output.exposure);
         }
         settings.sanitise();
         settings

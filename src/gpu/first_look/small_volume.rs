@@ -37,7 +37,10 @@ fn block_for(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
         if left <= MOST_VOXELS {
             return block;
         }
-        edge += 1.0;
+        // At least as long that an axis which is not averaged as a whole has longer blocks: spacings may be worlds apart.
+        let longer = (0..3).filter(|&axis| block[axis] < dims[axis]);
+        let next = longer.map(|axis| (block[axis] as f64 + 0.5) * spacing_mm[axis] / shortest);
+        edge = next.fold(f64::INFINITY, f64::min).max(edge + 1.0);
     }
 }
 
@@ -71,6 +74,8 @@ mod tests {
             ([301, 324, 56], [1.0, 1.0, 1.4], [3, 3, 2]),
             ([512, 512, 40], [0.5, 0.5, 5.0], [4, 4, 1]),
             ([1 << 20, 1, 1], [1.0; 3], [2, 1, 1]),
+            ([512; 3], [1.0, 1.0, 1e-9], [1, 1, 512]),
+            ([2048, 2048, 2], [1.0, 1.0, 1e-9], [2, 2, 2]),
         ] {
             assert_eq!(block_for(dims, spacing_mm), expected, "{dims:?} {spacing_mm:?}");
         }
