@@ -28,7 +28,7 @@ use std::time::Duration;
 use eframe::egui;
 
 use self::common::{light_keys, shortcuts, theme};
-use self::shell::{menu, picture, status, status_file};
+use self::shell::{menu, status, status_file};
 use self::windows::files;
 
 use self::common::commands::Command;
@@ -39,7 +39,6 @@ use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
 use self::shell::messages::Messages;
 use self::shell::opening::PendingLook;
-use self::shell::picture::PictureInputs;
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
 use self::shell::treat_as::Treated;
@@ -147,6 +146,7 @@ impl Drop for App {
     fn drop(&mut self) {
         // Nobody waits for its end any more.
         self.light_search = None;
+        self.contact_sheet.forget();
         // Where another window takes the place of this one, that waits in the end.
         if !self.is_ending {
             task::wait_for_all(LAST_TASKS);
@@ -277,42 +277,6 @@ impl App {
             );
         });
         self.help.ui(ui.ctx(), facts, self.settings.camera.up);
-    }
-
-    /// The picture.
-    fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
-        let inputs = PictureInputs {
-            settings: &mut self.settings,
-            defaults: &self.defaults,
-            viewport: &mut self.viewport,
-            handles: &mut self.handles,
-            cut_handles: &mut self.cut_handles,
-            selected_light: &mut self.selected_light,
-            compare: &mut self.compare,
-            overlay: self.overlay,
-            probe: &mut self.probe,
-            slices: &mut self.slices,
-            hints: &mut self.hints,
-            volume: self.volume.as_ref(),
-            facts,
-            commands,
-        };
-        let shown = egui::CentralPanel::no_frame().show(ui, |ui| picture::show(ui, inputs));
-        let (canvas, result) = shown.inner;
-        self.canvas = Some(canvas);
-        if let Err(err) = result {
-            self.rendering_failed(&err, ui.ctx());
-        }
-        self.follow_range();
-    }
-
-    /// Editor and panels show the values that the picture does.
-    fn follow_range(&mut self) {
-        if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
-            && dataset.volume().shown_range() != facts.range
-        {
-            facts.follow(&dataset);
-        }
     }
 }
 

@@ -9,7 +9,7 @@ use eframe::egui::{self, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{PATIENCE, SCENE, beside, click, untouched_window, wait_until_idle, window};
+use crate::harness::{PATIENCE, SCENE, beside, click, untouched_window, wait_until, wait_until_idle, window};
 
 /// Waits for a picture of a contact sheet.
 fn wait_for(harness: &mut Harness<'_, App>, label: &str) {
@@ -84,4 +84,19 @@ fn looks_are_tried_on_the_volume() {
     harness.run_steps(3);
     assert_eq!(harness.state().settings(), &before, "one key goes back");
     wait_until_idle(&mut harness);
+}
+
+#[test]
+fn looks_that_were_tried_are_forgotten_with_their_volume() {
+    let mut harness = window();
+    // As a key that is held repeats.
+    for _ in 0..8 {
+        harness.key_press(egui::Key::V);
+        harness.step();
+    }
+    wait_for(&mut harness, "Use 1 · First look");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("builtin:sphere:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere") && app.is_idle());
+    assert_eq!(harness.query_all_by_label_contains("Use 1").count(), 0, "it was of the volume before");
 }

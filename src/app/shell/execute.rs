@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use eframe::egui;
 
 use crate::app::common::commands::Command;
 use crate::app::common::light_keys;
-use crate::app::shell::keep_balanced::{Act, Moment};
 use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;
@@ -17,7 +15,7 @@ use crate::app::windows::{export, light_slice, recovery};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
-use crate::gpu::{GpuError, Renderer};
+use crate::gpu::GpuError;
 use crate::model::{COLOR_MAPS, Camera, Settings};
 
 impl App {
@@ -232,11 +230,11 @@ impl App {
         if let Some(answer) = self.lost_again.ui(ctx, self.viewport.context().is_software()) {
             self.answer_loss(answer, ctx);
         }
-        if self.contact_sheet.is_due
-            && let Some(subject) = self.subject()
-            && let Err(err) = self.contact_sheet.start(subject, ctx)
-        {
-            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+        if self.contact_sheet.is_due() {
+            let subject = self.subject();
+            if let Err(err) = self.contact_sheet.start(subject, ctx) {
+                self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+            }
         }
         if let Err(err) = self.contact_sheet.ui(ctx, commands) {
             self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
@@ -305,46 +303,6 @@ impl App {
                     Ok(look) => self.compare.with(look),
                     Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
                 }
-            }
-        }
-    }
-
-    /// Starts to measure the balance of the settings as they are, on a device of its own; nothing without a volume.
-    fn start_balance(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
-            return;
-        };
-        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
-        let task = move || {
-            let mut renderer = Renderer::new(&context.sibling()?)?;
-            crate::gpu::balance(&mut renderer, &dataset, &settings)
-        };
-        match Work::start("balance", ctx, task) {
-            Ok(work) => self.balance = Some(work),
-            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
-        }
-    }
-
-    /// Keeps the picture as bright as without shadows, if that is wanted.
-    pub(crate) fn keep_balanced(&mut self, ctx: &egui::Context) {
-        let now_s = ctx.input(|input| input.time);
-        let act = self.keep_balanced.act(Moment {
-            now_s,
-            settings: &self.settings,
-            complete: self.is_complete(),
-            held: ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty())
-                || ctx.text_edit_focused(),
-            busy: self.balance.is_some(),
-        });
-        match act {
-            Act::Nothing => {}
-            Act::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
-            Act::Measure => self.viewport.measure_balance(&self.settings),
-            Act::Set(balance) => {
-                let before = self.settings.clone();
-                self.settings.shadows.balance = balance;
-                self.history.follow(now_s, &before, &self.settings);
-                ctx.request_repaint();
             }
         }
     }

@@ -346,6 +346,7 @@ impl App {
         // What somebody has chosen stays.
         self.first_lights = if is_named { FirstLights::default() } else { FirstLights::of(&self.settings) };
         self.light_search = None;
+        self.contact_sheet.forget();
         self.volume = Some(VolumeFacts::of(source, reading, &dataset));
         self.treat_as_it_is();
         self.viewport.set_scene(renderer, dataset);

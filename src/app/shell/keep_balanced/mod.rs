@@ -4,6 +4,13 @@
 //! It acts only on a picture at rest, and what it finds is written into the settings: a picture depends on these
 //! alone, whenever and wherever it is made.
 
+use std::time::Duration;
+
+use eframe::egui;
+
+use crate::app::worker::task::Work;
+use crate::app::{App, text};
+use crate::gpu::Renderer;
 use crate::model::{Engine, Sampling, Settings, Shadows};
 
 /// How long nothing may have changed: longer than the pauses within one movement of a hand.
@@ -157,6 +164,48 @@ impl KeepBalanced {
                 self.phase = Phase::Easing { from, to, since_s: now_s };
             }
             _ => self.settle(),
+        }
+    }
+}
+
+impl App {
+    /// Starts to measure the balance of the settings as they are, on a device of its own; nothing without a volume.
+    pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
+        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
+            return;
+        };
+        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
+        let task = move || {
+            let mut renderer = Renderer::new(&context.sibling()?)?;
+            crate::gpu::balance(&mut renderer, &dataset, &settings)
+        };
+        match Work::start("balance", ctx, task) {
+            Ok(work) => self.balance = Some(work),
+            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+        }
+    }
+
+    /// Keeps the picture as bright as without shadows, if that is wanted.
+    pub(crate) fn keep_balanced(&mut self, ctx: &egui::Context) {
+        let now_s = ctx.input(|input| input.time);
+        let act = self.keep_balanced.act(Moment {
+            now_s,
+            settings: &self.settings,
+            complete: self.is_complete(),
+            held: ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty())
+                || ctx.text_edit_focused(),
+            busy: self.balance.is_some(),
+        });
+        match act {
+            Act::Nothing => {}
+            Act::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
+            Act::Measure => self.viewport.measure_balance(&self.settings),
+            Act::Set(balance) => {
+                let before = self.settings.clone();
+                self.settings.shadows.balance = balance;
+                self.history.follow(now_s, &before, &self.settings);
+                ctx.request_repaint();
+            }
         }
     }
 }
