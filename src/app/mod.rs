@@ -42,6 +42,7 @@ use self::shell::opening::PendingLook;
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
 use self::shell::treat_as::Treated;
+use self::shell::upright::Upright;
 use self::start::carried::Legacy;
 use self::transfer_editor::TransferEditor;
 use self::viewport::canvas::Canvas;
@@ -80,6 +81,7 @@ pub struct App {
     defaults: Settings,
     volume: Option<VolumeFacts>,
     treated: Treated,
+    upright: Upright,
     viewport: Viewport,
     /// Fills the window's background.
     window: WindowPainter,
@@ -172,7 +174,16 @@ impl App {
     /// Whether the full-quality picture of the current settings is on screen, nothing is being opened, the first look is
     /// finished, and the balance is that of the settings, if it is kept.
     pub fn is_idle(&self) -> bool {
-        self.is_complete() && !self.first_lights.is_due() && !self.keep_balanced.is_due(&self.settings)
+        self.is_complete()
+            && !self.is_making_look()
+            && !self.first_lights.is_due()
+            && !self.keep_balanced.is_due(&self.settings)
+    }
+
+    /// Whether a look that was asked for is being made on another thread: for data of another kind, or of the object as
+    /// it is to stand.
+    pub fn is_making_look(&self) -> bool {
+        self.treated.is_busy() || self.upright.is_busy()
     }
 
     /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
@@ -225,8 +236,8 @@ impl App {
     /// The panels around the picture.
     fn surroundings(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let title = self.title();
-        let can_undo = self.history.can_undo(&self.settings);
-        let can_redo = self.history.can_redo(&self.settings);
+        let step = self.step();
+        let (can_undo, can_redo) = (self.history.can_undo(&step), self.history.can_redo(&step));
         let shown = menu::Shown {
             side: self.side_open,
             handles: !self.handles.hidden,
@@ -259,7 +270,7 @@ impl App {
         }
         let panel = egui::Panel::right("side").resizable(false).exact_size(theme::SIDE_WIDTH);
         let panel = panel.frame(theme::panel(ui));
-        let treated_as = self.treated.shown(&self.settings);
+        let treated_as = self.treated.kind();
         panel.show_collapsible(ui, &mut self.side_open, |ui| {
             panels::show(
                 ui,
@@ -312,7 +323,8 @@ impl eframe::App for App {
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
         self.ask_for_volume(frame, &ctx);
-        self.history.observe(&ctx, &self.settings);
+        self.history.observe(&ctx, &self.step());
+        commands.extend(self.take_framed());
         for command in commands {
             self.execute(command, frame, &ctx);
         }

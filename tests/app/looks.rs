@@ -49,6 +49,31 @@ fn the_light_of_a_first_look_is_sought_and_is_no_step_to_undo() {
 }
 
 #[test]
+fn lights_that_are_found_stay_when_a_turn_is_undone() {
+    let options = Options { source: Some(SCENE.into()), ..Options::default() };
+    let mut harness = untouched_window(options);
+    wait_until(&mut harness, "never opened", |app| app.volume_name().is_some());
+    let first = harness.state().settings().clone();
+    // Lights are sought while it is turned: a step of its own.
+    harness.key_press(egui::Key::Num3);
+    harness.run_steps(3);
+    let turned = harness.state().settings().camera.clone();
+    assert_ne!(turned, first.camera);
+    wait_until_idle(&mut harness);
+    harness.run_steps(10);
+    let found = harness.state().settings().clone();
+    assert_eq!(found.camera, turned);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    let back = harness.state().settings().clone();
+    assert_eq!(back.camera, first.camera, "the view goes back");
+    assert_eq!((&back.lights, &back.floor), (&found.lights, &found.floor), "and the lights stay");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings(), &back, "there is nothing more to undo");
+}
+
+#[test]
 fn lights_are_suggested() {
     let mut harness = window();
     let before = harness.state().settings().clone();

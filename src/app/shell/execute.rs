@@ -40,30 +40,19 @@ impl App {
             Command::CopyPicture => self.copy_picture(ctx),
             Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            Command::Undo | Command::Redo => {
-                if command == Command::Undo {
-                    self.history.undo(&mut self.settings);
-                } else {
-                    self.history.redo(&mut self.settings);
-                }
-                // With the balance that it had.
-                self.keep_balanced.accept(&self.settings);
-                if self.settings.camera.up != self.defaults.camera.up {
-                    self.follow_up();
-                    self.remember_up();
-                }
-            }
+            Command::Undo | Command::Redo => self.go(command == Command::Undo, ctx),
             Command::ResetView => {
-                self.follow_up();
-                self.settings.camera = self.defaults.camera.clone();
+                if self.first_look_stands(Some(command), ctx) {
+                    self.settings.camera = self.defaults.camera.clone();
+                }
             }
             Command::AddLight => {
                 if let Some(index) = panels::add_light(&mut self.settings) {
                     self.selected_light = index;
                 }
             }
-            Command::AutomaticTransfer => self.use_automatic_transfer(),
-            Command::TreatAs(kind) => self.treat_as(kind),
+            Command::AutomaticTransfer => self.use_automatic_transfer(ctx),
+            Command::TreatAs(kind) => self.treat_as(kind, ctx),
             Command::UsePreset(preset) => {
                 if let Some(volume) = &self.volume {
                     match preset.apply(&self.settings, &volume.ranges) {
@@ -89,10 +78,11 @@ impl App {
             Command::ToggleFloor => self.settings.floor.on ^= true,
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => {
-                self.follow_up();
-                self.settings.camera.frame_as(&self.defaults.camera);
+                if self.first_look_stands(Some(command), ctx) {
+                    self.settings.camera.frame_as(&self.defaults.camera);
+                }
             }
-            Command::TurnObject(turn) => self.turn_object(turn),
+            Command::TurnObject(turn) => self.turn_object(turn, ctx),
             Command::TurnRound => self.settings.camera.orbit(90.0, 0.0),
             Command::LookFrom(view) => self.settings.camera.look_from(view),
             Command::ToggleProjection => self.settings.camera.toggle_projection(),
@@ -100,10 +90,7 @@ impl App {
                 self.settings.views.insert(slot, self.settings.camera.clone());
                 self.messages.note(text::messages::view_kept(slot));
             }
-            Command::RecallView(slot) => match self.settings.views.get(&slot) {
-                Some(camera) => self.settings.camera = camera.clone(),
-                None => self.messages.note(text::messages::no_view_kept(slot)),
-            },
+            Command::RecallView(slot) => self.recall_view(slot, ctx),
             Command::ToggleFullScreen => {
                 let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
@@ -121,11 +108,17 @@ impl App {
             }
             Command::UseLook(look) => {
                 // Views that were kept are no part of it, nor is how truly it is drawn, nor what is cut away.
-                let Settings { cuts, sampling, views, .. } = std::mem::take(&mut self.settings);
-                self.settings = Settings { cuts, sampling, views, ..*look };
+                let look = look.drawn_as(&self.settings);
+                let Settings { cuts, views, .. } = std::mem::take(&mut self.settings);
+                self.settings = Settings { cuts, views, ..look };
                 self.selected_light = 0;
             }
-            Command::TryLooks => self.contact_sheet.open(Sheet::Looks),
+            Command::TryLooks => {
+                // They are made from the first look.
+                if self.first_look_stands(Some(command), ctx) {
+                    self.contact_sheet.open(Sheet::Looks);
+                }
+            }
             Command::TryLights => self.contact_sheet.open(Sheet::Lights),
             Command::SuggestLight => self.contact_sheet.open(Sheet::Suggestions),
             Command::TryPresets => self.contact_sheet.open(Sheet::Presets),
@@ -174,6 +167,7 @@ impl App {
                 self.messages.error(short, details);
             }
         }
+        self.take_treated(ctx);
         if let Some(result) = self.balance.as_ref().and_then(Work::take) {
             self.balance = None;
             match result {

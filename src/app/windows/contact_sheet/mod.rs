@@ -219,7 +219,7 @@ mod tests {
             selected_light: 0,
         };
         let mut sheet = ContactSheet::default();
-        let mut ask = |sheet: &mut ContactSheet, subject: Option<&Subject>| {
+        let ask = |sheet: &mut ContactSheet, subject: Option<&Subject>| {
             sheet.open(Sheet::Lights);
             sheet.start(subject.cloned(), &ctx).expect("a thread");
             flag(sheet)
