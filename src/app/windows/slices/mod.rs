@@ -100,7 +100,7 @@ impl Slices {
             });
         });
         self.open = open;
-        self.of = Some((volume.content_id(), grey.within(volume.value_range())));
+        self.of = Some((volume.content_id(), grey.within(facts.range)));
     }
 
     /// What is known of the cursor, and how grey the slices are.
@@ -179,7 +179,7 @@ impl Slices {
         painter.image(texture.id(), area, whole, Color32::WHITE);
         self.move_cursor(ui, &response, area, axis, dims);
         if response.dragged_by(PointerButton::Secondary) {
-            grey.drag(response.drag_delta() / EDGE, volume.value_range());
+            grey.drag(response.drag_delta() / EDGE, volume.shown_range());
         }
         crosshair(&painter, area, axis, self.cursor, dims);
         if response.hovered() {
