@@ -107,7 +107,9 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     slices.mark(&ui.painter_at(canvas.rect), &view_projection, &scene);
     cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
-    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, &scene, is_anatomical) {
+    // Two looks have words of their own at the top and at the bottom.
+    let body = is_anatomical.then(|| compare.beside_words(ui, canvas.rect));
+    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, &scene, body) {
         commands.push(Command::LookFrom(view));
     }
     if overlay.on {
