@@ -1,8 +1,9 @@
 //! The window.
 //!
 //! Panels change one [`Settings`] value; the viewport turns it into a picture. Whatever renders does so on a thread
-//! beside the window's: the loader and the render worker, exports, contact sheets, slices of light volumes, and the
-//! measurement of the brightness. Panels see settings and read-only facts.
+//! beside the window's: the render worker, the loader, the search for lights, exports, contact sheets, slices of light
+//! volumes, and the measurement of the brightness. So does what goes through all voxels: first looks for another kind of
+//! data, and of an object that stands another way up. Panels see settings and read-only facts.
 
 mod common;
 mod memory;

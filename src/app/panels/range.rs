@@ -8,7 +8,7 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{ValueRange, ValueRanges};
 use crate::model::{DensityRange, Settings};
 
-/// Shares of the span by which a pixel of a drag moves an end.
+/// Shares of the span by which a point of a drag moves an end: 500 points, which every window has, cover all of it.
 const SPEED: f64 = 1.0 / 500.0;
 
 /// Shares of the values that matter by which the ends of a range stay apart: one of the densities that 16 bits tell from

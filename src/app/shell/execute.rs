@@ -261,6 +261,7 @@ impl App {
     }
 
     fn viewport_size(&self) -> [u32; 2] {
+        // Before there is a picture, as many pixels as the smallest usual screens have.
         self.canvas.map_or([1280, 720], |canvas| canvas.size.map(|n| n.max(1)))
     }
 

@@ -8,7 +8,7 @@ use crate::data::{ValueRange, ValueRanges};
 
 /// A notch of the wheel shows this much less.
 const ZOOM_PER_NOTCH: f64 = 1.2;
-/// Least share of the values that is shown: the histogram has a thousand bars.
+/// Least share of the values that is shown: the histogram has a thousand bars, of which these are twenty.
 const LEAST_SHARE: f64 = 0.02;
 
 /// A part of the values; nothing is all of them.

@@ -18,6 +18,12 @@ use crate::model::Settings;
 
 pub(crate) use self::sheet::Sheet;
 
+/// Points that the window has above the pictures and below them: its default place, its title, the row of buttons, and
+/// margins.
+const AROUND: f32 = 170.0;
+/// Points of the lowest sheet: a picture with its name.
+const LEAST_HEIGHT: f32 = 150.0;
+
 /// Pictures side by side.
 const COLUMNS: usize = 4;
 
@@ -157,8 +163,7 @@ impl ContactSheet {
                 ui.weak(text::contact_sheet::QUALITY);
             });
             // Low windows have bars instead of a sheet that hangs over.
-            let most = ctx.content_rect().height() - 170.0;
-            let most = most.max(150.0);
+            let most = (ctx.content_rect().height() - AROUND).max(LEAST_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
                 egui::Grid::new("contact sheet").spacing([8.0, 8.0]).show(ui, |ui| {

@@ -12,11 +12,13 @@ use crate::data::ValueRanges;
 use crate::gpu::{LightSearch, SmallLook, Sought, small_volume};
 use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings, Slabs, auto};
 
-/// Pixels of a picture.
+/// Pixels of a picture: 4:3, as first looks are framed, and four of them with what lies between are no wider than a
+/// window of 1280 points has beside its panel.
 pub(super) const SIZE: [u32; 2] = [176, 132];
 /// Places for the selected light, as hours of a clock face around the line of sight.
 const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
-/// Degrees from the line of sight to those places.
+/// Degrees from the line of sight to those places: nearer to it few shadows are seen, and at 90° half of what is seen has
+/// no light.
 const ASIDE_DEG: f64 = 55.0;
 
 /// What is tried.
