@@ -155,7 +155,7 @@ mod tests {
     fn words_leave_a_picture_without_two_rows() {
         let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(400.0, 300.0));
         let ctx = egui::Context::default();
-        let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+        let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
             let mut compare = Compare::default();
             assert_eq!(compare.beside_words(ui, rect), rect);
             compare.on = true;
@@ -164,5 +164,6 @@ mod tests {
             let words = MARGIN + 2.0 * PADDING.y + egui::TextStyle::Small.resolve(ui.style()).size;
             assert!(left.top() - rect.top() > words && left.height() > 200.0, "{left}");
         });
+        output.textures_delta.clear();
     }
 }

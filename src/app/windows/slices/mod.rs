@@ -233,3 +233,31 @@ fn crosshair(painter: &Painter, area: Rect, axis: usize, cursor: [usize; 3], dim
     painter.hline(area.x_range(), at.y, stroke(u));
     painter.vline(at.x, area.y_range(), stroke(v));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::worker::loader::Reading;
+    use crate::data::{Dataset, Samples};
+
+    #[test]
+    fn greys_are_those_of_the_values_that_matter() {
+        // A ramp, and one voxel that is far beyond it.
+        let mut values: Vec<f32> = (0..24 * 24 * 24).map(|at| (at % 1000) as f32).collect();
+        values[7] = 1e20;
+        let volume = Volume::with_spacing("ramp", [24; 3], DVec3::ONE, Samples::F32(values)).unwrap();
+        let dataset = Dataset::new(volume);
+        let facts = VolumeFacts::of("ramp".into(), Reading::default(), &dataset);
+        let mut slices = Slices { open: true, ..Slices::default() };
+        let ctx = egui::Context::default();
+        let transfer = TransferFunction::default();
+        for _ in 0..2 {
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
+                slices.ui(ui.ctx(), Some(dataset.volume()), Some(&facts), &transfer);
+            });
+            output.textures_delta.clear();
+        }
+        let (_, grey) = slices.of.expect("grey levels");
+        assert!(grey.black < 20.0 && (900.0..1100.0).contains(&grey.white), "{grey:?}");
+    }
+}
