@@ -15,7 +15,6 @@ use crate::app::windows::{export, light_slice, recovery};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
-use crate::data::ValueRange;
 use crate::gpu::GpuError;
 use crate::model::{COLOR_MAPS, Camera, Settings};
 
@@ -280,12 +279,14 @@ impl App {
                 }
             }
             Purpose::LoadSettings => self.load_settings(path),
-            Purpose::ImportTransfer => match files::import_transfer(path, self.exchanged_range()) {
-                Ok(function) => self.settings.transfer = function,
-                Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
-            },
+            Purpose::ImportTransfer => {
+                match files::import_transfer(path, &self.settings, &self.value_ranges()) {
+                    Ok(function) => self.settings.transfer = function,
+                    Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
+                }
+            }
             Purpose::ExportTransfer => {
-                match files::export_transfer(path, &self.settings.transfer, self.exchanged_range()) {
+                match files::export_transfer(path, &self.settings, &self.value_ranges()) {
                     Ok(()) => self.messages.note(text::messages::wrote(path)),
                     Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
@@ -298,12 +299,6 @@ impl App {
                 }
             }
         }
-    }
-
-    /// The values over which transfer functions of other programs are laid, on the way in and on the way out: those that
-    /// the plot shows.
-    fn exchanged_range(&self) -> ValueRange {
-        self.settings.shown_range(&self.value_ranges())
     }
 
     /// What is to be exported; a message if there is nothing.
