@@ -46,22 +46,28 @@ mod tests {
     #[test]
     fn threads_hear_of_their_own_work_alone() {
         let complaints = Complaints::default();
-        let theirs = complaints.clone();
-        let refused = |what: &str| GpuError::Refused(what.to_owned());
-        let worker = thread::spawn(move || {
+        let elsewhere = |work: fn(&Complaints) -> Option<String>| {
+            let theirs = complaints.clone();
+            let thread = thread::Builder::new().name("other".to_owned()).spawn(move || work(&theirs));
+            thread.unwrap().join().unwrap()
+        };
+        let said = elsewhere(|theirs| {
             theirs.keep(GpuError::Refused("first".to_owned()));
             theirs.keep(GpuError::Refused("second".to_owned()));
             let said = theirs.take().map(|err| err.to_string());
-            (said, theirs.take().is_none())
+            assert!(theirs.take().is_none(), "once");
+            said
         });
-        let (said, is_all) = worker.join().unwrap();
-        assert_eq!(said, Some(refused("first").to_string()));
-        assert!(is_all);
-        let theirs = complaints.clone();
-        thread::spawn(move || theirs.keep(GpuError::Refused("theirs".to_owned()))).join().unwrap();
+        assert_eq!(said, Some(GpuError::Refused("first".to_owned()).to_string()));
+        elsewhere(|theirs| {
+            theirs.keep(GpuError::Refused("theirs".to_owned()));
+            None
+        });
         assert!(complaints.take().is_none(), "what another does is no matter of this one");
-        let theirs = complaints.clone();
-        thread::spawn(move || theirs.keep(GpuError::Lost("gone".to_owned()))).join().unwrap();
+        elsewhere(|theirs| {
+            theirs.keep(GpuError::Lost("gone".to_owned()));
+            None
+        });
         assert!(matches!(complaints.take(), Some(GpuError::Lost(_))), "but that the device is gone is");
     }
 }
