@@ -106,8 +106,8 @@ impl Context {
     }
 
     /// A context on a device that somebody else opened with [`device_descriptor`], or with more features. What the
-    /// device complains about without being asked, also in the work of others on the same thread, goes to [`Self::check`] there:
-    /// programs with a handler of their own set it afterwards.
+    /// device complains about without being asked, also in the work of others on the same thread, goes to
+    /// [`Self::check`] there: programs with a handler of their own set it afterwards.
     ///
     /// # Errors
     /// When the adapter cannot store the textures that we need, or the device was opened without that feature.
