@@ -1,8 +1,9 @@
 //! The window.
 //!
 //! Panels change one [`Settings`] value; the viewport turns it into a picture. Whatever renders does so on a thread
-//! beside the window's: the loader and the render worker, exports, contact sheets, slices of light volumes, and the
-//! measurement of the brightness. Panels see settings and read-only facts.
+//! beside the window's: the render worker, the loader, the search for lights, exports, contact sheets, slices of light
+//! volumes, and the measurement of the brightness. So does what goes through all voxels: first looks for another kind of
+//! data, and of an object that stands another way up. Panels see settings and read-only facts.
 
 mod common;
 mod memory;
@@ -28,7 +29,7 @@ use std::time::Duration;
 use eframe::egui;
 
 use self::common::{light_keys, shortcuts, theme};
-use self::shell::{menu, picture, status, status_file};
+use self::shell::{menu, status, status_file};
 use self::windows::files;
 
 use self::common::commands::Command;
@@ -39,10 +40,10 @@ use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
 use self::shell::messages::Messages;
 use self::shell::opening::PendingLook;
-use self::shell::picture::PictureInputs;
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
 use self::shell::treat_as::Treated;
+use self::shell::upright::Upright;
 use self::start::carried::Legacy;
 use self::transfer_editor::TransferEditor;
 use self::viewport::canvas::Canvas;
@@ -81,6 +82,7 @@ pub struct App {
     defaults: Settings,
     volume: Option<VolumeFacts>,
     treated: Treated,
+    upright: Upright,
     viewport: Viewport,
     /// Fills the window's background.
     window: WindowPainter,
@@ -147,6 +149,7 @@ impl Drop for App {
     fn drop(&mut self) {
         // Nobody waits for its end any more.
         self.light_search = None;
+        self.contact_sheet.forget();
         // Where another window takes the place of this one, that waits in the end.
         if !self.is_ending {
             task::wait_for_all(LAST_TASKS);
@@ -172,7 +175,16 @@ impl App {
     /// Whether the full-quality picture of the current settings is on screen, nothing is being opened, the first look is
     /// finished, and the balance is that of the settings, if it is kept.
     pub fn is_idle(&self) -> bool {
-        self.is_complete() && !self.first_lights.is_due() && !self.keep_balanced.is_due(&self.settings)
+        self.is_complete()
+            && !self.is_making_look()
+            && !self.first_lights.is_due()
+            && !self.keep_balanced.is_due(&self.settings)
+    }
+
+    /// Whether a look that was asked for is being made on another thread: for data of another kind, or of the object as
+    /// it is to stand.
+    pub fn is_making_look(&self) -> bool {
+        self.treated.is_busy() || self.upright.is_busy()
     }
 
     /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
@@ -225,8 +237,8 @@ impl App {
     /// The panels around the picture.
     fn surroundings(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let title = self.title();
-        let can_undo = self.history.can_undo(&self.settings);
-        let can_redo = self.history.can_redo(&self.settings);
+        let step = self.step();
+        let (can_undo, can_redo) = (self.history.can_undo(&step), self.history.can_redo(&step));
         let shown = menu::Shown {
             side: self.side_open,
             handles: !self.handles.hidden,
@@ -259,7 +271,7 @@ impl App {
         }
         let panel = egui::Panel::right("side").resizable(false).exact_size(theme::SIDE_WIDTH);
         let panel = panel.frame(theme::panel(ui));
-        let treated_as = self.treated.shown(&self.settings);
+        let treated_as = self.treated.kind();
         panel.show_collapsible(ui, &mut self.side_open, |ui| {
             panels::show(
                 ui,
@@ -277,42 +289,6 @@ impl App {
             );
         });
         self.help.ui(ui.ctx(), facts, self.settings.camera.up);
-    }
-
-    /// The picture.
-    fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
-        let inputs = PictureInputs {
-            settings: &mut self.settings,
-            defaults: &self.defaults,
-            viewport: &mut self.viewport,
-            handles: &mut self.handles,
-            cut_handles: &mut self.cut_handles,
-            selected_light: &mut self.selected_light,
-            compare: &mut self.compare,
-            overlay: self.overlay,
-            probe: &mut self.probe,
-            slices: &mut self.slices,
-            hints: &mut self.hints,
-            volume: self.volume.as_ref(),
-            facts,
-            commands,
-        };
-        let shown = egui::CentralPanel::no_frame().show(ui, |ui| picture::show(ui, inputs));
-        let (canvas, result) = shown.inner;
-        self.canvas = Some(canvas);
-        if let Err(err) = result {
-            self.rendering_failed(&err, ui.ctx());
-        }
-        self.follow_range();
-    }
-
-    /// Editor and panels show the values that the picture does.
-    fn follow_range(&mut self) {
-        if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
-            && dataset.volume().shown_range() != facts.range
-        {
-            facts.follow(&dataset);
-        }
     }
 }
 
@@ -348,7 +324,8 @@ impl eframe::App for App {
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
         self.ask_for_volume(frame, &ctx);
-        self.history.observe(&ctx, &self.settings);
+        self.history.observe(&ctx, &self.step());
+        commands.extend(self.take_framed());
         for command in commands {
             self.execute(command, frame, &ctx);
         }

@@ -1,4 +1,4 @@
-//! A volume together with what follows from its voxels alone.
+//! A volume together with what follows from its voxels, and from the values that it shows.
 
 use std::sync::Arc;
 

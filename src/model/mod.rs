@@ -13,6 +13,7 @@ mod settings;
 mod stored;
 mod transfer;
 mod turntable;
+mod variant;
 
 pub use self::settings::camera::{Camera, FRAME_ASPECT, Fit, Projection};
 pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
@@ -29,7 +30,6 @@ pub use self::settings::shadows::{
     Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,
     Shadows,
 };
-pub use self::settings::variant::Variant;
 pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
@@ -55,3 +55,4 @@ pub use transfer::{
     ControlPoint, Easing, Interpolation, LUT_SIZE, MAX_OPACITY, MAX_POINTS, Mixing, STEPS, TransferFunction,
     linear_from_srgb, srgb_from_linear,
 };
+pub use variant::Variant;

@@ -9,7 +9,7 @@ use eframe::egui::{self, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{PATIENCE, SCENE, beside, click, untouched_window, wait_until_idle, window};
+use crate::harness::{PATIENCE, SCENE, beside, click, untouched_window, wait_until, wait_until_idle, window};
 
 /// Waits for a picture of a contact sheet.
 fn wait_for(harness: &mut Harness<'_, App>, label: &str) {
@@ -49,6 +49,31 @@ fn the_light_of_a_first_look_is_sought_and_is_no_step_to_undo() {
 }
 
 #[test]
+fn lights_that_are_found_stay_when_a_turn_is_undone() {
+    let options = Options { source: Some(SCENE.into()), ..Options::default() };
+    let mut harness = untouched_window(options);
+    wait_until(&mut harness, "never opened", |app| app.volume_name().is_some());
+    let first = harness.state().settings().clone();
+    // Lights are sought while it is turned: a step of its own.
+    harness.key_press(egui::Key::Num3);
+    harness.run_steps(3);
+    let turned = harness.state().settings().camera.clone();
+    assert_ne!(turned, first.camera);
+    wait_until_idle(&mut harness);
+    harness.run_steps(10);
+    let found = harness.state().settings().clone();
+    assert_eq!(found.camera, turned);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    let back = harness.state().settings().clone();
+    assert_eq!(back.camera, first.camera, "the view goes back");
+    assert_eq!((&back.lights, &back.floor), (&found.lights, &found.floor), "and the lights stay");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings(), &back, "there is nothing more to undo");
+}
+
+#[test]
 fn lights_are_suggested() {
     let mut harness = window();
     let before = harness.state().settings().clone();
@@ -84,4 +109,19 @@ fn looks_are_tried_on_the_volume() {
     harness.run_steps(3);
     assert_eq!(harness.state().settings(), &before, "one key goes back");
     wait_until_idle(&mut harness);
+}
+
+#[test]
+fn looks_that_were_tried_are_forgotten_with_their_volume() {
+    let mut harness = window();
+    // As a key that is held repeats.
+    for _ in 0..8 {
+        harness.key_press(egui::Key::V);
+        harness.step();
+    }
+    wait_for(&mut harness, "Use 1 · First look");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("builtin:sphere:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere") && app.is_idle());
+    assert_eq!(harness.query_all_by_label_contains("Use 1").count(), 0, "it was of the volume before");
 }

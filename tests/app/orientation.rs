@@ -17,6 +17,13 @@ fn settings(harness: &Harness<'_, App>) -> Settings {
 fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     harness.run_steps(3);
+    wait_until_turned(harness);
+}
+
+/// What the view is reset to is framed on another thread.
+fn wait_until_turned(harness: &mut Harness<'_, App>) {
+    wait_until(harness, "never turned", |app| !app.is_making_look());
+    harness.run_steps(3);
 }
 
 /// Angles may be whole turns apart, and what is framed again is so but for rounding.
@@ -73,12 +80,23 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     assert_eq!(settings(&harness), flat);
     press(&mut harness, Modifiers::NONE, Key::R);
     assert_same_view(&settings(&harness).camera, &flat.camera);
+    // However quickly one follows the other.
     for _ in 0..4 {
-        press(&mut harness, Modifiers::NONE, Key::T);
+        harness.key_press(Key::T);
+        harness.step();
     }
+    wait_until_turned(&mut harness);
     let again = settings(&harness);
     assert_same_view(&again.camera, &flat.camera);
     assert_eq!(again.floor.height, flat.floor.height);
+    // A view that was kept of the object as it stood before: its light comes along.
+    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Num4);
+    harness.run_steps(3);
+    let kept = settings(&harness);
+    press(&mut harness, Modifiers::NONE, Key::T);
+    assert_ne!(settings(&harness).lights, kept.lights);
+    press(&mut harness, Modifiers::COMMAND, Key::Num4);
+    assert_eq!(settings(&harness), kept);
     press(&mut harness, Modifiers::NONE, Key::T);
 
     // The next file of the folder stands like this one, also after a restart; others do not.
@@ -100,6 +118,7 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     harness.get_by_label("−z").scroll_to_me();
     harness.run_steps(10);
     click(&mut harness, "−z");
+    wait_until_turned(&mut harness);
     assert_eq!(settings(&harness).camera.up, SceneAxis::MinusZ);
     assert!(harness.query_by_label("Stand up or lay down").is_none(), "the menu is closed");
     assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());

@@ -86,7 +86,11 @@ fn volumes_are_treated_as_other_data_in_one_step() {
     let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
     click(&mut harness, "Data");
     harness.get_by_label("Scalar field");
+    // What is cut away, how truly it is drawn, and what is behind it are none of a first look.
+    harness.key_press(egui::Key::K);
+    harness.run_steps(3);
     let before = harness.state().settings().clone();
+    assert!(before.cuts.crop.on);
     let treat = |harness: &mut Harness<'_, App>, kind: &str| {
         harness.get_by_role_and_label(Role::ComboBox, "Treat as").click();
         harness.run_steps(4);
@@ -98,10 +102,15 @@ fn volumes_are_treated_as_other_data_in_one_step() {
     treat(&mut harness, "Mask");
     let mask = harness.state().settings().clone();
     assert_ne!(mask.transfer, before.transfer);
-    assert_eq!(mask.shadows.balance, before.shadows.balance);
+    assert_eq!((&mask.cuts, &mask.output.background), (&before.cuts, &before.output.background));
+    assert!((mask.output.exposure / before.output.exposure - 1.0).abs() < 0.5, "near what it was");
+    assert!((mask.shadows.balance / before.shadows.balance - 1.0).abs() < 0.5, "near what it was");
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(10);
-    assert_eq!(*harness.state().settings(), before, "one step back");
+    assert_eq!(*harness.state().settings(), before, "one step back, lights that were sought included");
+    harness.key_press(egui::Key::R);
+    harness.run_steps(10);
+    assert_eq!(harness.state().settings().camera, before.camera, "and what is reset to is as before");
     treat(&mut harness, "Labels");
     treat(&mut harness, "Automatic");
     assert_eq!(harness.state().settings().transfer, before.transfer);

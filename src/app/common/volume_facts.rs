@@ -44,6 +44,11 @@ pub(crate) struct VolumeFacts {
     pub histogram: Arc<Histogram>,
 }
 
+/// How many whole numbers there are from one end of a range to the other, however far apart somebody has typed them.
+fn levels_in(range: ValueRange) -> usize {
+    (range.span() as usize).saturating_add(1)
+}
+
 impl VolumeFacts {
     /// Collects the facts.
     pub(crate) fn of(source: PathBuf, reading: Reading, dataset: &Dataset) -> Self {
@@ -61,7 +66,7 @@ impl VolumeFacts {
             spacing_mm: volume.spacing_mm().into(),
             ranges: volume.ranges(),
             range,
-            levels: whole.then_some(range.span() as usize + 1),
+            levels: whole.then(|| levels_in(range)),
             non_finite_voxels: volume.non_finite_voxels(),
             bytes: (volume.voxel_count() * voxel_type.bytes()) as u64,
             scene: volume.scene(),
@@ -75,5 +80,17 @@ impl VolumeFacts {
     pub(crate) fn follow(&mut self, dataset: &Dataset) {
         let fresh = Self::of(std::mem::take(&mut self.source), self.reading, dataset);
         *self = fresh;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_have_levels_however_long_they_are() {
+        assert_eq!(levels_in(ValueRange::new(0.0, 255.0)), 256);
+        assert_eq!(levels_in(ValueRange::new(-1e300, 1e300)), usize::MAX);
+        assert_eq!(levels_in(ValueRange::new(f64::MIN, f64::MAX)), usize::MAX);
     }
 }

@@ -18,7 +18,8 @@ use crate::model::{Record, Settings, VolumeRecord};
 /// of the two seconds that users are promised.
 const COLLECT: Duration = Duration::from_secs(1);
 
-/// How long a process that ends in a hurry waits for a write under way.
+/// How long a process that ends in a hurry waits for a write under way: three quarters of the two seconds that users are
+/// promised, since it has a look of its own to write then.
 const LAST_WAIT: Duration = Duration::from_millis(1500);
 
 /// A look, and what it is of.
@@ -88,7 +89,8 @@ fn locked_soon<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
 }
 
 impl Shared {
-    /// Writes what is due. What could not be written is due again, unless there is something newer.
+    /// Writes what is due. A look that could not be written is due again, unless there is a newer one; all else that could
+    /// not is let go.
     fn write(&self, due: Due) {
         let Due { look, picture, opened, stood, closed: _ } = due;
         if let Some(look) = look {

@@ -28,12 +28,11 @@ pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, 
             commands.push(Command::CompareWithFile);
         }
     });
-    if let Variant::Look(kept) = &compare.right {
+    if let Variant::Look(_) = &compare.right {
         unlabelled(ui, |ui| {
             let take = text::compared::TAKE_RIGHT;
             if ui.button(take.name).on_hover_text(take.tip).clicked() {
-                let camera = settings.camera.clone();
-                *settings = Settings { camera, ..Settings::clone(kept) };
+                *settings = compare.right.of(settings);
             }
         });
     }

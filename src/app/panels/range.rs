@@ -5,11 +5,15 @@ use eframe::egui::{self, Ui};
 use super::super::text::{self, Named};
 use super::controls::{choice, row, short, unlabelled};
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::data::ValueRange;
+use crate::data::{ValueRange, ValueRanges};
 use crate::model::{DensityRange, Settings};
 
-/// Shares of the span by which a pixel of a drag moves an end.
+/// Shares of the span by which a point of a drag moves an end: 500 points, which every window has, cover all of it.
 const SPEED: f64 = 1.0 / 500.0;
+
+/// Shares of the values that matter by which the ends of a range stay apart: one of the densities that 16 bits tell from
+/// each other.
+const LEAST: f64 = 1.0 / 65_536.0;
 
 /// Shows them.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
@@ -32,11 +36,54 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     row(ui, Named { name: text::data::SHOWN, tip: "" }, |ui| ui.add(egui::Label::new(shown).truncate()));
 }
 
-/// The two ends of a typed range, which stay apart.
+/// The two ends of a typed range, which stay in order and apart: an end that is moved stops before the other.
 fn ends(ui: &mut Ui, range: &mut ValueRange, volume: &VolumeFacts) {
     let speed = volume.ranges.robust.span().max(range.span()).max(f64::MIN_POSITIVE) * SPEED;
-    for (end, named) in [(&mut range.low, text::data::LOW), (&mut range.high, text::data::HIGH)] {
+    let Ends { most_low, least_high } = Ends::of(*range, volume.ranges);
+    for (end, limits, named) in [
+        (&mut range.low, f64::MIN..=most_low, text::data::LOW),
+        (&mut range.high, least_high..=f64::MAX, text::data::HIGH),
+    ] {
+        // What a file brought stays until somebody changes it.
         let field = egui::DragValue::new(end).speed(speed).max_decimals(6);
+        let field = field.range(limits).clamp_existing_to_range(false);
         ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tip);
+    }
+}
+
+/// How near the ends of a range may come to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Ends {
+    most_low: f64,
+    least_high: f64,
+}
+
+impl Ends {
+    /// Of a range, for a volume with these values.
+    fn of(range: ValueRange, ranges: ValueRanges) -> Self {
+        let least = ranges.robust.span().max(f64::MIN_POSITIVE) * LEAST;
+        // Next to large numbers that may be nothing.
+        let most_low = (range.high - least).min(range.high.next_down());
+        let least_high = (range.low + least).max(range.low.next_up());
+        Self { most_low, least_high }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_stay_apart() {
+        for (low, high) in [(0.0, 10.0), (-1000.0, 3000.0), (0.0, 0.0), (1e17, 1e17 + 32.0), (-1e300, 1e300)]
+        {
+            let range = ValueRange::new(low, high);
+            for ranges in [ValueRanges::UNIT, ValueRanges::same(range)] {
+                let Ends { most_low, least_high } = Ends::of(range, ranges);
+                assert!(most_low < high && low < least_high, "{low} {high}: {most_low} {least_high}");
+            }
+        }
+        let ends = Ends::of(ValueRange::new(0.0, 10.0), ValueRanges::same(ValueRange::new(0.0, 65_536.0)));
+        assert_eq!(ends, Ends { most_low: 9.0, least_high: 1.0 });
     }
 }

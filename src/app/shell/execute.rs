@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use eframe::egui;
 
 use crate::app::common::commands::Command;
 use crate::app::common::light_keys;
-use crate::app::shell::keep_balanced::{Act, Moment};
 use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;
@@ -17,7 +15,7 @@ use crate::app::windows::{export, light_slice, recovery};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
-use crate::gpu::{GpuError, Renderer};
+use crate::gpu::GpuError;
 use crate::model::{COLOR_MAPS, Camera, Settings};
 
 impl App {
@@ -42,30 +40,19 @@ impl App {
             Command::CopyPicture => self.copy_picture(ctx),
             Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            Command::Undo | Command::Redo => {
-                if command == Command::Undo {
-                    self.history.undo(&mut self.settings);
-                } else {
-                    self.history.redo(&mut self.settings);
-                }
-                // With the balance that it had.
-                self.keep_balanced.accept(&self.settings);
-                if self.settings.camera.up != self.defaults.camera.up {
-                    self.follow_up();
-                    self.remember_up();
-                }
-            }
+            Command::Undo | Command::Redo => self.go(command == Command::Undo, ctx),
             Command::ResetView => {
-                self.follow_up();
-                self.settings.camera = self.defaults.camera.clone();
+                if self.first_look_stands(Some(command), ctx) {
+                    self.settings.camera = self.defaults.camera.clone();
+                }
             }
             Command::AddLight => {
                 if let Some(index) = panels::add_light(&mut self.settings) {
                     self.selected_light = index;
                 }
             }
-            Command::AutomaticTransfer => self.use_automatic_transfer(),
-            Command::TreatAs(kind) => self.treat_as(kind),
+            Command::AutomaticTransfer => self.use_automatic_transfer(ctx),
+            Command::TreatAs(kind) => self.treat_as(kind, ctx),
             Command::UsePreset(preset) => {
                 if let Some(volume) = &self.volume {
                     match preset.apply(&self.settings, &volume.ranges) {
@@ -91,10 +78,11 @@ impl App {
             Command::ToggleFloor => self.settings.floor.on ^= true,
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => {
-                self.follow_up();
-                self.settings.camera.frame_as(&self.defaults.camera);
+                if self.first_look_stands(Some(command), ctx) {
+                    self.settings.camera.frame_as(&self.defaults.camera);
+                }
             }
-            Command::TurnObject(turn) => self.turn_object(turn),
+            Command::TurnObject(turn) => self.turn_object(turn, ctx),
             Command::TurnRound => self.settings.camera.orbit(90.0, 0.0),
             Command::LookFrom(view) => self.settings.camera.look_from(view),
             Command::ToggleProjection => self.settings.camera.toggle_projection(),
@@ -102,10 +90,7 @@ impl App {
                 self.settings.views.insert(slot, self.settings.camera.clone());
                 self.messages.note(text::messages::view_kept(slot));
             }
-            Command::RecallView(slot) => match self.settings.views.get(&slot) {
-                Some(camera) => self.settings.camera = camera.clone(),
-                None => self.messages.note(text::messages::no_view_kept(slot)),
-            },
+            Command::RecallView(slot) => self.recall_view(slot, ctx),
             Command::ToggleFullScreen => {
                 let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
@@ -123,11 +108,17 @@ impl App {
             }
             Command::UseLook(look) => {
                 // Views that were kept are no part of it, nor is how truly it is drawn, nor what is cut away.
-                let Settings { cuts, sampling, views, .. } = std::mem::take(&mut self.settings);
-                self.settings = Settings { cuts, sampling, views, ..*look };
+                let look = look.drawn_as(&self.settings);
+                let Settings { cuts, views, .. } = std::mem::take(&mut self.settings);
+                self.settings = Settings { cuts, views, ..look };
                 self.selected_light = 0;
             }
-            Command::TryLooks => self.contact_sheet.open(Sheet::Looks),
+            Command::TryLooks => {
+                // They are made from the first look.
+                if self.first_look_stands(Some(command), ctx) {
+                    self.contact_sheet.open(Sheet::Looks);
+                }
+            }
             Command::TryLights => self.contact_sheet.open(Sheet::Lights),
             Command::SuggestLight => self.contact_sheet.open(Sheet::Suggestions),
             Command::TryPresets => self.contact_sheet.open(Sheet::Presets),
@@ -176,6 +167,7 @@ impl App {
                 self.messages.error(short, details);
             }
         }
+        self.take_treated(ctx);
         if let Some(result) = self.balance.as_ref().and_then(Work::take) {
             self.balance = None;
             match result {
@@ -232,11 +224,11 @@ impl App {
         if let Some(answer) = self.lost_again.ui(ctx, self.viewport.context().is_software()) {
             self.answer_loss(answer, ctx);
         }
-        if self.contact_sheet.is_due
-            && let Some(subject) = self.subject()
-            && let Err(err) = self.contact_sheet.start(subject, ctx)
-        {
-            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+        if self.contact_sheet.is_due() {
+            let subject = self.subject();
+            if let Err(err) = self.contact_sheet.start(subject, ctx) {
+                self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+            }
         }
         if let Err(err) = self.contact_sheet.ui(ctx, commands) {
             self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
@@ -268,6 +260,7 @@ impl App {
     }
 
     fn viewport_size(&self) -> [u32; 2] {
+        // Before there is a picture, as many pixels as the smallest usual screens have.
         self.canvas.map_or([1280, 720], |canvas| canvas.size.map(|n| n.max(1)))
     }
 
@@ -287,14 +280,13 @@ impl App {
             }
             Purpose::LoadSettings => self.load_settings(path),
             Purpose::ImportTransfer => {
-                match files::import_transfer(path, self.settings.range.of(&self.value_ranges())) {
+                match files::import_transfer(path, &self.settings, &self.value_ranges()) {
                     Ok(function) => self.settings.transfer = function,
                     Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
                 }
             }
             Purpose::ExportTransfer => {
-                let range = self.settings.shown_range(&self.value_ranges());
-                match files::export_transfer(path, &self.settings.transfer, range) {
+                match files::export_transfer(path, &self.settings, &self.value_ranges()) {
                     Ok(()) => self.messages.note(text::messages::wrote(path)),
                     Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
@@ -305,46 +297,6 @@ impl App {
                     Ok(look) => self.compare.with(look),
                     Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
                 }
-            }
-        }
-    }
-
-    /// Starts to measure the balance of the settings as they are, on a device of its own; nothing without a volume.
-    fn start_balance(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
-            return;
-        };
-        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
-        let task = move || {
-            let mut renderer = Renderer::new(&context.sibling()?)?;
-            crate::gpu::balance(&mut renderer, &dataset, &settings)
-        };
-        match Work::start("balance", ctx, task) {
-            Ok(work) => self.balance = Some(work),
-            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
-        }
-    }
-
-    /// Keeps the picture as bright as without shadows, if that is wanted.
-    pub(crate) fn keep_balanced(&mut self, ctx: &egui::Context) {
-        let now_s = ctx.input(|input| input.time);
-        let act = self.keep_balanced.act(Moment {
-            now_s,
-            settings: &self.settings,
-            complete: self.is_complete(),
-            held: ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty())
-                || ctx.text_edit_focused(),
-            busy: self.balance.is_some(),
-        });
-        match act {
-            Act::Nothing => {}
-            Act::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
-            Act::Measure => self.viewport.measure_balance(&self.settings),
-            Act::Set(balance) => {
-                let before = self.settings.clone();
-                self.settings.shadows.balance = balance;
-                self.history.follow(now_s, &before, &self.settings);
-                ctx.request_repaint();
             }
         }
     }

@@ -3,15 +3,26 @@
 use eframe::egui;
 use eframe::egui::util::undoer::{self, Undoer};
 
+use crate::app::App;
+use crate::data::KindName;
 use crate::model::Settings;
 
 /// Seconds without a change after which a step can be undone.
 const STABLE_S: f32 = 0.4;
 
-/// The settings as they were.
+/// What a step back or forward leads to.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Step {
+    /// The look.
+    pub settings: Settings,
+    /// The kind of data for which its first look was made, if not the volume's own.
+    pub treated_as: Option<KindName>,
+}
+
+/// Looks as they were.
 #[derive(Debug)]
 pub(crate) struct History {
-    undoer: Undoer<Settings>,
+    undoer: Undoer<Step>,
 }
 
 impl Default for History {
@@ -22,10 +33,10 @@ impl Default for History {
 }
 
 impl History {
-    /// Takes note of the settings, except while something is dragged: a drag is one step.
-    pub(crate) fn observe(&mut self, ctx: &egui::Context, settings: &Settings) {
+    /// Takes note of the look, except while something is dragged: a drag is one step.
+    pub(crate) fn observe(&mut self, ctx: &egui::Context, step: &Step) {
         if ctx.dragged_id().is_none() {
-            self.undoer.feed_state(ctx.input(|input| input.time), settings);
+            self.undoer.feed_state(ctx.input(|input| input.time), step);
         }
         if self.undoer.is_in_flux() {
             ctx.request_repaint_after(std::time::Duration::from_secs_f32(STABLE_S));
@@ -33,7 +44,7 @@ impl History {
     }
 
     /// A change has been followed by another that the window makes by itself: both are one step.
-    pub(crate) fn follow(&mut self, now_s: f64, before: &Settings, after: &Settings) {
+    pub(crate) fn follow(&mut self, now_s: f64, before: &Step, after: &Step) {
         // The change is at rest, whether or not it has been for long enough to be a step.
         self.undoer.add_undo(before);
         if self.undoer.has_undo(before) {
@@ -46,27 +57,84 @@ impl History {
         self.undoer.add_undo(after);
     }
 
+    /// The window has finished a look by itself, of which there may be several steps: all of them are as if it had been
+    /// finished before, and there is no step more. `shown` is what the window has shown until now, and `finished` makes
+    /// of a step what it is from now on.
+    pub(crate) fn finish(&mut self, now_s: f64, shown: &Step, finished: impl Fn(&Step) -> Step) {
+        self.undoer.feed_state(now_s, shown);
+        let mut at = shown.clone();
+        let mut forward = 0;
+        while let Some(next) = self.undoer.redo(&at).cloned() {
+            (at, forward) = (next, forward + 1);
+        }
+        let mut steps = Vec::new();
+        // What still changes is no step.
+        if !self.undoer.is_in_flux() {
+            steps.push(at.clone());
+        }
+        while let Some(before) = self.undoer.undo(&at).cloned() {
+            steps.push(before.clone());
+            at = before;
+        }
+        *self = Self::default();
+        for step in steps.iter().rev() {
+            self.undoer.add_undo(&finished(step));
+        }
+        at = steps.first().map(&finished).unwrap_or_default();
+        for _ in 0..forward {
+            self.undo(&mut at);
+        }
+        self.undoer.feed_state(now_s, &finished(shown));
+    }
+
     /// Whether there is a step back.
-    pub(crate) fn can_undo(&self, settings: &Settings) -> bool {
-        self.undoer.has_undo(settings)
+    pub(crate) fn can_undo(&self, step: &Step) -> bool {
+        self.undoer.has_undo(step)
     }
 
     /// Whether there is a step forward.
-    pub(crate) fn can_redo(&self, settings: &Settings) -> bool {
-        self.undoer.has_redo(settings)
+    pub(crate) fn can_redo(&self, step: &Step) -> bool {
+        self.undoer.has_redo(step)
     }
 
     /// One step back.
-    pub(crate) fn undo(&mut self, settings: &mut Settings) {
-        if let Some(before) = self.undoer.undo(settings) {
-            settings.clone_from(before);
+    pub(crate) fn undo(&mut self, step: &mut Step) {
+        if let Some(before) = self.undoer.undo(step) {
+            step.clone_from(before);
         }
     }
 
     /// One step forward again.
-    pub(crate) fn redo(&mut self, settings: &mut Settings) {
-        if let Some(after) = self.undoer.redo(settings) {
-            settings.clone_from(after);
+    pub(crate) fn redo(&mut self, step: &mut Step) {
+        if let Some(after) = self.undoer.redo(step) {
+            step.clone_from(after);
+        }
+    }
+}
+
+impl App {
+    /// The look as the history keeps it.
+    pub(in crate::app) fn step(&self) -> Step {
+        Step { settings: self.settings.clone(), treated_as: self.treated.kind() }
+    }
+
+    /// One step back, or one forward again; what reset buttons put back goes along.
+    pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
+        let mut step = self.step();
+        if is_back {
+            self.history.undo(&mut step);
+        } else {
+            self.history.redo(&mut step);
+        }
+        let up = self.settings.camera.up;
+        self.settings = step.settings;
+        self.treated.change(step.treated_as, &mut self.defaults);
+        // With the balance that it had.
+        self.keep_balanced.accept(&self.settings);
+        // Only a step that has turned the object says how it is to stand.
+        if self.settings.camera.up != up {
+            self.first_look_stands(None, ctx);
+            self.remember_up();
         }
     }
 }
@@ -103,34 +171,100 @@ mod tests {
         }
     }
 
+    fn step(settings: &Settings) -> Step {
+        Step { settings: settings.clone(), treated_as: None }
+    }
+
+    /// Settings after a step.
+    fn gone(history: &mut History, settings: &mut Settings, is_back: bool) {
+        let mut at = step(settings);
+        if is_back {
+            history.undo(&mut at);
+        } else {
+            history.redo(&mut at);
+        }
+        *settings = at.settings;
+    }
+
+    #[test]
+    fn what_finishes_a_look_is_no_step_and_in_all_steps_of_it() {
+        let finish = |history: &mut History, now_s: f64, shown: &Settings| {
+            let finished = |step: &Step| {
+                let mut step = step.clone();
+                if step.settings.shading == Settings::default().shading {
+                    step.settings.lights[0].intensity = 3.0;
+                }
+                step
+            };
+            history.finish(now_s, &step(shown), finished);
+            finished(&step(shown)).settings
+        };
+        let start = Settings::default();
+        // Nobody has done anything.
+        let mut history = History::default();
+        history.undoer.feed_state(0.0, &step(&start));
+        let settings = finish(&mut history, 1.0, &start);
+        assert!(!history.can_undo(&step(&settings)) && !history.can_redo(&step(&settings)));
+        // Turned, a moment ago and long ago; of another look before that; and gone back.
+        for (rest_s, back) in [(0.1, 0), (3.0, 0), (3.0, 1)] {
+            let mut history = History::default();
+            let mut other = start.clone();
+            other.shading.ambient = 0.9;
+            let mut turned = start.clone();
+            turned.camera.azimuth_deg = 77.0;
+            for (at_s, look) in [(0.0, &other), (1.0, &start), (2.0, &start), (4.0, &turned)] {
+                history.undoer.feed_state(at_s, &step(look));
+            }
+            history.undoer.feed_state(4.0 + rest_s, &step(&turned));
+            let mut settings = turned.clone();
+            for _ in 0..back {
+                gone(&mut history, &mut settings, true);
+            }
+            for frame in 0..3 {
+                settings = finish(&mut history, 8.0 + 0.01 * f64::from(frame), &settings);
+            }
+            assert_eq!(history.can_redo(&step(&settings)), back > 0);
+            for _ in 0..back {
+                gone(&mut history, &mut settings, false);
+            }
+            assert_eq!((settings.lights[0].intensity, settings.camera.azimuth_deg), (3.0, 77.0));
+            gone(&mut history, &mut settings, true);
+            assert_eq!(settings.camera, start.camera, "the view goes back, after {rest_s} s");
+            assert_eq!(settings.lights[0].intensity, 3.0, "and the light stays");
+            gone(&mut history, &mut settings, true);
+            assert_eq!(settings, other, "what was before is not touched");
+            assert!(!history.can_undo(&step(&settings)));
+        }
+    }
+
     #[test]
     fn what_follows_a_change_is_undone_with_it() {
         let (mut history, start) = (History::default(), Settings::default());
         let mut settings = start.clone();
-        history.undoer.feed_state(0.0, &settings);
+        history.undoer.feed_state(0.0, &step(&settings));
         // Nothing was changed: there is nothing to undo.
         settings.shadows.balance = 1.1;
-        history.follow(0.5, &start, &settings);
-        assert!(!history.can_undo(&settings));
+        history.follow(0.5, &step(&start), &step(&settings));
+        assert!(!history.can_undo(&step(&settings)));
         let start = settings.clone();
         // At once, and after the change became a step.
         for rest_s in [0.1, 3.0] {
             settings.lights[0].intensity = 2.0;
-            history.undoer.feed_state(1.0, &settings);
-            history.undoer.feed_state(1.0 + rest_s, &settings);
+            history.undoer.feed_state(1.0, &step(&settings));
+            history.undoer.feed_state(1.0 + rest_s, &step(&settings));
             for balance in [1.2, 1.3, 1.4] {
                 let before = settings.clone();
                 settings.shadows.balance = balance;
-                history.follow(5.0, &before, &settings);
-                history.undoer.feed_state(5.0, &settings);
+                history.follow(5.0, &step(&before), &step(&settings));
+                history.undoer.feed_state(5.0, &step(&settings));
             }
             let end = settings.clone();
-            history.undo(&mut settings);
+            gone(&mut history, &mut settings, true);
             assert_eq!(settings, start);
-            assert!(!history.can_undo(&settings));
-            history.redo(&mut settings);
+            assert!(!history.can_undo(&step(&settings)));
+            gone(&mut history, &mut settings, false);
             assert_eq!(settings, end);
-            history.undo(&mut settings);
+            gone(&mut history, &mut settings, true);
             assert_eq!(settings, start);
         }
     }
@@ -143,14 +277,14 @@ mod tests {
             let mut numbers = numbers(seed);
             let mut time = 0.0;
             let mut steps = vec![start.clone()];
-            history.undoer.feed_state(time, &settings);
+            history.undoer.feed_state(time, &step(&settings));
             for _ in 0..25 {
                 let (choice, amount) = (numbers.next().unwrap(), numbers.next().unwrap());
                 edit(&mut settings, choice, amount);
                 // Changed, and then left alone for long enough.
                 for pause in [0.0, 1.0, 1.0] {
                     time += pause;
-                    history.undoer.feed_state(time, &settings);
+                    history.undoer.feed_state(time, &step(&settings));
                 }
                 if steps.last() != Some(&settings) {
                     steps.push(settings.clone());
@@ -158,15 +292,15 @@ mod tests {
             }
             let end = settings.clone();
             let mut back = vec![settings.clone()];
-            while history.can_undo(&settings) {
-                history.undo(&mut settings);
+            while history.can_undo(&step(&settings)) {
+                gone(&mut history, &mut settings, true);
                 back.push(settings.clone());
             }
             assert_eq!(settings, start, "seed {seed}");
             back.reverse();
             assert_eq!(back, steps, "every step, in order; seed {seed}");
-            while history.can_redo(&settings) {
-                history.redo(&mut settings);
+            while history.can_redo(&step(&settings)) {
+                gone(&mut history, &mut settings, false);
             }
             assert_eq!(settings, end, "seed {seed}");
         }

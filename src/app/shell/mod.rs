@@ -1,5 +1,6 @@
 //! What holds the window together: picture, menu, history, session, messages, the balance that is kept.
 
+mod easing;
 pub(super) mod execute;
 pub(super) mod first_lights;
 pub(super) mod history;
@@ -12,4 +13,4 @@ pub(super) mod session;
 pub(super) mod status;
 pub(super) mod status_file;
 pub(super) mod treat_as;
-mod upright;
+pub(super) mod upright;

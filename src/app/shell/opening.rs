@@ -9,6 +9,8 @@ use super::first_lights::FirstLights;
 use super::history::History;
 use super::keep_balanced::KeepBalanced;
 use super::session::Session;
+use super::treat_as::Treated;
+use super::upright::Upright;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::windows::files::{self, Purpose};
 use crate::app::windows::foreign_path::Answer;
@@ -346,8 +348,10 @@ impl App {
         // What somebody has chosen stays.
         self.first_lights = if is_named { FirstLights::default() } else { FirstLights::of(&self.settings) };
         self.light_search = None;
+        self.contact_sheet.forget();
         self.volume = Some(VolumeFacts::of(source, reading, &dataset));
-        self.treat_as_it_is();
+        // With its own look, as it stands there.
+        (self.treated, self.upright) = (Treated::default(), Upright::default());
         self.viewport.set_scene(renderer, dataset);
         self.history = History::default();
         self.selected_light = 0;

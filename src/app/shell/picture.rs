@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Role, Sense, Shape, WidgetInfo};
 
+use crate::app::App;
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
@@ -106,7 +107,9 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     slices.mark(&ui.painter_at(canvas.rect), &view_projection, &scene);
     cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
-    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, &scene, is_anatomical) {
+    // Two looks have words of their own at the top and at the bottom.
+    let body = is_anatomical.then(|| compare.beside_words(ui, canvas.rect));
+    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, &scene, body) {
         commands.push(Command::LookFrom(view));
     }
     if overlay.on {
@@ -132,4 +135,42 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         ui.painter_at(part).set(place, shape);
     }
     (canvas, result)
+}
+
+impl App {
+    /// The picture.
+    pub(in crate::app) fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
+        let inputs = PictureInputs {
+            settings: &mut self.settings,
+            defaults: &self.defaults,
+            viewport: &mut self.viewport,
+            handles: &mut self.handles,
+            cut_handles: &mut self.cut_handles,
+            selected_light: &mut self.selected_light,
+            compare: &mut self.compare,
+            overlay: self.overlay,
+            probe: &mut self.probe,
+            slices: &mut self.slices,
+            hints: &mut self.hints,
+            volume: self.volume.as_ref(),
+            facts,
+            commands,
+        };
+        let shown = egui::CentralPanel::no_frame().show(ui, |ui| show(ui, inputs));
+        let (canvas, result) = shown.inner;
+        self.canvas = Some(canvas);
+        if let Err(err) = result {
+            self.rendering_failed(&err, ui.ctx());
+        }
+        self.follow_range();
+    }
+
+    /// Editor and panels show the values that the picture does.
+    fn follow_range(&mut self) {
+        if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
+            && dataset.volume().shown_range() != facts.range
+        {
+            facts.follow(&dataset);
+        }
+    }
 }

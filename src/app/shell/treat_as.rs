@@ -1,57 +1,141 @@
-//! Treats the volume as data of another kind than it is taken for: with the first look that is for those.
+//! Treats the volume as data of another kind than it is taken for: with the first look that is for those. It is made on
+//! a thread of its own, which goes through all voxels.
 
-use crate::app::App;
+use std::sync::Arc;
+
+use eframe::egui;
+
+use super::first_lights::FirstLights;
+use crate::app::worker::task::Work;
+use crate::app::{App, text};
 use crate::data::KindName;
-use crate::model::auto::{self, Wishes};
-use crate::model::{Settings, TransferFunction};
+use crate::model::{Settings, TransferFunction, auto};
 
-/// First looks that were made of the open volume, by their transfer functions: of which kind of data they are for.
+/// Something that was made of all voxels.
+#[derive(Debug)]
+enum Made {
+    /// A first look, for data of a kind.
+    Look(Option<KindName>, Box<Settings>),
+    /// A transfer function.
+    Transfer(TransferFunction),
+}
+
+/// Which kind of data the volume is treated as, and the first looks for other kinds.
 #[derive(Debug, Default)]
 pub(in crate::app) struct Treated {
-    looks: Vec<(TransferFunction, Option<KindName>)>,
-    last: Option<KindName>,
+    kind: Option<KindName>,
+    /// What was put back by reset buttons while it was treated as another kind: one look for each.
+    others: Vec<(Option<KindName>, Settings)>,
+    making: Option<Work<Made>>,
 }
 
 impl Treated {
-    /// The kind that was chosen for the look that is shown; nothing if that is the volume's own. After steps back and
-    /// forward it is that of the look to which they lead, and a look that was changed stays what it was.
-    pub(in crate::app) fn shown(&mut self, settings: &Settings) -> Option<KindName> {
-        let found = self.looks.iter().rev().find(|(transfer, _)| *transfer == settings.transfer);
-        if let Some((_, kind)) = found {
-            self.last = *kind;
+    /// The kind that was chosen for the look that is shown; nothing if that is the volume's own.
+    pub(in crate::app) fn kind(&self) -> Option<KindName> {
+        self.kind
+    }
+
+    /// Whether a look is being made.
+    pub(in crate::app) fn is_busy(&self) -> bool {
+        self.making.is_some()
+    }
+
+    /// Changes the kind, and with it what reset buttons put back, as far as that has been made.
+    pub(in crate::app) fn change(&mut self, kind: Option<KindName>, defaults: &mut Settings) {
+        let before = std::mem::replace(&mut self.kind, kind);
+        if before == kind {
+            return;
         }
-        self.last
+        let known = self.others.iter().position(|(other, _)| *other == kind);
+        let known = known.map(|at| self.others.swap_remove(at).1);
+        self.others.push((before, defaults.clone()));
+        if let Some(look) = known {
+            *defaults = look;
+        }
     }
 }
 
 impl App {
-    /// Another volume is open, with its own look.
-    pub(super) fn treat_as_it_is(&mut self) {
-        self.treated = Treated { looks: vec![(self.defaults.transfer.clone(), None)], last: None };
+    /// Makes the first look anew, for data of a kind; for the volume's own if none is named.
+    pub(super) fn treat_as(&mut self, kind: Option<KindName>, ctx: &egui::Context) {
+        let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
+        let (histogram, up) = (Arc::clone(&facts.histogram), self.settings.camera.up);
+        let task =
+            move || Made::Look(kind, Box::new(auto::treated_as(dataset.volume(), &histogram, kind, up)));
+        self.make(task, ctx);
     }
 
-    /// Makes the first look anew, for data of a kind; for the volume's own if none is named.
-    pub(super) fn treat_as(&mut self, kind: Option<KindName>) {
+    /// Makes the automatic transfer function, for the kind of data that is shown.
+    pub(super) fn use_automatic_transfer(&mut self, ctx: &egui::Context) {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
-        let wishes = Wishes { treated_as: kind, up: self.settings.camera.up };
-        let mut look = auto::first_settings_with(dataset.volume(), &facts.histogram, wishes);
-        // As the user has stood it, whatever the file says.
-        auto::stand(&mut look, dataset.volume(), self.settings.camera.up);
-        // Near what it is: kept, it is found again.
-        look.shadows.balance = self.settings.shadows.balance;
-        look.shadows.keep_balanced = self.settings.shadows.keep_balanced;
-        look.views.clone_from(&self.settings.views);
-        self.treated.looks.push((look.transfer.clone(), kind));
-        self.treated.last = kind;
+        let (histogram, kind) = (Arc::clone(&facts.histogram), self.treated.kind);
+        let task = move || Made::Transfer(auto::transfer_as(dataset.volume(), &histogram, kind));
+        self.make(task, ctx);
+    }
+
+    /// Starts to make something; what was being made is not wanted any more.
+    fn make(&mut self, task: impl FnOnce() -> Made + Send + 'static, ctx: &egui::Context) {
+        match Work::start("first-look", ctx, task) {
+            Ok(work) => self.treated.making = Some(work),
+            Err(err) => self.messages.error(text::messages::LOOK_NOT_MADE, err.to_string()),
+        }
+    }
+
+    /// Takes in what has been made.
+    pub(super) fn take_treated(&mut self, ctx: &egui::Context) {
+        let Some(made) = self.treated.making.as_ref().and_then(Work::take) else { return };
+        self.treated.making = None;
+        match made {
+            Ok(Made::Look(kind, look)) => self.use_first_look(kind, *look, ctx),
+            Ok(Made::Transfer(transfer)) => self.settings.transfer = transfer,
+            Err(panic) => self.messages.error(text::messages::LOOK_NOT_MADE, panic),
+        }
+    }
+
+    /// Takes over a first look for data of a kind.
+    fn use_first_look(&mut self, kind: Option<KindName>, look: Settings, ctx: &egui::Context) {
+        if look.camera.up != self.settings.camera.up {
+            // It was turned meanwhile.
+            return self.treat_as(kind, ctx);
+        }
+        let look = auto::in_place_of(look, &self.settings);
+        self.treated.change(kind, &mut self.defaults);
+        self.selected_light = self.selected_light.min(look.lights.len().saturating_sub(1));
+        // Its lights are sought, as those of any first look.
+        self.first_lights = FirstLights::of(&look);
+        self.light_search = None;
         self.defaults = look.clone();
         self.settings = look;
     }
+}
 
-    /// The automatic transfer function, for the kind of data that is shown.
-    pub(super) fn use_automatic_transfer(&mut self) {
-        let kind = self.treated.shown(&self.settings);
-        if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) {
-            self.settings.transfer = auto::transfer_as(dataset.volume(), &facts.histogram, kind);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_kind_has_one_first_look_to_which_steps_lead_back() {
+        let look = |ambient: f64| {
+            let mut settings = Settings::default();
+            settings.shading.ambient = ambient;
+            settings
+        };
+        let (mut treated, mut defaults) = (Treated::default(), look(0.1));
+        for round in 0..50 {
+            for (at, kind) in KindName::choices().enumerate() {
+                treated.change(kind, &mut defaults);
+                if round == 0 && kind.is_some() {
+                    defaults = look(f64::from(at as u32 + 2) / 10.0);
+                }
+            }
+        }
+        assert!(treated.others.len() < KindName::choices().count());
+        for (at, kind) in KindName::choices().enumerate() {
+            treated.change(kind, &mut defaults);
+            let ambient = if kind.is_some() { f64::from(at as u32 + 2) / 10.0 } else { 0.1 };
+            assert_eq!((treated.kind(), &defaults), (kind, &look(ambient)));
+            treated.change(kind, &mut defaults);
+            assert_eq!(defaults, look(ambient));
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::app::shell::messages::Messages;
 use crate::app::shell::session::Session;
 use crate::app::shell::status_file::StatusFile;
 use crate::app::shell::treat_as::Treated;
+use crate::app::shell::upright::Upright;
 use crate::app::transfer_editor::TransferEditor;
 use crate::app::viewport::Viewport;
 use crate::app::viewport::compare::Compare;
@@ -115,6 +116,7 @@ impl App {
             defaults: Settings::default(),
             volume: None,
             treated: Treated::default(),
+            upright: Upright::default(),
             viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, storage.as_deref())?,

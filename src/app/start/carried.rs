@@ -8,9 +8,11 @@ use eframe::egui;
 use super::error::AppError;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::memory::Memory;
+use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::History;
 use crate::app::shell::opening::PendingLook;
 use crate::app::shell::session::Session;
+use crate::app::shell::treat_as::Treated;
 use crate::app::viewport::compare::Compare;
 use crate::app::windows::export::Export;
 use crate::app::windows::lost_again::Answer;
@@ -26,6 +28,8 @@ pub(in crate::app) struct Carried {
     settings: Settings,
     defaults: Settings,
     history: History,
+    treated: Treated,
+    first_lights: FirstLights,
     volume: Option<VolumeFacts>,
     dataset: Option<Dataset>,
     session: Option<Session>,
@@ -70,6 +74,8 @@ impl App {
             settings: std::mem::take(&mut self.settings),
             defaults: std::mem::take(&mut self.defaults),
             history: std::mem::take(&mut self.history),
+            treated: std::mem::take(&mut self.treated),
+            first_lights: std::mem::take(&mut self.first_lights),
             volume: self.volume.take(),
             dataset: self.viewport.dataset(),
             session: self.session.take(),
@@ -100,6 +106,8 @@ impl App {
             settings,
             defaults,
             history,
+            treated,
+            first_lights,
             volume,
             dataset,
             session,
@@ -119,6 +127,7 @@ impl App {
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
         app.keep_balanced.accept(&settings);
         (app.settings, app.defaults, app.history) = (settings, defaults, history);
+        (app.treated, app.first_lights) = (treated, first_lights.again());
         (app.volume, app.session, app.session_is_due) = (volume, session, session_is_due);
         (app.keeps_look, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
         (app.pending, app.trusts_paths, app.export) = (pending, trusts_paths, export);

@@ -21,21 +21,30 @@ const WAYS: [(Easing, &str); 3] = [
 /// The most colourful colours of displays have about this chroma.
 const MOST_CHROMA: f64 = 0.33;
 
+/// The values of a volume.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Values {
+    /// What the axis spans.
+    pub span: ValueRange,
+    /// Those to which points can be moved.
+    pub limits: ValueRange,
+}
+
 /// Fields of one point, or of several at once. `true`: they are to be removed.
 pub(super) fn points(
     ui: &mut Ui,
     function: &mut TransferFunction,
     selected: &[usize],
-    range: ValueRange,
+    values: Values,
     light: bool,
 ) -> bool {
     let Some(&first) = selected.first() else { return false };
     let mut point = function.points[first];
     let before = point;
     if selected.len() == 1 {
-        let (low, high) = neighbours(function, first, range);
+        let (low, high) = neighbours(function, first, values.limits);
         let label = ui.label(text::transfer::POINT_VALUE);
-        let speed = range.span().max(1e-12) / 500.0;
+        let speed = values.span.span().max(1e-12) / 500.0;
         ui.add(DragValue::new(&mut point.value).range(low..=high).speed(speed)).labelled_by(label.id);
     } else {
         ui.label(text::transfer::several(selected.len()));

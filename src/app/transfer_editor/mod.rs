@@ -15,7 +15,7 @@ use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo}
 use self::backdrop::{Backdrop, Bars};
 use self::plot::Axes;
 use self::selection::{Selection, Shift};
-use self::zoom::Zoom;
+use self::zoom::{Span, Zoom, limits};
 use super::common::commands::Command;
 use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
@@ -45,6 +45,7 @@ pub(super) struct TransferEditor {
     log_histogram: bool,
     /// Values that are shown, if not all.
     zoom: Zoom,
+    span: Span,
     backdrop: Backdrop,
 }
 
@@ -58,6 +59,7 @@ impl TransferEditor {
             left: TransferFunction::default(),
             log_histogram: true,
             zoom: Zoom::default(),
+            span: Span::default(),
         }
     }
 }
@@ -86,9 +88,12 @@ impl TransferEditor {
             // Somebody else has changed it: its points may be others.
             self.selection.clear();
         }
+        // In the frame of the release, too, in which the last movement counts.
+        let is_held = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
+        let span = self.span.of(is_held, volume.ranges, volume.range);
         let is_wide = ui.available_width() >= WIDE;
         ui.horizontal(|ui| {
-            self.curve_tools(ui, settings, volume, is_wide);
+            self.curve_tools(ui, settings, volume, span, is_wide);
             if is_wide {
                 let layout = egui::Layout::right_to_left(egui::Align::Center);
                 ui.with_layout(layout, |ui| self.plot_tools(ui, settings, commands));
@@ -100,8 +105,8 @@ impl TransferEditor {
         let size = ui.available_size();
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::transfer::PLOT));
-        self.zoom.ui(ui, &response, area, volume.range);
-        let axes = Axes::new(area, self.zoom.shown(volume.range));
+        self.zoom.ui(ui, &response, area, span);
+        let axes = Axes::new(area, self.zoom.shown(span));
         self.paint(ui, &axes, settings, volume);
         let name =
             if self.curve == Curve::Light { text::transfer::LIGHT_POINT } else { text::transfer::EYE_POINT };
@@ -109,14 +114,22 @@ impl TransferEditor {
         self.add_point(&response, &axes, function);
         self.selection.frame(ui, &response, &axes, function);
         self.select_by_keys(ui, &response, function.points.len());
-        self.edit_points(ui, &axes, function, name, volume.range, response.contains_pointer());
+        let limits = limits(volume.ranges, span);
+        self.edit_points(ui, &axes, function, name, limits, response.contains_pointer());
         self.left = self.edited(settings).clone();
         plot::readout(ui, &axes, &response, settings);
         plot::mark(ui, &axes, marked);
     }
 
-    /// What edits the curve.
-    fn curve_tools(&mut self, ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts, is_wide: bool) {
+    /// What edits the curve. `span`: what the axis of values spans.
+    fn curve_tools(
+        &mut self,
+        ui: &mut Ui,
+        settings: &mut Settings,
+        volume: &VolumeFacts,
+        span: ValueRange,
+        is_wide: bool,
+    ) {
         let before = self.curve;
         let eye = ui.selectable_value(&mut self.curve, Curve::Eye, text::transfer::EYE.name);
         eye.on_hover_text(text::transfer::EYE.tip);
@@ -132,12 +145,18 @@ impl TransferEditor {
         let function = self.edited(settings);
         let selected = self.selection.within(function.points.len());
         if selected.is_empty() {
-            menus::whole_curve(ui, function, volume.range);
-            menus::shapes(ui, function, volume, self.zoom.shown(volume.range));
+            menus::whole_curve(ui, function, span);
+            menus::shapes(ui, function, volume, self.zoom.shown(span));
             if is_wide {
                 ui.add(egui::Label::new(egui::RichText::new(text::transfer::HINT).weak()).truncate());
             }
-        } else if fields::points(ui, function, &selected, volume.range, light) {
+        } else if fields::points(
+            ui,
+            function,
+            &selected,
+            fields::Values { span, limits: limits(volume.ranges, span) },
+            light,
+        ) {
             self.selection.remove(function);
         }
     }
@@ -200,7 +219,7 @@ impl TransferEditor {
         }
     }
 
-    /// Shows the points and lets the user move and remove them. `range`: all values of the volume; `hovered`: the
+    /// Shows the points and lets the user move and remove them. `range`: the values to which they can be moved; `hovered`: the
     /// pointer is on the plot.
     fn edit_points(
         &mut self,

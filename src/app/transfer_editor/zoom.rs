@@ -4,11 +4,11 @@ use eframe::egui::{PointerButton, Rect, Response, Ui};
 
 use super::super::text;
 use crate::app::viewport::orbit::wheel_notches;
-use crate::data::ValueRange;
+use crate::data::{ValueRange, ValueRanges};
 
 /// A notch of the wheel shows this much less.
 const ZOOM_PER_NOTCH: f64 = 1.2;
-/// Least share of the values that is shown: the histogram has a thousand bars.
+/// Least share of the values that is shown: the histogram has a thousand bars, of which these are twenty.
 const LEAST_SHARE: f64 = 0.02;
 
 /// A part of the values; nothing is all of them.
@@ -26,6 +26,29 @@ pub(super) struct ShownValues {
     pub high: f64,
     /// Whether these are all of the volume's values.
     pub is_whole: bool,
+}
+
+/// What the axis of values spans: what is shown of the volume, which control points widen, but for the time that a button
+/// is held. Otherwise a point that is dragged would move the axis, and the axis the point.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Span {
+    /// The values of a volume, and what the axis has spanned since the button was pressed.
+    held: Option<(ValueRanges, ValueRange)>,
+}
+
+impl Span {
+    /// What it spans in this frame.
+    pub(super) fn of(&mut self, is_held: bool, ranges: ValueRanges, shown: ValueRange) -> ValueRange {
+        let held = self.held.filter(|(before, _)| is_held && *before == ranges);
+        let span = held.map_or(shown, |(_, span)| span);
+        self.held = is_held.then_some((ranges, span));
+        span
+    }
+}
+
+/// The values to which points can be moved: all that there are, and all that the axis spans.
+pub(super) fn limits(ranges: ValueRanges, span: ValueRange) -> ValueRange {
+    ValueRange::new(ranges.all.low.min(span.low), ranges.all.high.max(span.high))
 }
 
 impl Zoom {
@@ -93,6 +116,21 @@ impl Zoom {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_axis_stays_while_a_button_is_held() {
+        let ranges = ValueRanges { all: ValueRange::new(-50.0, 70.0), robust: ValueRange::new(0.0, 10.0) };
+        let (narrow, wide) = (ranges.robust, ValueRange::new(0.0, 80.0));
+        let mut span = Span::default();
+        assert_eq!(span.of(false, ranges, narrow), narrow);
+        assert_eq!(span.of(true, ranges, narrow), narrow);
+        assert_eq!(span.of(true, ranges, wide), narrow, "a point was dragged beyond its end");
+        let other = ValueRanges::same(wide);
+        assert_eq!(span.of(true, other, wide), wide, "another volume has come meanwhile");
+        assert_eq!(span.of(false, ranges, narrow), narrow);
+        assert_eq!(span.of(true, ranges, wide), wide);
+        assert_eq!(limits(ranges, wide), ValueRange::new(-50.0, 80.0));
+    }
 
     #[test]
     fn the_value_under_the_pointer_stays() {

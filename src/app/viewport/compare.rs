@@ -1,6 +1,6 @@
 //! Two looks in one picture: left and right of a divider, or what lies between them.
 
-use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Stroke, Ui};
+use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2};
 use eframe::egui::{WidgetInfo, pos2, vec2};
 
 use super::{Pictures, paint_callback};
@@ -14,6 +14,10 @@ use crate::model::{Settings, Variant};
 const GRIP: f32 = 7.0;
 /// Radius of its handle.
 const HANDLE: f32 = 9.0;
+/// Points from the edge of the picture to words over it.
+const MARGIN: f32 = 8.0;
+/// Points around words, on their dark background.
+const PADDING: Vec2 = Vec2::new(6.0, 3.0);
 
 /// What is compared, and how.
 #[derive(Debug, Clone)]
@@ -72,6 +76,13 @@ impl Compare {
         [(left_part, opaque(left)), (right_part, opaque(&other.right))]
     }
 
+    /// What the words of a comparison leave of the picture: its middle, without a row at the top and one at the bottom.
+    pub(crate) fn beside_words(&self, ui: &Ui, rect: Rect) -> Rect {
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        let row = ui.ctx().fonts_mut(|fonts| fonts.row_height(&font));
+        rect.shrink2(vec2(0.0, if self.on { MARGIN + row + 2.0 * PADDING.y } else { 0.0 }))
+    }
+
     /// The divider and what is known of the difference, over the picture.
     pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, pictures: &Pictures) {
         if !self.on || rect.width() < 4.0 * GRIP {
@@ -82,7 +93,7 @@ impl Compare {
         }
         let [left, right] = [&self.left, &self.right].map(text::compared::variant);
         let label = |at: Pos2, align: Align2, text: &str| chip(ui, at, align, text);
-        let top = rect.top() + 8.0;
+        let top = rect.top() + MARGIN;
         if self.difference {
             let words = text::picture::difference(left, right);
             label(pos2(rect.center().x, top), Align2::CENTER_TOP, &words);
@@ -95,7 +106,7 @@ impl Compare {
         if let Some(other) = &pictures.other {
             let Distance { rmse, largest } = other.distance;
             let words = text::picture::distance(rmse, largest);
-            label(pos2(rect.center().x, rect.bottom() - 8.0), Align2::CENTER_BOTTOM, &words);
+            label(pos2(rect.center().x, rect.bottom() - MARGIN), Align2::CENTER_BOTTOM, &words);
         }
     }
 
@@ -131,7 +142,28 @@ fn chip(ui: &Ui, at: Pos2, align: Align2, text: &str) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter();
     let galley = painter.layout_no_wrap(text.to_owned(), font, theme::EYE_CURVE);
-    let rect = align.anchor_size(at, galley.size() + vec2(12.0, 6.0));
+    let rect = align.anchor_size(at, galley.size() + 2.0 * PADDING);
     painter.rect_filled(rect, 4.0, theme::OUTLINE.gamma_multiply(0.8));
-    painter.galley(rect.min + vec2(6.0, 3.0), galley, theme::EYE_CURVE);
+    painter.galley(rect.min + PADDING, galley, theme::EYE_CURVE);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_leave_a_picture_without_two_rows() {
+        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(400.0, 300.0));
+        let ctx = egui::Context::default();
+        let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let mut compare = Compare::default();
+            assert_eq!(compare.beside_words(ui, rect), rect);
+            compare.on = true;
+            let left = compare.beside_words(ui, rect);
+            assert_eq!((left.x_range(), left.center()), (rect.x_range(), rect.center()));
+            let words = MARGIN + 2.0 * PADDING.y + egui::TextStyle::Small.resolve(ui.style()).size;
+            assert!(left.top() - rect.top() > words && left.height() > 200.0, "{left}");
+        });
+        output.textures_delta.clear();
+    }
 }

@@ -33,26 +33,27 @@ impl Default for Overlay {
 }
 
 impl Overlay {
-    /// Paints scale bar, cube, and which side of a body is where. The side of the cube that was clicked, if one was.
+    /// Paints scale bar, cube, and in a part of the picture which side of a body is where, if it is one. The side of the
+    /// cube that was clicked, if one was.
     pub(crate) fn show(
         self,
         ui: &Ui,
         picture: Rect,
         camera: &Camera,
         scene: &SceneSpace,
-        is_anatomical: bool,
+        body: Option<Rect>,
     ) -> Option<StandardView> {
         if !self.on || picture.width() < 4.0 * CUBE || picture.height() < 4.0 * CUBE {
             return None;
         }
         let painter = ui.painter_at(picture);
         scale_bar(&painter, picture, camera, scene);
-        if is_anatomical {
-            for Letters { at, align, text } in letters(picture, camera) {
+        if let Some(part) = body {
+            for Letters { at, align, text } in letters(part, camera) {
                 outlined(&painter, at, align, &text);
             }
         }
-        cube(ui, &painter, picture, camera, is_anatomical)
+        cube(ui, &painter, picture, camera, body.is_some())
     }
 
     /// The box of the grid, while something is dragged or the pointer asks for it.

@@ -52,7 +52,7 @@ pub(super) struct Letters {
     pub text: String,
 }
 
-/// Which sides of a body are where in a picture of it.
+/// Which sides of a body are where in a picture of it, or a part of one.
 pub(super) fn letters(picture: Rect, camera: &Camera) -> [Letters; 4] {
     let [right, left, top, bottom] = around(camera);
     [

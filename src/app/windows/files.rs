@@ -8,9 +8,9 @@ use eframe::egui;
 use crate::app::text;
 use crate::app::text::files::Question;
 use crate::app::worker::task::Work;
-use crate::data::{ValueRange, read_small};
+use crate::data::{ValueRange, ValueRanges, read_small};
 use crate::export::PictureFormat;
-use crate::model::{EXPORTED, IMPORTED, Record, TransferFunction, export, import};
+use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, export, import};
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -221,19 +221,27 @@ pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
     Record::from_bytes(&record).map_err(|err| text::files::settings_not_used(path, err))
 }
 
-/// Reads a transfer function of another program.
-pub(crate) fn import_transfer(path: &Path, range: ValueRange) -> Result<TransferFunction, String> {
-    let bytes = read_small(path).map_err(|err| text::files::transfer_not_read(path, err))?;
-    import(path, &bytes, range).map_err(|err| text::files::transfer_not_used(path, err))
+/// The values over which transfer functions of other programs are laid, on the way in and on the way out: those that the
+/// plot shows.
+fn exchanged_range(settings: &Settings, ranges: &ValueRanges) -> ValueRange {
+    settings.shown_range(ranges)
 }
 
-/// Writes a transfer function for another program.
-pub(crate) fn export_transfer(
+/// Reads a transfer function of another program for a look, of a volume with these values.
+pub(crate) fn import_transfer(
     path: &Path,
-    function: &TransferFunction,
-    range: ValueRange,
-) -> Result<(), String> {
-    let bytes = export(path, function, range).map_err(|err| err.to_string())?;
+    settings: &Settings,
+    ranges: &ValueRanges,
+) -> Result<TransferFunction, String> {
+    let bytes = read_small(path).map_err(|err| text::files::transfer_not_read(path, err))?;
+    import(path, &bytes, exchanged_range(settings, ranges))
+        .map_err(|err| text::files::transfer_not_used(path, err))
+}
+
+/// Writes the transfer function of a look for another program, for a volume with these values.
+pub(crate) fn export_transfer(path: &Path, settings: &Settings, ranges: &ValueRanges) -> Result<(), String> {
+    let range = exchanged_range(settings, ranges);
+    let bytes = export(path, &settings.transfer, range).map_err(|err| err.to_string())?;
     crate::export::write_atomically(path, &bytes).map_err(|err| err.to_string())
 }
 
@@ -246,8 +254,7 @@ pub(crate) fn is_record(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::ValueRanges;
-    use crate::model::Settings;
+    use crate::model::{ControlPoint, Interpolation};
 
     #[test]
     fn settings_are_small_texts() {
@@ -259,7 +266,29 @@ mod tests {
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(load_record(&path).unwrap_err().contains("no text"));
         assert!(load_record(folder.path()).unwrap_err().contains("regular"));
-        assert!(import_transfer(&folder.path().join("none.json"), ValueRange::UNIT).is_err());
+        assert!(import_transfer(&folder.path().join("none.json"), &settings, &ValueRanges::UNIT).is_err());
+    }
+
+    #[test]
+    fn transfer_functions_come_back_as_they_went() {
+        let folder = tempfile::tempdir().unwrap();
+        let (all, robust) = (ValueRange::new(-1000.0, 5000.0), ValueRange::new(0.0, 100.0));
+        let ranges = ValueRanges { all, robust };
+        // Beyond the values that matter, which widens what is shown.
+        let points = [(-20.0, 0.0), (60.0, 0.3), (150.0, 0.9)];
+        let points = points.map(|(value, opacity)| ControlPoint::new(value, [1.0; 3], opacity)).to_vec();
+        let transfer =
+            TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() };
+        let settings = Settings { transfer, ..Settings::default() };
+        for ending in ["itf", "vp", "json"] {
+            let path = folder.path().join(format!("a.{ending}"));
+            export_transfer(&path, &settings, &ranges).unwrap();
+            let back = import_transfer(&path, &settings, &ranges).unwrap();
+            for value in [-20.0, 0.0, 60.0, 100.0, 140.0] {
+                let (found, meant) = (back.opacity_at(value), settings.transfer.opacity_at(value));
+                assert!((found - meant).abs() < 1e-3, "{ending} at {value}: {found} and not {meant}");
+            }
+        }
     }
 
     #[test]

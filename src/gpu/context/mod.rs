@@ -2,16 +2,18 @@
 
 mod addresses;
 pub(super) mod clock;
+mod complaints;
 pub(super) mod error;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 pub(crate) use self::addresses::check_room_for_drivers;
 pub(super) use self::addresses::{OF_THE_COMPILER, check_room};
 use self::clock::Clock;
+use self::complaints::Complaints;
 use super::GpuError;
 use crate::data::plain;
 use crate::fault::{self, Count, Fault};
@@ -39,8 +41,8 @@ pub struct Context {
     pub byte_volumes: bool,
     /// Whether 16-bit normalised textures are available for density.
     pub unorm16: bool,
-    /// The first complaint that nobody caught, kept until it is taken.
-    complaint: Arc<Mutex<Option<GpuError>>>,
+    /// What nobody caught, kept until it is taken.
+    complaints: Complaints,
     /// The device is gone.
     lost: Arc<AtomicBool>,
 }
@@ -104,8 +106,8 @@ impl Context {
     }
 
     /// A context on a device that somebody else opened with [`device_descriptor`], or with more features. What the
-    /// device complains about without being asked, also in the work of others, goes to [`Self::check`] from now on:
-    /// programs with a handler of their own set it afterwards.
+    /// device complains about without being asked, also in the work of others on the same thread, goes to
+    /// [`Self::check`] there: programs with a handler of their own set it afterwards.
     ///
     /// # Errors
     /// When the adapter cannot store the textures that we need, or the device was opened without that feature.
@@ -137,12 +139,8 @@ impl Context {
                 },
             })?;
         let byte_volumes = usable(wgpu::TextureFormat::R8Unorm);
-        let complaint = Arc::new(Mutex::new(None));
-        let keep = |complaint: &Arc<Mutex<Option<GpuError>>>, err: GpuError| {
-            log::error!("{err}");
-            complaint.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(err);
-        };
-        let for_errors = Arc::clone(&complaint);
+        let complaints = Complaints::default();
+        let for_errors = complaints.clone();
         device.on_uncaptured_error(Arc::new(move |err: wgpu::Error| {
             let err = match err {
                 wgpu::Error::OutOfMemory { .. } => {
@@ -150,18 +148,21 @@ impl Context {
                 }
                 other => GpuError::Refused(other.to_string()),
             };
-            keep(&for_errors, err);
+            log::error!("{err}");
+            for_errors.keep(err);
         }));
         let lost = Arc::new(AtomicBool::new(false));
-        let (for_loss, flag) = (Arc::clone(&complaint), Arc::clone(&lost));
+        let (for_loss, flag) = (complaints.clone(), Arc::clone(&lost));
         device.set_device_lost_callback(move |reason, message| {
             flag.store(true, Ordering::Relaxed);
             let why = if message.is_empty() { format!("{reason:?}") } else { message };
-            keep(&for_loss, GpuError::Lost(why));
+            let err = GpuError::Lost(why);
+            log::error!("{err}");
+            for_loss.keep(err);
         });
         let unorm16 = features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
         let (adapter, info) = (adapter.clone(), adapter.get_info());
-        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaint, lost })
+        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaints, lost })
     }
 
     /// This device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
@@ -214,7 +215,7 @@ impl Context {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Waits until everything submitted is done, and reports what went wrong since the last call.
+    /// Waits until everything submitted is done, and reports what went wrong in the work of this thread since the last call.
     ///
     /// # Errors
     /// What the device complained about; that it is lost, also where the adapter has given no answer for two minutes.
@@ -273,12 +274,12 @@ impl Context {
         GpuError::Lost(self.info.name.clone())
     }
 
-    /// Reports what went wrong since the last call.
+    /// Reports what went wrong in the work of this thread since it called this last.
     ///
     /// # Errors
     /// What the device complained about.
     pub fn check(&self) -> Result<(), GpuError> {
-        let complaint = self.complaint.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let complaint = self.complaints.take();
         // What a device complains about that is gone says nothing: nothing on it is valid any more.
         let is_lost = self.lost.load(Ordering::Relaxed);
         match complaint {
@@ -358,17 +359,13 @@ impl Context {
         let buffer = self.device.create_buffer(descriptor);
         if pollster::block_on(scope.pop()).is_some() || is_refused {
             let what = descriptor.label.unwrap_or("a buffer").to_owned();
-            self.complain(GpuError::OutOfMemory { what, mebibytes: descriptor.size >> 20 });
+            self.complaints.keep(GpuError::OutOfMemory { what, mebibytes: descriptor.size >> 20 });
         }
         if is_refused {
             // As one that was refused: what uses it is refused, too.
             buffer.destroy();
         }
         buffer
-    }
-
-    fn complain(&self, err: GpuError) {
-        self.complaint.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(err);
     }
 
     /// A sampler that filters linearly and clamps.

@@ -22,7 +22,7 @@ mod visible;
 
 pub use self::floor::{floor_color, wants_floor};
 pub use self::looks::{Proposal, looks};
-pub use self::treated::treated_as;
+pub use self::treated::{in_place_of, treated_as};
 
 use self::domain::Domain;
 use self::object::Object;

@@ -3,22 +3,25 @@
 
 use super::{Wishes, first_settings_with, stand};
 use crate::data::{Histogram, KindName, Volume};
-use crate::model::{Floor, Sampling, Settings};
+use crate::model::{Floor, Sampling, SceneAxis, Settings};
 
-/// A first look at a volume as data of a kind, of its own where none is named, that stands as settings have it.
-///
-/// What has nothing to do with the kind stays as it is there: how the picture is made and shown, shadows, cuts, what the
-/// floor looks like, and saved views.
+/// A first look at a volume as data of a kind, of its own where none is named, with an axis of the scene up whatever the
+/// file says.
 pub fn treated_as(
-    settings: &Settings,
     volume: &Volume,
     histogram: &Histogram,
     treated_as: Option<KindName>,
+    up: SceneAxis,
 ) -> Settings {
-    let up = settings.camera.up;
     let mut look = first_settings_with(volume, histogram, Wishes { treated_as, up });
-    // Whatever the file says.
     stand(&mut look, volume, up);
+    look
+}
+
+/// A first look in place of settings: what has nothing to do with the kind of data stays as it is there. That is how the
+/// picture is made and shown, shadows, cuts, what the floor looks like, and saved views.
+#[must_use]
+pub fn in_place_of(look: Settings, settings: &Settings) -> Settings {
     let Settings { cuts, output, shadows, sampling, floor, views, .. } = settings.clone();
     Settings {
         sampling: Sampling { classification: look.sampling.classification, ..sampling },
@@ -50,7 +53,10 @@ mod tests {
         (mine.sampling.engine, mine.sampling.slab) = (Engine::Scatter, 2.0);
         (mine.floor.on, mine.floor.color, mine.floor.height) = (true, [0.2; 3], 3.0);
         mine.views.insert(3, mine.camera.clone());
-        let labels = treated_as(&mine, &volume, &histogram, Some(KindName::LabelMap));
+        let treated = |kind: Option<KindName>, mine: &Settings| {
+            in_place_of(treated_as(&volume, &histogram, kind, mine.camera.up), mine)
+        };
+        let labels = treated(Some(KindName::LabelMap), &mine);
         let wishes = Wishes { treated_as: Some(KindName::LabelMap), up: SceneAxis::PlusY };
         let first = first_settings_with(&volume, &histogram, wishes);
         assert_eq!((&labels.transfer, labels.range), (&first.transfer, first.range));
@@ -63,7 +69,7 @@ mod tests {
         };
         assert_eq!(kept(&labels), kept(&mine));
         // And back.
-        let again = treated_as(&labels, &volume, &histogram, None);
+        let again = treated(None, &labels);
         assert_eq!(again.sampling, mine.sampling);
         assert_eq!(again.transfer, mine.transfer);
     }

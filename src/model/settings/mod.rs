@@ -11,7 +11,6 @@ pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod scene_axis;
 pub(super) mod shadows;
-pub(super) mod variant;
 pub(super) mod view;
 
 use std::collections::BTreeMap;

@@ -1,6 +1,52 @@
 //! How truly light is computed, in one word that stands for several settings.
 
-use crate::model::{Gradients, Kernel, NearField, ReverseKernel, Settings, ShadowAlgorithm, Slabs};
+use crate::model::{
+    Gradients, Kernel, NearField, ReverseKernel, Sampling, Settings, ShadowAlgorithm, Shadows, Slabs,
+};
+
+impl Settings {
+    /// This look, drawn as truly as another one: with its slabs, kernels, normals and light volumes, and by its way to
+    /// shadows where both have any. Classification and the cures for darkness belong to the look.
+    #[must_use]
+    pub fn drawn_as(self, other: &Self) -> Self {
+        let Shadows {
+            algorithm,
+            deposit,
+            kernel,
+            slab,
+            quadrature,
+            resolution,
+            precision,
+            storage,
+            reverse_kernel,
+            near_field,
+            strength: _,
+            ambient_offset: _,
+            gain: _,
+            bias_voxels: _,
+            balance: _,
+            keep_balanced: _,
+            first_touch: _,
+        } = other.shadows;
+        let own = self.shadows.algorithm;
+        let algorithm = if own.is_on() && algorithm.is_on() { algorithm } else { own };
+        let shadows = Shadows {
+            algorithm,
+            deposit,
+            kernel,
+            slab,
+            quadrature,
+            resolution,
+            precision,
+            storage,
+            reverse_kernel,
+            near_field,
+            ..self.shadows
+        };
+        let classification = self.sampling.classification;
+        Self { shadows, sampling: Sampling { classification, ..other.sampling.clone() }, ..self }
+    }
+}
 
 /// A level of quality. Settings hold what it stands for, and not the word: a level can be chosen and then refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,6 +148,23 @@ mod tests {
         }
         settings.sampling.slab = 0.7;
         assert_eq!(Quality::of(&settings), None);
+    }
+
+    #[test]
+    fn looks_are_drawn_as_truly_as_others_and_stay_what_they_are() {
+        let mut exact = Settings::default();
+        Quality::Exact.apply(&mut exact);
+        (exact.shadows.gain, exact.shadows.balance, exact.shading.ambient) = (2.0, 3.0, 0.9);
+        let mut look = Settings::default();
+        look.shadows.balance = 1.7;
+        look.sampling.classification = crate::model::Classification::Pre;
+        let drawn = look.clone().drawn_as(&exact);
+        assert_eq!(Quality::of(&drawn), Some(Quality::Exact));
+        assert_eq!((drawn.shadows.gain, drawn.shadows.balance), (1.0, 1.7));
+        assert_eq!(drawn.sampling.classification, look.sampling.classification);
+        assert_eq!(drawn.shading, look.shading);
+        exact.shadows.algorithm = ShadowAlgorithm::Off;
+        assert_eq!(look.drawn_as(&exact).shadows.algorithm, ShadowAlgorithm::Splat, "a look has shadows");
     }
 
     #[test]

@@ -9,13 +9,12 @@ use std::time::Duration;
 use eframe::egui;
 use glam::DVec3;
 
+use super::easing::{is_held, share, towards};
 use crate::app::App;
+use crate::app::shell::history::Step;
 use crate::app::worker::task::Work;
 use crate::gpu::{Found, GpuError, LightSearch, Sought};
 use crate::model::{Light, Settings};
-
-/// How long the lights take to their places: seen as a movement, and not as a jump.
-const EASE_S: f64 = 0.3;
 
 /// Between two places that are tried: long enough for another thread to take the device.
 const BREATH: Duration = Duration::from_millis(1);
@@ -45,7 +44,7 @@ pub(crate) enum Act {
 }
 
 /// How far the first look is.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 enum Phase {
     /// It is finished, or no first look.
     #[default]
@@ -84,6 +83,23 @@ impl FirstLights {
     /// Nothing more is to come: the user has decided.
     pub(crate) fn stop(&mut self) {
         self.phase = Phase::Done;
+    }
+
+    /// The window has changed the look by itself, which nobody has touched for that.
+    pub(crate) fn follow(&mut self, before: &Settings, after: &Settings) {
+        if self.is_due() && is_alike(before, &self.known) {
+            self.known.clone_from(after);
+        }
+    }
+
+    /// As it goes on in another window, where nothing is sought yet and time has another beginning.
+    #[must_use]
+    pub(crate) fn again(self) -> Self {
+        let phase = match self.phase {
+            Phase::Searching | Phase::Easing { .. } => Phase::Due,
+            other => other,
+        };
+        Self { phase, ..self }
     }
 
     /// A search has ended; without a finding it failed, and what is there stays.
@@ -131,12 +147,9 @@ impl FirstLights {
     /// The settings on their way to what was found.
     fn ease(&mut self, settings: &Settings, now_s: f64) -> Act {
         let Phase::Easing { from, to, since_s } = &self.phase else { return Act::Nothing };
-        let t = ((now_s - since_s) / EASE_S).clamp(0.0, 1.0);
-        // Slow at both ends, 3t² − 2t³; equal ratios are equal steps for the eye.
-        let share = t * t * (3.0 - 2.0 * t);
-        let towards = |from: f64, to: f64| from * (to / from).powf(share);
+        let share = share(*since_s, now_s);
         let mut next = settings.clone();
-        let is_last = t >= 1.0;
+        let is_last = share >= 1.0;
         if is_last {
             next.lights.clone_from(&to.lights);
             next.floor.clone_from(&to.floor);
@@ -144,8 +157,8 @@ impl FirstLights {
             next.output.exposure = to.output.exposure;
         } else {
             next.lights = between(&from.lights, &to.lights, share);
-            next.shadows.balance = towards(from.shadows.balance, to.shadows.balance);
-            next.output.exposure = towards(from.output.exposure, to.output.exposure);
+            next.shadows.balance = towards(from.shadows.balance, to.shadows.balance, share);
+            next.output.exposure = towards(from.output.exposure, to.output.exposure, share);
         }
         self.known.clone_from(&next);
         if is_last {
@@ -205,17 +218,19 @@ impl App {
         let moment = Moment {
             now_s,
             settings: &self.settings,
-            complete: self.is_complete(),
-            held: ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty())
-                || ctx.text_edit_focused(),
+            // A balance that is about to change belongs to the picture for which lights are sought.
+            complete: self.is_complete() && !self.keep_balanced.is_due(&self.settings),
+            held: is_held(ctx),
         };
         match self.first_lights.act(moment) {
             Act::Nothing => {}
             Act::Search => self.seek_lights(ctx),
             Act::Set(next) => {
-                let before = std::mem::replace(&mut self.settings, *next);
-                // It belongs to the first look: there is nothing to undo, and resetting leads here.
-                self.history.follow(now_s, &before, &self.settings);
+                let before = self.step();
+                self.settings = *next;
+                // It belongs to the first look: there is nothing to undo, whatever has been done to the view since, and
+                // resetting leads here.
+                self.history.finish(now_s, &before, |step| finished(step, &before, &self.settings));
                 let Settings { lights, floor, shadows, output, .. } = &self.settings;
                 self.defaults.lights.clone_from(lights);
                 self.defaults.floor.clone_from(floor);
@@ -252,6 +267,16 @@ impl App {
             }
         }
     }
+}
+
+/// A step of the history with the lights to which the window has brought a look: where it shows that look, from
+/// wherever.
+fn finished(step: &Step, before: &Step, after: &Settings) -> Step {
+    if step.treated_as != before.treated_as || !is_alike(&step.settings, &before.settings) {
+        return step.clone();
+    }
+    let Settings { camera, views, .. } = step.settings.clone();
+    Step { settings: Settings { camera, views, ..after.clone() }, ..*step }
 }
 
 /// Whether two looks are the same but for the view.

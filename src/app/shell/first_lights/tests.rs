@@ -1,6 +1,7 @@
 //! Lights come to their places, in virtual time.
 
 use super::*;
+use crate::app::shell::easing::EASE_S;
 use crate::gpu::Suggestion;
 use crate::model::Rig;
 
@@ -160,4 +161,47 @@ fn a_search_that_fails_or_finds_nothing_better_changes_nothing() {
     let settings = Settings::default();
     let moment = Moment { now_s: 1.0, settings: &settings, complete: true, held: false };
     assert!(!none.is_due() && none.act(moment) == Act::Nothing);
+}
+
+#[test]
+fn a_balance_that_the_window_finds_is_nobodys_touch() {
+    let mut window = Window::new();
+    window.complete = false;
+    window.run(0.1);
+    let before = window.settings.clone();
+    window.settings.shadows.balance = 1.9;
+    window.lights.follow(&before, &window.settings);
+    window.complete = true;
+    window.run(2.0);
+    assert_eq!((window.searches, &window.settings.lights), (1, &proposed()));
+    // In proportion, as of any balance.
+    assert!((window.settings.shadows.balance - 1.9 * 1.8 / 1.5).abs() < 1e-9);
+}
+
+#[test]
+fn what_was_not_finished_goes_on_in_another_window() {
+    for after_s in [0.05, 0.25] {
+        let mut window = Window::new();
+        window.run(after_s);
+        window.lights = std::mem::take(&mut window.lights).again();
+        (window.searching, window.now_s) = (None, 0.0);
+        window.run(2.0);
+        assert_eq!((window.searches, &window.settings.lights), (2, &proposed()), "after {after_s} s");
+    }
+}
+
+#[test]
+fn steps_of_the_look_that_was_finished_keep_their_views_alone() {
+    let before = Step::default();
+    let mut after = before.settings.clone();
+    after.lights[0].position = [0.0, 3.0, 0.0];
+    let mut turned = before.clone();
+    turned.settings.camera.azimuth_deg = 70.0;
+    let done = finished(&turned, &before, &after);
+    assert_eq!((&done.settings.lights, &done.settings.camera), (&after.lights, &turned.settings.camera));
+    let mut other = before.clone();
+    other.settings.shading.ambient = 0.9;
+    assert_eq!(finished(&other, &before, &after), other);
+    let treated = Step { treated_as: Some(crate::data::KindName::Mask), ..before.clone() };
+    assert_eq!(finished(&treated, &before, &after), treated);
 }

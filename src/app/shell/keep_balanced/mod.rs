@@ -4,13 +4,18 @@
 //! It acts only on a picture at rest, and what it finds is written into the settings: a picture depends on these
 //! alone, whenever and wherever it is made.
 
+use std::time::Duration;
+
+use eframe::egui;
+
+use super::easing::{is_held, share, towards};
+use crate::app::worker::task::Work;
+use crate::app::{App, text};
+use crate::gpu::Renderer;
 use crate::model::{Engine, Sampling, Settings, Shadows};
 
 /// How long nothing may have changed: longer than the pauses within one movement of a hand.
 const REST_S: f64 = 0.25;
-
-/// How long the balance takes to its new value: seen as a change of light, and not as a jump.
-const EASE_S: f64 = 0.3;
 
 /// Relative differences up to this are left alone: brightness that differs by so little is not told apart, and the
 /// measurement itself, in a small picture, is not much truer.
@@ -106,7 +111,7 @@ impl KeepBalanced {
             return Act::Nothing;
         }
         match self.phase {
-            Phase::Easing { from, to, since_s } => self.ease(from, to, (now_s - since_s) / EASE_S),
+            Phase::Easing { from, to, since_s } => self.ease(from, to, share(since_s, now_s)),
             Phase::Measuring => Act::Nothing,
             // The window draws a frame when any of these ends.
             Phase::Rest if held || busy || !complete => Act::Nothing,
@@ -122,15 +127,11 @@ impl KeepBalanced {
     }
 
     fn ease(&mut self, from: f64, to: f64, share: f64) -> Act {
-        if share >= 1.0 {
-            self.set(to);
-            self.settle();
-            return Act::Set(to);
-        }
-        let share = share.max(0.0);
-        // Slow at both ends, 3t² − 2t³; equal ratios are equal steps for the eye.
-        let balance = from * (to / from).powf(share * share * (3.0 - 2.0 * share));
+        let balance = towards(from, to, share);
         self.set(balance);
+        if share >= 1.0 {
+            self.settle();
+        }
         Act::Set(balance)
     }
 
@@ -157,6 +158,48 @@ impl KeepBalanced {
                 self.phase = Phase::Easing { from, to, since_s: now_s };
             }
             _ => self.settle(),
+        }
+    }
+}
+
+impl App {
+    /// Starts to measure the balance of the settings as they are, on a device of its own; nothing without a volume.
+    pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
+        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
+            return;
+        };
+        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
+        let task = move || {
+            let mut renderer = Renderer::new(&context.sibling()?)?;
+            crate::gpu::balance(&mut renderer, &dataset, &settings)
+        };
+        match Work::start("balance", ctx, task) {
+            Ok(work) => self.balance = Some(work),
+            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+        }
+    }
+
+    /// Keeps the picture as bright as without shadows, if that is wanted.
+    pub(crate) fn keep_balanced(&mut self, ctx: &egui::Context) {
+        let now_s = ctx.input(|input| input.time);
+        let act = self.keep_balanced.act(Moment {
+            now_s,
+            settings: &self.settings,
+            complete: self.is_complete(),
+            held: is_held(ctx),
+            busy: self.balance.is_some(),
+        });
+        match act {
+            Act::Nothing => {}
+            Act::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
+            Act::Measure => self.viewport.measure_balance(&self.settings),
+            Act::Set(balance) => {
+                let before = self.step();
+                self.settings.shadows.balance = balance;
+                self.history.follow(now_s, &before, &self.step());
+                self.first_lights.follow(&before.settings, &self.settings);
+                ctx.request_repaint();
+            }
         }
     }
 }

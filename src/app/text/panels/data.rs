@@ -69,8 +69,14 @@ pub(crate) const ROBUST: Named =
     named("Robust", "The values that matter: without padding and without a few outliers");
 pub(crate) const FULL: Named = named("Full", "All values of the file");
 pub(crate) const TYPED: Named = named("Typed", "From one value to another");
-pub(crate) const LOW: Named = named("Lowest value shown", "In the units of the file");
-pub(crate) const HIGH: Named = named("Highest value shown", "In the units of the file");
+pub(crate) const LOW: Named = named(
+    "Lowest value shown",
+    "In the units of the file. It stops below the highest value: raise that first",
+);
+pub(crate) const HIGH: Named = named(
+    "Highest value shown",
+    "In the units of the file. It stops above the lowest value: lower that first",
+);
 pub(crate) const SHOWN: &str = "Shown";
 
 /// The values that are shown, and all of the file, in digits.

@@ -23,6 +23,8 @@ pub(crate) const PICTURE_COPIED: &str = "The picture is on the clipboard";
 pub(crate) const PICTURE_NOT_COPIED: &str = "the picture was not copied";
 
 pub(crate) const BALANCE_NOT_MEASURED: &str = "the balance could not be measured";
+pub(crate) const LOOK_NOT_MADE: &str = "the look could not be made";
+pub(crate) const NOT_TURNED: &str = "the object could not be turned";
 pub(crate) const LOOKS_NOT_TRIED: &str = "looks could not be tried";
 pub(crate) const LIGHT_VOLUME_NOT_SHOWN: &str = "the light volume could not be shown";
 pub(crate) const LIGHT_VOLUME_NOT_EXPORTED: &str = "the light volume was not exported";

@@ -24,9 +24,11 @@ pub(crate) const SESSION_NOT_LOADED: &str = "the session was not loaded";
 pub(crate) const OF_ANOTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
 pub(crate) const OF_OTHER_VALUES: &str = "The settings were made for other values than the file has now";
 
-/// On the desktop, where no window opens.
+/// On the desktop, where no window opens: that it does not, and in a paragraph of its own why, and what helps.
 pub(crate) fn no_window(why: &str) -> String {
-    format!("Chiaroscuro cannot open its window: {why}.")
+    let mut letters = why.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    format!("The window of Chiaroscuro could not be opened.\n\n{first}{}.", letters.as_str())
 }
 
 /// The window's title, with what the open volume is called.

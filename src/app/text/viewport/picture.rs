@@ -9,8 +9,11 @@ pub(crate) const DIVIDER: &str = "Divider";
 
 /// Over a picture in which nothing is seen.
 pub(crate) const NOTHING_SEEN: &str = "Nothing of the volume is visible: all of it is transparent";
-pub(crate) const SHOW_SOMETHING: Named =
-    named("Show something", "Takes a transfer function that shows the densest twentieth of the voxels");
+pub(crate) const SHOW_SOMETHING: Named = named(
+    "Show something",
+    "Takes a transfer function that shows the twentieth of the voxels with the highest values, the robust range, and \
+     light that follows the eye's curve",
+);
 pub(crate) const RESET_TRANSFER: Named =
     named("Reset transfer function", "Takes back the transfer function with which the volume was opened");
 

@@ -3,6 +3,9 @@
 
 mod sheet;
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
 
 use self::sheet::{Candidate, SIZE, Tried};
@@ -11,8 +14,15 @@ use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
+use crate::model::Settings;
 
 pub(crate) use self::sheet::Sheet;
+
+/// Points that the window has above the pictures and below them: its default place, its title, the row of buttons, and
+/// margins.
+const AROUND: f32 = 170.0;
+/// Points of the lowest sheet: a picture with its name.
+const LEAST_HEIGHT: f32 = 150.0;
 
 /// Pictures side by side.
 const COLUMNS: usize = 4;
@@ -25,6 +35,32 @@ struct Print {
     texture: TextureHandle,
 }
 
+/// A sheet whose pictures are being made.
+struct Trying {
+    work: Work<Result<Vec<Tried>, String>>,
+    sheet: Sheet,
+    /// What is tried on: the look, and the light that is selected.
+    of: (Settings, usize),
+    is_unwanted: Arc<AtomicBool>,
+}
+
+impl Trying {
+    /// It ends at its next picture, and nobody looks at what it has made.
+    fn cancel(&self) {
+        self.is_unwanted.store(true, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.is_unwanted.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for Trying {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
 /// The window.
 #[derive(Default)]
 pub(crate) struct ContactSheet {
@@ -33,8 +69,9 @@ pub(crate) struct ContactSheet {
     /// What it shows.
     sheet: Sheet,
     /// Whether pictures are to be made as soon as that is possible.
-    pub is_due: bool,
-    work: Option<Work<Result<Vec<Tried>, String>>>,
+    is_due: bool,
+    /// One at a time: each takes a device of its own.
+    trying: Option<Trying>,
     prints: Vec<Print>,
 }
 
@@ -53,36 +90,70 @@ impl ContactSheet {
         (self.open, self.is_due, self.sheet) = (true, true, sheet);
     }
 
-    /// Starts to make the pictures.
-    pub(crate) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
+    /// Closes the window and forgets what it shows: the volume has been replaced.
+    pub(crate) fn forget(&mut self) {
+        self.prints.clear();
+        (self.open, self.is_due) = (false, false);
+        self.cancel();
+    }
+
+    /// Whether pictures are to be made.
+    pub(crate) fn is_due(&self) -> bool {
+        self.is_due
+    }
+
+    /// What is being made is not wanted any more.
+    fn cancel(&self) {
+        if let Some(trying) = &self.trying {
+            trying.cancel();
+        }
+    }
+
+    /// Starts to make the pictures, or goes on where the same are being made. Others end first, so that a key that is
+    /// held starts one thread and not many. Without a subject there is nothing to try on.
+    pub(crate) fn start(&mut self, subject: Option<Subject>, ctx: &egui::Context) -> Result<(), String> {
+        let Some(subject) = subject else {
+            self.is_due = false;
+            return Ok(());
+        };
+        let (sheet, of) = (self.sheet, (subject.settings.clone(), subject.selected_light));
+        if let Some(trying) = &self.trying {
+            if trying.sheet == sheet && trying.of == of && !trying.is_cancelled() {
+                self.is_due = false;
+            } else {
+                trying.cancel();
+            }
+            return Ok(());
+        }
         self.is_due = false;
-        let sheet = self.sheet;
-        let task = move || sheet.try_all(&subject);
-        let work = Work::start("contact-sheet", ctx, task);
-        self.work = Some(work.map_err(text::contact_sheet::no_thread)?);
+        let is_unwanted = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&is_unwanted);
+        let task = move || sheet.try_all(&subject, &asked);
+        let work = Work::start("contact-sheet", ctx, task).map_err(text::contact_sheet::no_thread)?;
+        self.trying = Some(Trying { work, sheet, of, is_unwanted });
+        Ok(())
+    }
+
+    /// Takes what has been made, unless nobody wants it any more.
+    fn take(&mut self, ctx: &egui::Context) -> Result<(), String> {
+        let Some(result) = self.trying.as_ref().and_then(|trying| trying.work.take()) else { return Ok(()) };
+        let is_unwanted = self.trying.take().is_none_or(|trying| trying.is_cancelled());
+        if !is_unwanted {
+            let tried = result.and_then(|result| result)?;
+            self.prints = tried.into_iter().map(|(look, picture)| print(ctx, look, picture)).collect();
+        }
         Ok(())
     }
 
     /// Shows the window, and adds what was chosen. An error says why there are no pictures.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) -> Result<(), String> {
-        let finished = self.work.as_ref().and_then(Work::take);
-        let mut outcome = Ok(());
-        if let Some(result) = finished {
-            self.work = None;
-            match result.and_then(|result| result) {
-                Ok(tried) => {
-                    self.prints =
-                        tried.into_iter().map(|(look, picture)| print(ctx, look, picture)).collect();
-                }
-                Err(err) => outcome = Err(err),
-            }
-        }
+        let outcome = self.take(ctx);
         let mut open = self.open;
         let window =
             egui::Window::new(self.sheet.title()).open(&mut open).resizable(false).collapsible(false);
         window.default_pos([60.0, 60.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
-                if self.work.is_some() || self.is_due {
+                if self.trying.is_some() || self.is_due {
                     ui.spinner();
                     ui.label(text::contact_sheet::TRYING);
                 } else if ui.button(text::contact_sheet::AGAIN).clicked() {
@@ -92,8 +163,7 @@ impl ContactSheet {
                 ui.weak(text::contact_sheet::QUALITY);
             });
             // Low windows have bars instead of a sheet that hangs over.
-            let most = ctx.content_rect().height() - 170.0;
-            let most = most.max(150.0);
+            let most = (ctx.content_rect().height() - AROUND).max(LEAST_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
                 egui::Grid::new("contact sheet").spacing([8.0, 8.0]).show(ui, |ui| {
@@ -116,6 +186,10 @@ impl ContactSheet {
                 })
             });
         });
+        if self.open && !open {
+            self.is_due = false;
+            self.cancel();
+        }
         self.open = open;
         outcome
     }
@@ -125,4 +199,59 @@ fn print(ctx: &egui::Context, look: Candidate, picture: ColorImage) -> Print {
     let Candidate { name, tip, command, settings: _ } = look;
     let texture = ctx.load_texture(format!("contact sheet {name}"), picture, TextureOptions::LINEAR);
     Print { name, tip, command, texture }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Dataset, synthetic::builtin};
+    use crate::gpu::Context;
+
+    /// The flag of the thread that makes pictures, if one does.
+    fn flag(sheet: &ContactSheet) -> Option<Arc<AtomicBool>> {
+        sheet.trying.as_ref().map(|trying| Arc::clone(&trying.is_unwanted))
+    }
+
+    #[test]
+    fn one_thread_tries_at_a_time() {
+        let ctx = egui::Context::default();
+        let subject = Subject {
+            context: Context::headless().expect("an adapter"),
+            dataset: Dataset::new(builtin("sphere", Some(8)).expect("a volume")),
+            settings: Settings::default(),
+            first: Settings::default(),
+            source: "builtin:sphere:8".into(),
+            selected_light: 0,
+        };
+        let mut sheet = ContactSheet::default();
+        let ask = |sheet: &mut ContactSheet, subject: Option<&Subject>| {
+            sheet.open(Sheet::Lights);
+            sheet.start(subject.cloned(), &ctx).expect("a thread");
+            flag(sheet)
+        };
+        assert!(ask(&mut sheet, None).is_none() && !sheet.is_due(), "nothing to try on");
+        let first = ask(&mut sheet, Some(&subject)).expect("a thread");
+        for _ in 0..5 {
+            let again = ask(&mut sheet, Some(&subject)).expect("a thread");
+            assert!(Arc::ptr_eq(&first, &again) && !sheet.is_due(), "it is on its way");
+        }
+        assert!(!first.load(Ordering::Relaxed));
+        // Something else is wanted: the first one ends, and only then there is another.
+        let other = Subject { selected_light: 1, ..subject };
+        let still = ask(&mut sheet, Some(&other)).expect("a thread");
+        assert!(Arc::ptr_eq(&first, &still) && first.load(Ordering::Relaxed) && sheet.is_due());
+        while sheet.trying.is_some() {
+            sheet.take(&ctx).expect("no error");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        assert!(sheet.prints.is_empty(), "of what nobody wants");
+        let second = ask(&mut sheet, Some(&other)).expect("a thread");
+        assert!(!second.load(Ordering::Relaxed) && !sheet.is_due());
+        sheet.forget();
+        assert!(second.load(Ordering::Relaxed) && !sheet.open);
+        while sheet.trying.is_some() {
+            sheet.take(&ctx).expect("no error");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! What contact sheets try, and what it looks like.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use eframe::egui::ColorImage;
 use glam::DVec3;
 
@@ -10,11 +12,13 @@ use crate::data::ValueRanges;
 use crate::gpu::{LightSearch, SmallLook, Sought, small_volume};
 use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings, Slabs, auto};
 
-/// Pixels of a picture.
+/// Pixels of a picture: 4:3, as first looks are framed, and four of them with what lies between are no wider than a
+/// window of 1280 points has beside its panel.
 pub(super) const SIZE: [u32; 2] = [176, 132];
 /// Places for the selected light, as hours of a clock face around the line of sight.
 const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
-/// Degrees from the line of sight to those places.
+/// Degrees from the line of sight to those places: nearer to it few shadows are seen, and at 90° half of what is seen has
+/// no light.
 const ASIDE_DEG: f64 = 55.0;
 
 /// What is tried.
@@ -55,17 +59,19 @@ impl Sheet {
         }
     }
 
-    /// Tries everything. An error says why there are no pictures.
-    pub(super) fn try_all(self, subject: &Subject) -> Result<Vec<Tried>, String> {
+    /// Tries everything, until nobody wants it any more. An error says why there are no pictures.
+    pub(super) fn try_all(self, subject: &Subject, is_unwanted: &AtomicBool) -> Result<Vec<Tried>, String> {
+        let is_wanted = || !is_unwanted.load(Ordering::Relaxed);
         let mut worker = Worker::new(subject)?;
         let candidates = match self {
             Self::Lights => with_lights(&subject.settings, subject.selected_light),
             Self::Presets => with_presets(&subject.settings, &subject.dataset.volume().ranges()),
-            Self::Suggestions => suggested(subject, &worker)?,
-            Self::Looks => return looks(subject, &mut worker),
+            Self::Suggestions => suggested(subject, &worker, &is_wanted)?,
+            Self::Looks => return looks(subject, &mut worker, &is_wanted),
         };
         candidates
             .into_iter()
+            .take_while(|_| is_wanted())
             .map(|candidate| {
                 let picture = picture(&mut worker, subject, &quick(&candidate.settings))?;
                 Ok((candidate, picture))
@@ -108,13 +114,19 @@ fn with_lights(settings: &Settings, selected: usize) -> Vec<Candidate> {
 }
 
 /// The look with the selected light at the places that do most for it, the best first.
-fn suggested(subject: &Subject, worker: &Worker) -> Result<Vec<Candidate>, String> {
+fn suggested(
+    subject: &Subject,
+    worker: &Worker,
+    is_wanted: &dyn Fn() -> bool,
+) -> Result<Vec<Candidate>, String> {
     let Subject { dataset, settings, selected_light, .. } = subject;
     let Some(light) = settings.lights.get(*selected_light) else {
         return Err(text::contact_sheet::NO_LIGHT.to_owned());
     };
     let search = LightSearch::new(worker.shaders(), dataset, settings, Sought::Light(*selected_light));
-    let found = search.and_then(LightSearch::run).map_err(|err| err.to_string())?;
+    let mut search = search.map_err(|err| err.to_string())?;
+    while is_wanted() && search.step().map_err(|err| err.to_string())? {}
+    let found = search.finish();
     let best = found.map(|found| found.best).unwrap_or_default().into_iter().enumerate();
     Ok(best
         .map(|(at, suggestion)| {
@@ -127,13 +139,14 @@ fn suggested(subject: &Subject, worker: &Worker) -> Result<Vec<Candidate>, Strin
 }
 
 /// Whole looks of the volume, on a small copy of it.
-fn looks(subject: &Subject, worker: &mut Worker) -> Result<Vec<Tried>, String> {
+fn looks(subject: &Subject, worker: &mut Worker, is_wanted: &dyn Fn() -> bool) -> Result<Vec<Tried>, String> {
     let whole = subject.dataset.volume();
     let small = small_volume(&subject.dataset).map_err(|err| err.to_string())?;
     let proposals = auto::looks(&subject.first, small.volume(), small.histogram());
     let on_small = Subject { dataset: small, ..subject.clone() };
     proposals
         .into_iter()
+        .take_while(|_| is_wanted())
         .enumerate()
         .map(|(at, proposal)| {
             // The brightness of the first is known.

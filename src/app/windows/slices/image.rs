@@ -53,7 +53,7 @@ pub(crate) fn lookup(volume: &Volume, grey: Grey, transfer: Option<&TransferFunc
     (0..=STEPS).map(color).collect()
 }
 
-/// The voxels across an axis, in the colours of a table.
+/// The voxels across an axis, in the colours of a table; black where they are missing.
 pub(crate) fn slice(volume: &Volume, axis: usize, at: usize, table: &[Color32]) -> ColorImage {
     let dims = volume.dims();
     let [u, v] = across(axis);
@@ -62,8 +62,8 @@ pub(crate) fn slice(volume: &Volume, axis: usize, at: usize, table: &[Color32]) 
         for column in 0..dims[u] {
             let mut voxel = [at; 3];
             (voxel[u], voxel[v]) = (column, row);
-            let density = volume.density_of(volume.value(voxel[0], voxel[1], voxel[2]));
-            pixels.push(table[((density * STEPS as f64) as usize).min(STEPS)]);
+            let color = |density: f64| table[((density * STEPS as f64) as usize).min(STEPS)];
+            pixels.push(volume.density_at(voxel).map_or(Color32::BLACK, color));
         }
     }
     ColorImage::new([dims[u], dims[v]], pixels)

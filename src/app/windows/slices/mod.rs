@@ -100,7 +100,7 @@ impl Slices {
             });
         });
         self.open = open;
-        self.of = Some((volume.content_id(), grey.within(volume.value_range())));
+        self.of = Some((volume.content_id(), grey.within(facts.range)));
     }
 
     /// What is known of the cursor, and how grey the slices are.
@@ -179,7 +179,7 @@ impl Slices {
         painter.image(texture.id(), area, whole, Color32::WHITE);
         self.move_cursor(ui, &response, area, axis, dims);
         if response.dragged_by(PointerButton::Secondary) {
-            grey.drag(response.drag_delta() / EDGE, volume.value_range());
+            grey.drag(response.drag_delta() / EDGE, volume.shown_range());
         }
         crosshair(&painter, area, axis, self.cursor, dims);
         if response.hovered() {
@@ -232,4 +232,32 @@ fn crosshair(painter: &Painter, area: Rect, axis: usize, cursor: [usize; 3], dim
     // A line lies along the axis that it stands for.
     painter.hline(area.x_range(), at.y, stroke(u));
     painter.vline(at.x, area.y_range(), stroke(v));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::worker::loader::Reading;
+    use crate::data::{Dataset, Samples};
+
+    #[test]
+    fn greys_are_those_of_the_values_that_matter() {
+        // A ramp, and one voxel that is far beyond it.
+        let mut values: Vec<f32> = (0..24 * 24 * 24).map(|at| (at % 1000) as f32).collect();
+        values[7] = 1e20;
+        let volume = Volume::with_spacing("ramp", [24; 3], DVec3::ONE, Samples::F32(values)).unwrap();
+        let dataset = Dataset::new(volume);
+        let facts = VolumeFacts::of("ramp".into(), Reading::default(), &dataset);
+        let mut slices = Slices { open: true, ..Slices::default() };
+        let ctx = egui::Context::default();
+        let transfer = TransferFunction::default();
+        for _ in 0..2 {
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
+                slices.ui(ui.ctx(), Some(dataset.volume()), Some(&facts), &transfer);
+            });
+            output.textures_delta.clear();
+        }
+        let (_, grey) = slices.of.expect("grey levels");
+        assert!(grey.black < 20.0 && (900.0..1100.0).contains(&grey.white), "{grey:?}");
+    }
 }

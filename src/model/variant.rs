@@ -1,6 +1,6 @@
 //! Looks to compare with: the same scene and camera, with something else between them.
 
-use crate::model::{Engine, Settings, ShadowAlgorithm};
+use crate::model::{Engine, ObjectTurn, Settings, ShadowAlgorithm};
 
 /// How a look differs from the current one.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +64,13 @@ impl Variant {
                 (shadows.algorithm, shadows.first_touch) = (ShadowAlgorithm::Splat, true);
             }
             Self::Look(look) => {
-                settings = Settings { camera: current.camera.clone(), ..Settings::clone(look) };
+                settings = Settings::clone(look);
+                if look.camera.up != current.camera.up {
+                    // Lights stay with the viewer of an object that stands otherwise, and the floor is under that.
+                    settings.turn_object(ObjectTurn::Upright(current.camera.up));
+                    settings.floor.height = current.floor.height;
+                }
+                settings.camera.clone_from(&current.camera);
             }
         }
         settings
@@ -74,6 +80,23 @@ impl Variant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::SceneAxis;
+    use glam::DVec3;
+
+    #[test]
+    fn looks_at_an_object_that_stood_otherwise_keep_their_light() {
+        let look = Settings::default();
+        let mut current = look.clone();
+        current.turn_object(ObjectTurn::Upright(SceneAxis::MinusX));
+        current.floor.height = -0.7;
+        let shown = Variant::Look(Box::new(look.clone())).of(&current);
+        assert_eq!((&shown.camera, shown.floor.height), (&current.camera, -0.7));
+        let seen = |settings: &Settings| {
+            let light = settings.lights[0].in_scene(&settings.camera).position;
+            settings.camera.scene_from_view().transpose() * DVec3::from(light)
+        };
+        assert!((seen(&shown) - seen(&look)).length() < 1e-9);
+    }
 
     #[test]
     fn variants_differ_from_each_other_and_keep_the_camera() {
