@@ -6,9 +6,9 @@
 use glam::DVec3;
 
 use super::Reference;
-use super::classified::Side;
+use super::field::classified::Side;
+use super::field::pyramid::MAX_LEVEL;
 use super::kernel::{Profile, cubic_b_spline, cubic_b_spline_slope};
-use super::pyramid::MAX_LEVEL;
 use crate::model::{Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
@@ -58,16 +58,6 @@ fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f
         wx[dx] * wy[dy] * wz[dz] * density
     };
     (0..64).map(term).sum()
-}
-
-/// A material with its colours weighted by its extinction.
-pub(super) fn associated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
-    [r * extinction, g * extinction, b * extinction, extinction]
-}
-
-/// The reverse.
-pub(super) fn straight([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
-    if extinction <= 0.0 { [0.0; 4] } else { [r / extinction, g / extinction, b / extinction, extinction] }
 }
 
 /// The mean over slab `k` along the ray of pixel (i, j) of what is found at a point and a level: over the quadrature's

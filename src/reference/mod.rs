@@ -8,8 +8,8 @@
 //!
 //! | stage | file | to compare |
 //! |---|---|---|
-//! | prefiltered volume and its pyramid | `pyramid` | [`Reference::density`] |
-//! | voxels classified before they are spread | `classified` | [`Reference::light_sheets`], [`Reference::picture`] |
+//! | prefiltered volume and its pyramid | `field/pyramid` | [`Reference::density`] |
+//! | voxels classified before they are spread | `field/classified` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
 //! | what is there at all | `remains/presence` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | crop box and clip plane | `remains/cut` | [`Reference::light_sheets`], [`Reference::picture`] |
@@ -20,7 +20,6 @@
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
-mod classified;
 mod eye;
 mod field;
 mod floor;
@@ -28,7 +27,6 @@ mod footprint;
 mod gather;
 mod kernel;
 mod light;
-mod pyramid;
 mod remains;
 mod shade;
 mod shadow_ray;
@@ -37,17 +35,17 @@ mod sheet;
 mod tests;
 
 pub use back_project::Attenuation;
+pub use field::pyramid::Pyramid;
 pub use field::{Field, Rounding};
 pub use kernel::{cubic_b_spline, gaussian, tent};
 pub use light::ViewSheets;
-pub use pyramid::Pyramid;
 
 use glam::DVec3;
 
 use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
 use crate::model::{BakedTransfer, Classification, Kernel, SceneLight, Settings};
-use classified::{Classified, Side};
+use field::classified::{Classified, Side};
 use kernel::Profile;
 
 /// Whose weights the sums are taken with.

@@ -4,9 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
-use super::classified::Side;
+use super::field::classified::Side;
+use super::field::pyramid::MAX_LEVEL;
 use super::kernel::Profile;
-use super::pyramid::MAX_LEVEL;
 use super::remains::cut::Remaining;
 use super::shadow_ray::ShadowRays;
 use super::{Fault, Reference, gather};
@@ -218,8 +218,8 @@ impl<'r> Shader<'r> {
     pub(super) fn gradient(&self, point: DVec3, level: f64) -> DVec3 {
         let level = level.clamp(0.0, MAX_LEVEL as f64);
         if self.reference.classified.is_some() {
-            // Twice as wide: labels are there or not from one voxel to the next.
-            return self.prefiltered_gradient(point, (level + 1.0).min(MAX_STRETCH_LEVEL));
+            // Twice as wide: labels are there or not from one voxel to the next. Between levels the steps are between.
+            return self.to_scene(self.gradient_of_level(point, (level + 1.0).min(MAX_STRETCH_LEVEL)));
         }
         if !self.reference.settings.has_kernel_gradients() || level >= 1.0 {
             return self.prefiltered_gradient(point, level);

@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
-use super::classified::Side;
+use super::field::classified::Side;
 use super::kernel::Profile;
 use super::remains::cut::Remaining;
 use super::{Reference, gather};

@@ -4,8 +4,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::classified::{Classified, Side};
 use super::field::Field;
+use super::field::classified::{Classified, Side, associated, straight};
 use super::kernel::Profile;
 use super::remains::cut::Remaining;
 use super::{Fault, Reference, Weights, footprint, gather};
@@ -113,7 +113,7 @@ impl<'r> Stack<'r> {
             };
             let points = (weights == Weights::Scatter).then_some(*quadrature);
             let channels: [Vec<f64>; 4] = std::array::from_fn(|channel| {
-                let of_voxel = |&density: &f64| gather::associated(voxels.sample(density))[channel];
+                let of_voxel = |&density: &f64| associated(voxels.sample(density))[channel];
                 let densities = reference.field.densities.iter().map(of_voxel).collect();
                 let field = Field { dims: field.dims, densities, beyond: field.beyond };
                 footprint::splat(&field, frame, profile, points, reference.kernel_shift(), k)
@@ -126,7 +126,7 @@ impl<'r> Stack<'r> {
                     Some(_) => self.presence_at(place) / self.presence_in_grid(place),
                     None => 1.0,
                 };
-                gather::straight(std::array::from_fn(|channel| channels[channel][at] * there))
+                straight(std::array::from_fn(|channel| channels[channel][at] * there))
             };
             return (0..self.pixel_count()).map(material).collect();
         }

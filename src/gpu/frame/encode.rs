@@ -50,7 +50,7 @@ impl Job<'_> {
                 self.report.runs.materials += 1;
                 let table = side.of(&self.loaded.value.tables.value);
                 let Some(materials) = &table.materials else { return Ok(()) };
-                materials.fill(Gpu::new(self.tools, volume), table, *level, bricks, encoder)
+                materials.fill(Gpu::new(self.tools, volume), &table.buffer, *level, bricks, encoder)
             }
             Step::March(light) => self.encode_light(light, Self::march_view, encoder),
             Step::Backproject(light) => self.encode_light(light, Self::backproject_view, encoder),

@@ -9,7 +9,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::listed_bricks::workgroups;
 use super::prefilter::{self, level_of, uniform_and_list};
 use super::shapes::padded;
-use super::transfer_tables::Table;
 use super::{Gpu, GpuVolume, LevelViews, texture_3d};
 use crate::data::BRICK_EDGE;
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
@@ -99,11 +98,11 @@ impl Materials {
         prefilter::steps_of(&self.bricks)
     }
 
-    /// Fills some bricks of one level. The finer level must be complete. `table` is that of the transfer function.
+    /// Fills some bricks of one level. The finer level must be complete. `table` is the transfer function's.
     pub(crate) fn fill(
         &self,
         gpu: Gpu<'_>,
-        table: &Table,
+        table: &wgpu::Buffer,
         level: u32,
         range: &Range<usize>,
         encoder: &mut wgpu::CommandEncoder,
@@ -129,7 +128,7 @@ impl Materials {
         ];
         match level {
             0 => entries.extend([
-                buffer("table", &table.buffer),
+                buffer("table", table),
                 view_of("presence_level", presence.as_ref().unwrap_or(placeholder)),
             ]),
             _ => entries.push(sampler("clamped", &volume.clamped)),

@@ -131,6 +131,96 @@ fn number_types_change_nothing() {
     }
 }
 
+/// Half the ball with a bar on it: no axis is like another.
+fn lopsided(place: [f64; 3]) -> f64 {
+    let [x, y, z] = place.map(|c| c - 15.5);
+    let ball = if z > -3.0 { 9.0 - DVec3::new(x, y, z).length() } else { z + 3.0 };
+    let bar = (2.5 - DVec3::new(0.0, y - 3.0, z - 4.0).length()).min(13.0 - x.abs()).min(x);
+    860.0 / (1.0 + (-2.0 * ball.max(bar)).exp()) + 40.0
+}
+
+/// It, with index axes that lie along others of the world, some turned around.
+fn stored_otherwise(axes: [usize; 3], turned: [bool; 3]) -> Volume {
+    let value = |at: usize| {
+        let stored = [at % N, at / N % N, at / N / N];
+        let mut place = [0.0; 3];
+        for along in 0..3 {
+            let c = stored[along] as f64;
+            place[axes[along]] = if turned[along] { (N - 1) as f64 - c } else { c };
+        }
+        lopsided(place)
+    };
+    let direction =
+        |along: usize| if turned[along] { -DVec3::AXES[axes[along]] } else { DVec3::AXES[axes[along]] };
+    let matrix3 = glam::DMat3::from_cols(direction(0), direction(1), direction(2));
+    let begins =
+        |along: usize| if turned[along] { DVec3::AXES[axes[along]] * (N - 1) as f64 } else { DVec3::ZERO };
+    let geometry = glam::DAffine3 { matrix3, translation: begins(0) + begins(1) + begins(2) };
+    let values = (0..N * N * N).map(value).collect();
+    Volume::new("t", [N; 3], geometry, Samples::F64(values)).unwrap()
+}
+
+/// How far the eye has moved, and what it looks at, in scene units; relative to its distance.
+fn moved(a: &Settings, b: &Settings) -> f64 {
+    let target = |look: &Settings| DVec3::from(look.camera.target);
+    let by = a.camera.eye().distance(b.camera.eye()).max(target(a).distance(target(b)));
+    by / a.camera.distance
+}
+
+#[test]
+fn how_axes_are_stored_changes_nothing() {
+    let before = look(&stored_otherwise([0, 1, 2], [false; 3]));
+    for (axes, turned) in [
+        ([0, 1, 2], [true, false, false]),
+        ([0, 1, 2], [true, true, true]),
+        ([1, 2, 0], [false; 3]),
+        ([2, 1, 0], [false, true, false]),
+    ] {
+        let stored = stored_otherwise(axes, turned);
+        let by = change(&before, &stored);
+        assert!(by < 1e-9, "{axes:?} {turned:?}: {by}");
+        // Cells of objects begin at other corners.
+        let by = moved(&before, &look(&stored));
+        assert!(by < 0.02, "{axes:?} {turned:?}: {by}");
+    }
+}
+
+#[test]
+fn half_the_resolution_is_the_same_thing() {
+    let whole = stored_otherwise([0, 1, 2], [false; 3]);
+    let half = whole.averaged([2; 3]).unwrap();
+    let before = look(&whole);
+    // Its edge is a voxel wide, and half as steep in blocks: curves may begin anywhere in it, …
+    let by = change(&before, &half);
+    assert!(by < 0.15, "{by}");
+    // … and show the same.
+    let seen = |volume: &Volume| {
+        let object = Object::of_shown(&look(volume), volume);
+        object.all_cells().count() as f64 / volume.voxel_count() as f64
+    };
+    assert!((seen(&half) / seen(&whole) - 1.0).abs() < 0.15, "{} {}", seen(&half), seen(&whole));
+    // Blocks at the outside of the object are half full, and what is framed ends by a block more or less of sixteen.
+    let by = moved(&before, &look(&half));
+    assert!(by < 0.15, "{by}");
+}
+
+#[test]
+fn it_does_not_matter_whether_air_is_missing() {
+    let values = values();
+    let missing: Vec<f64> =
+        values.iter().map(|&value| if value < 110.0 { f64::NAN } else { value }).collect();
+    let seen = |values: &[f64]| {
+        let volume = volume(values);
+        let look = look(&volume);
+        assert_eq!(shown(&look, &volume), Shown::Object);
+        (Object::of_shown(&look, &volume).all_cells().count() as f64, look)
+    };
+    let ((whole, before), (without_air, after)) = (seen(&values), seen(&missing));
+    // All that is left is the ball, with its soft edge, which half of it may show.
+    assert!((0.8..1.3).contains(&(without_air / whole)), "{whole} {without_air}");
+    assert!(moved(&before, &after) < 0.1);
+}
+
 #[test]
 fn sixteen_bits_are_spent_on_the_values_that_matter() {
     let mut values = values();

@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use crate::model::{Kernel, Quadrature};
 use crate::plan::SheetFrame;
+use crate::reference::field::pyramid::MAX_LEVEL;
 use crate::reference::kernel::{Profile, quadrature_nodes};
-use crate::reference::pyramid::MAX_LEVEL;
 use crate::reference::{Reference, Weights};
 
 impl Reference<'_> {

@@ -24,11 +24,13 @@ pub(crate) const ONE_POINT: Named = named("1 point", "The middle of every slab: 
 pub(crate) const TWO_POINTS: Named = named("2 points", "Twice the work; for export and comparison");
 
 pub(crate) const CLASSIFICATION: Named =
-    named("Classify", "When the transfer functions are applied, also for lights that are splatted");
+    named("Classify", "When the transfer functions are applied, for the eye and for lights");
 pub(crate) const CLASSIFIED_SHEETS: Named =
     named("Sheets", "The default: what is reconstructed is classified, and edges stay sharp");
-pub(crate) const CLASSIFIED_VOXELS: Named =
-    named("Voxels", "Voxels are classified and their colours blurred: for comparison; slower");
+pub(crate) const CLASSIFIED_VOXELS: Named = named(
+    "Voxels",
+    "What voxels mean is blurred, not their numbers: labels stay apart. Gathered with the quick kernel",
+);
 
 pub(crate) const ENGINE: Named = named("Sheets", "How sheets are filled, for the eye and for lights");
 pub(crate) const GATHER: Named =

@@ -1,5 +1,8 @@
 //! Densities on a grid, as the renderer stores them, and the trilinear fetch from any grid.
 
+pub(in crate::reference) mod classified;
+pub(in crate::reference) mod pyramid;
+
 use glam::DVec3;
 
 use crate::data::Volume;
@@ -39,7 +42,7 @@ impl Field {
     }
 
     /// 1 where a voxel is there and 0 where it is missing, if any is.
-    pub(super) fn of_presence(volume: &Volume) -> Option<Self> {
+    pub(in crate::reference) fn of_presence(volume: &Volume) -> Option<Self> {
         let missing = volume.missing()?;
         let there = |voxel| if missing.contains(voxel) { 0.0 } else { 1.0 };
         let densities = (0..volume.voxel_count()).map(there).collect();
@@ -57,14 +60,14 @@ impl Field {
     }
 
     /// Whether a voxel is in the grid.
-    pub(super) fn has(&self, x: i64, y: i64, z: i64) -> bool {
+    pub(in crate::reference) fn has(&self, x: i64, y: i64, z: i64) -> bool {
         [x, y, z].iter().zip(self.dims).all(|(c, n)| (0..n as i64).contains(c))
     }
 }
 
 /// Trilinear interpolation between the eight values around `at`; values lie at integers, and
 /// beyond the outermost ones the outermost counts (clamp to edge).
-pub(super) fn trilinear(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
+pub(in crate::reference) fn trilinear(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
     let cell = |axis: usize| {
         let last = (dims[axis] - 1) as f64;
         let low = at[axis].floor();

@@ -8,10 +8,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::field::{Field, Rounding, trilinear};
+use super::{Field, Rounding, trilinear};
 
 /// The coarsest level: kernels are stretched up to eight times.
-pub(super) const MAX_LEVEL: usize = 3;
+pub(in crate::reference) const MAX_LEVEL: usize = 3;
 
 /// Texels before the grid on every axis.
 const PAD: usize = 4;
@@ -36,7 +36,7 @@ impl Pyramid {
     }
 
     /// The same, where the blurred field fades with a share of what is there.
-    pub(super) fn faded(
+    pub(in crate::reference) fn faded(
         field: &Field,
         width: f64,
         rounding: Option<Rounding>,
@@ -60,7 +60,7 @@ impl Pyramid {
     }
 
     /// The same, stored in so many steps from 0 to 1.
-    pub(super) fn in_steps(mut self, steps: f64) -> Self {
+    pub(in crate::reference) fn in_steps(mut self, steps: f64) -> Self {
         for value in self.levels.iter_mut().flat_map(|level| &mut level.values) {
             *value = (*value * steps).round() / steps;
         }

@@ -1,13 +1,12 @@
 //! What the voxels mean, where they are classified before kernels spread them.
 
-use super::field::{Beyond, Field, Rounding};
-use super::gather::associated;
 use super::pyramid::Pyramid;
+use super::{Beyond, Field, Rounding};
 use crate::model::BakedTransfer;
 
 /// Whose transfer function classifies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(in crate::reference) enum Side {
     /// What the eye sees.
     Eye,
     /// What attenuates light.
@@ -16,7 +15,7 @@ pub(super) enum Side {
 
 /// Voxels as a transfer function classifies them.
 #[derive(Debug, Clone)]
-pub(super) struct Classified {
+pub(in crate::reference) struct Classified {
     /// The extinction as a share of the largest, in place of a density.
     pub field: Field,
     /// The same, spread.
@@ -30,7 +29,7 @@ pub(super) struct Classified {
 impl Classified {
     /// Classifies the densities of voxels. `presence` is what is there where some are missing: others stand in for these,
     /// and what is spread fades with what is there.
-    pub(super) fn of(
+    pub(in crate::reference) fn of(
         densities: &Field,
         table: &BakedTransfer,
         presence: Option<&Pyramid>,
@@ -52,4 +51,14 @@ impl Classified {
             table: BakedTransfer::of_shares(table.most_extinction()),
         }
     }
+}
+
+/// A material with its colours weighted by its extinction.
+pub(in crate::reference) fn associated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
+    [r * extinction, g * extinction, b * extinction, extinction]
+}
+
+/// The reverse.
+pub(in crate::reference) fn straight([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
+    if extinction <= 0.0 { [0.0; 4] } else { [r / extinction, g / extinction, b / extinction, extinction] }
 }
