@@ -78,6 +78,21 @@ impl Missing {
         (0..bricks.iter().product()).into_par_iter().map(mask).collect()
     }
 
+    /// The least that some number of a voxel is, among those that hold nothing.
+    pub fn least(&self, number: impl Fn([usize; 3]) -> u8 + Sync) -> u8 {
+        let [nx, ny, nz] = self.dims;
+        let least_of_row = |z: usize, y: usize| {
+            let first = nx * (y + ny * z);
+            let missing = (0..nx).filter(|x| self.contains(first + x));
+            missing.map(|x| number([x, y, z])).min().unwrap_or(u8::MAX)
+        };
+        (0..nz)
+            .into_par_iter()
+            .map(|z| (0..ny).map(|y| least_of_row(z, y)).min().unwrap_or(u8::MAX))
+            .min()
+            .unwrap_or(u8::MAX)
+    }
+
     /// Voxels of slice z that hold nothing: their places in the slice, x fastest, and the values that stand in for them.
     pub(super) fn in_slice(&self, z: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let [nx, ny, _] = self.dims;
@@ -189,6 +204,7 @@ mod tests {
         let missing = Missing::find(dims, |voxel| (!lost.contains(&voxel)).then_some(voxel as f64)).unwrap();
         assert_eq!(missing.count(), 5);
         assert!((0..60).all(|voxel| missing.contains(voxel) == lost.contains(&voxel)));
+        assert_eq!(missing.least(|[x, y, z]| 100 - (x + 5 * y + 20 * z) as u8), 100 - 59);
         // Voxels 1, 5, 20, 21, 25 and 26 are left of the block of 0 and 6.
         let mean = (1.0 + 5.0 + 20.0 + 21.0 + 25.0 + 26.0) / 6.0;
         let near = |found: f64, wanted: f64| (found - wanted).abs() < 1e-5;

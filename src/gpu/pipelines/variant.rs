@@ -60,8 +60,8 @@ pub(crate) struct Reconstruction {
     pub ends: Ends,
 }
 
-/// Where what is shown of a volume ends with its data, as far as anything there is seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+/// Where what is shown of a volume ends with its data, as far as anything there is seen; each holds for those before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Ends {
     /// Away from all of that.
     Nowhere,

@@ -25,6 +25,8 @@ pub(crate) struct Table {
     distances: Arc<CellDistances>,
     /// How many cells are at least between those and the cells at the faces of the grid.
     clearance: u8,
+    /// The least distance to them of cells in which voxels are missing.
+    from_missing: u8,
     /// There is none.
     pub is_empty: bool,
     /// What it makes of voxels, where these are classified before kernels spread them.
@@ -54,12 +56,19 @@ impl Table {
         let is_empty = masks.iter().all(|mask: &u64| *mask == 0);
         let distances = Arc::new(CellDistances::of(&CellSet { dims, masks }));
         let clearance = distances.least_at_faces(volume.volume.dims().map(|n| (n - 1) / CELL_EDGE));
+        let [width, height, _] = distances.dims;
+        let distance_of = |voxel: [usize; 3]| {
+            let [x, y, z] = voxel.map(|c| c / CELL_EDGE);
+            distances.values[x + width * (y + height * z)]
+        };
+        let from_missing = volume.volume.missing().map_or(u8::MAX, |missing| missing.least(distance_of));
         Self {
             baked: Arc::new(baked),
             buffer,
             occupied: Arc::new(occupied),
             distances,
             clearance,
+            from_missing,
             is_empty,
             materials: None,
         }
@@ -72,11 +81,14 @@ impl Table {
             // What voxels mean ends with them by itself.
             return Ends::Nowhere;
         }
-        let all = volume.ends_of_all();
-        // Kernels reach two of their widths to either side of a face, which lies half a voxel before the first cell.
+        // Kernels reach two voxels of their level to either side, and their slopes a voxel more.
+        let near_missing = dilation + (1.5 * level.exp2()).ceil() as i32 + 1;
+        if i32::from(self.from_missing) <= near_missing {
+            return volume.ends_of_all();
+        }
+        // A face lies half a voxel before the first cell.
         let layers = level.exp2().ceil() as i32;
-        let is_away = i32::from(self.clearance) > layers - 1 + dilation;
-        if is_away && all == Ends::AtFaces { Ends::Nowhere } else { all }
+        if i32::from(self.clearance) > layers - 1 + dilation { Ends::Nowhere } else { Ends::AtFaces }
     }
 
     /// What it was baked to.
@@ -215,8 +227,7 @@ impl Tables {
 
     /// Where what either shows ends with the data, for samples of the eye and rays from them.
     pub(crate) fn ends(&self, volume: &GpuVolume, dilation: i32, level: f64) -> Ends {
-        let is_away = |table: &Table| table.ends(volume, dilation, level) == Ends::Nowhere;
-        if is_away(&self.eye) && is_away(&self.lighting) { Ends::Nowhere } else { volume.ends_of_all() }
+        self.eye.ends(volume, dilation, level).max(self.lighting.ends(volume, dilation, level))
     }
 
     /// The cells of a light volume that a picture needs.
