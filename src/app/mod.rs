@@ -309,7 +309,7 @@ impl App {
     /// Editor and panels show the values that the picture does.
     fn follow_range(&mut self) {
         if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
-            && dataset.volume().shown_range() != facts.range
+            && dataset.volume().shown() != facts.shown
         {
             facts.follow(&dataset);
         }

@@ -49,25 +49,29 @@ pub struct Arrival {
 struct Rays<'a> {
     volume: &'a Volume,
     scene: SceneSpace,
+    /// Voxels are classified, and then what they are is mixed.
+    is_by_label: bool,
 }
 
 /// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
-    let range = settings.shown_range(&volume.ranges());
-    let volume = &volume.showing(range);
-    let rays = Rays { volume, scene: volume.scene() };
+    let volume = &volume.showing(settings.shown(&volume.ranges()));
+    let (settings, range) = (&*settings.as_drawn(volume), volume.table_range());
+    let is_by_label = volume.shown_labels().is_some();
+    let rays = Rays { volume, scene: volume.scene(), is_by_label };
     let scene = &rays.scene;
     let eye = settings.baked_eye(range, scene);
     let seen = settings.cuts.seen().region(scene);
     let point = rays.first_seen(&eye, &seen, origin, direction)?;
     let index = scene.index_from_scene.transform_point3(point);
     // As the file has it, beyond what is shown, too.
-    let value = rays.value(index);
+    let value = rays.value(index, &eye);
     let lighting = settings.baked_lighting(range, scene);
     let is_one_sided = settings.shading.sides == Sides::One;
     // Opacity falls towards high densities: into a solid, too, in which it rises.
-    let turned = if is_one_sided && eye.side(rays.density(index)) < 0.0 { -1.0 } else { 1.0 };
-    let normal = rays.gradient(point, &seen, turned).normalize_or_zero() * -turned;
+    let falls = is_one_sided && !is_by_label && eye.side(rays.field(index, &eye).0) < 0.0;
+    let turned = if falls { -1.0 } else { 1.0 };
+    let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
     let shading_cut = settings.cuts.shading().region(scene);
     let lights = settings
         .lights
@@ -101,7 +105,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         index,
         world_mm: volume.world_from_index().transform_point3(index),
         value,
-        opacity: settings.transfer.opacity_at(value),
+        opacity: settings.transfer.opacity_at(range.at(volume.density_of(value))),
         lights,
     })
 }
@@ -172,58 +176,98 @@ impl Rays<'_> {
 
     fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {
         let index = self.scene.index_from_scene.transform_point3(point);
-        let (density, there) = self.density_where_there(index);
+        if self.is_by_label {
+            let (extinction, there) = self.between_voxels(index, |value| self.voxel_extinction(table, value));
+            return extinction * there;
+        }
+        let (density, there) = self.field(index, table);
         table.sample(density)[3] * there
     }
 
-    /// The density between voxels, linearly; that of the border beyond it; 0 where no voxel nearby is there.
-    fn density(&self, index: DVec3) -> f64 {
-        self.density_where_there(index).0
+    /// The extinction of a voxel with that value.
+    fn voxel_extinction(&self, table: &BakedTransfer, value: f64) -> f64 {
+        table.sample(self.volume.density_of(value))[3]
     }
 
-    /// The density, and the share of the voxels nearby that are there.
-    fn density_where_there(&self, index: DVec3) -> (f64, f64) {
-        self.between_voxels(index, |value| self.volume.density_of(value))
+    /// What surfaces are found in, and the share of the voxels nearby that are there: the density between voxels, linearly;
+    /// that of the border beyond it; 0 where no voxel nearby is there. Among labels whether there is material.
+    fn field(&self, index: DVec3, table: &BakedTransfer) -> (f64, f64) {
+        self.between_voxels(index, |value| {
+            if self.is_by_label {
+                f64::from(u8::from(self.voxel_extinction(table, value) > 0.0))
+            } else {
+                self.volume.density_of(value)
+            }
+        })
     }
 
-    /// The value between voxels, linearly.
-    fn value(&self, index: DVec3) -> f64 {
-        self.between_voxels(index, |value| value).0
+    /// The value between voxels, linearly; of labels the one of which most is seen, or is there at all.
+    fn value(&self, index: DVec3, table: &BakedTransfer) -> f64 {
+        if !self.is_by_label {
+            return self.between_voxels(index, |value| value).0;
+        }
+        let dims = self.volume.dims();
+        // A voxel that is not seen counts where all around it are not seen either.
+        let seen = |value: f64| self.voxel_extinction(table, value).max(1e-12);
+        let mut parts: Vec<(f64, f64)> = Vec::new();
+        for (voxel, weight) in self.around(index) {
+            let [x, y, z] = voxel;
+            let value = self.volume.value(x, y, z);
+            if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
+                continue;
+            }
+            match parts.iter_mut().find(|(known, _)| *known == value) {
+                Some((_, sum)) => *sum += weight * seen(value),
+                None => parts.push((value, weight * seen(value))),
+            }
+        }
+        parts.into_iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0.0, |(value, _)| value)
     }
 
-    /// The mean of what the voxels around a point that are there are, by their weights, and the sum of these.
-    fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
+    fn is_missing(&self, voxel: usize) -> bool {
+        self.volume.missing().is_some_and(|missing: &Missing| missing.contains(voxel))
+    }
+
+    /// The voxels around a point, with their weights.
+    fn around(&self, index: DVec3) -> impl Iterator<Item = ([usize; 3], f64)> {
         let dims = self.volume.dims();
         let last = DVec3::from(dims.map(|n| (n - 1) as f64));
         let at = index.clamp(DVec3::ZERO, last);
         let low = at.floor();
         let f = at - low;
+        (0..8usize).map(move |side| {
+            let is_high = |axis: usize| side >> axis & 1 == 1;
+            let voxel =
+                [0, 1, 2].map(|axis| (low[axis] as usize + usize::from(is_high(axis))).min(dims[axis] - 1));
+            let weight = (0..3).map(|axis| if is_high(axis) { f[axis] } else { 1.0 - f[axis] }).product();
+            (voxel, weight)
+        })
+    }
+
+    /// The mean of what the voxels around a point that are there are, by their weights, and the sum of these.
+    fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
+        let dims = self.volume.dims();
         let (mut sum, mut there) = (0.0, 0.0);
-        for side in 0..8 {
-            let [x, y, z] =
-                [0, 1, 2].map(|axis| (low[axis] as usize + (side >> axis & 1)).min(dims[axis] - 1));
-            let is_missing = |missing: &Missing| missing.contains(x + dims[0] * (y + dims[1] * z));
-            if self.volume.missing().is_some_and(is_missing) {
+        for ([x, y, z], weight) in self.around(index) {
+            if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
                 continue;
             }
-            let weight: f64 =
-                (0..3).map(|axis| if side >> axis & 1 == 1 { f[axis] } else { 1.0 - f[axis] }).product();
             sum += weight * of(self.volume.value(x, y, z));
             there += weight;
         }
         if there > 0.0 { (sum / there, there) } else { (0.0, 0.0) }
     }
 
-    /// ∇ density in scene space, by central differences over a voxel, and `turned` times that of a solid of density 1
+    /// ∇ of the field in scene space, by central differences over a voxel, and `turned` times that of a solid of density 1
     /// which ends where voxels are missing, at the faces of the grid and where it is cut.
-    fn gradient(&self, point: DVec3, seen: &Region, turned: f64) -> DVec3 {
+    fn gradient(&self, point: DVec3, seen: &Region, turned: f64, table: &BakedTransfer) -> DVec3 {
         let edge = self.scene.smallest_edge();
         let seen = seen.within(&self.grid());
         let index_of = |point| self.scene.index_from_scene.transform_point3(point);
-        let here = self.density(index_of(point));
+        let here = self.field(index_of(point), table).0;
         let at = |offset: DVec3| {
             let index = index_of(point + offset * edge);
-            let (density, there) = self.density_where_there(index);
+            let (density, there) = self.field(index, table);
             if there > 0.0 && seen.contains(index) { density + turned * there } else { here }
         };
         DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)

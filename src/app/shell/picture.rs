@@ -76,13 +76,15 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
         return (canvas, Ok(()));
     };
+    let is_by_value = settings.labels.is_empty();
     orbit::navigate(
         ui,
         &response,
         settings,
         *selected_light,
         !(handles.takes_wheel || cut_handles.takes_wheel),
-        viewport.dataset().map(|dataset| dataset.volume().shown_range()),
+        // Labels have no window of values.
+        viewport.dataset().map(|dataset| dataset.volume().shown_range()).filter(|_| is_by_value),
     );
     if response.double_clicked()
         && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())

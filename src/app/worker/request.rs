@@ -99,6 +99,6 @@ mod tests {
         let both = FrameRequest::new(1, &dataset, Looks { left, right: Some(right) }, [8; 2]);
         let right_keys = both.right_keys.as_ref().expect("two looks");
         assert_eq!(both.left_keys.volume, right_keys.volume);
-        assert_eq!(both.left_keys.volume.shown, ValueRange::new(all.at(0.0), all.at(1.0)));
+        assert_eq!(both.left_keys.volume.shown, ValueRange::new(all.at(0.0), all.at(1.0)).into());
     }
 }

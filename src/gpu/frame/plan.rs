@@ -44,6 +44,9 @@ impl Renderer {
         request: Request,
         options: &RenderOptions,
     ) -> Result<Job<'_>, GpuError> {
+        // The passes need not know of labels: keys are the same.
+        let request =
+            Request { settings: request.settings.as_drawn(dataset.volume()).into_owned(), ..request };
         let mut keys = FrameKeys::of(&request, options);
         let lit = LitLights::of(&request.settings);
         let shape = shape(&request, options);
@@ -69,7 +72,7 @@ impl Renderer {
                     let presence = if known.is_complete() { known.value.volume.presence } else { None };
                     (Some(known.value.dataset), presence)
                 });
-                let known = known.filter(|known| known.volume().shown_range() == keys.volume.shown);
+                let known = known.filter(|known| known.volume().shown() == keys.volume.shown);
                 let dataset = known.unwrap_or_else(|| dataset.showing(keys.volume.shown));
                 let has_presence = presence.is_some();
                 let (context, settings) = (&self.tools.context, &request.settings);

@@ -59,6 +59,7 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
     } else {
         let mut thin = first.clone();
         scale_opacity(&mut thin.transfer, TRANSLUCENT);
+        thin.labels.for_each(|_, look| look.opacity *= TRANSLUCENT);
         all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
     }
     let lit = |rig: Rig| Settings { lights: rig.lights(&first.camera), ..first.clone() };
@@ -159,6 +160,7 @@ fn clay(first: &Settings) -> Settings {
     for point in &mut clay.transfer.points {
         point.color = CLAY;
     }
+    clay.labels.for_each(|_, look| look.color = CLAY);
     clay.shading.specular = 0.08;
     clay
 }

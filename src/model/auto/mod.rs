@@ -25,10 +25,10 @@ use self::domain::Domain;
 use self::object::Object;
 pub use self::visible::{densest, show_something};
 use super::{
-    Camera, Classification, DensityRange, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading,
-    Shadows, TransferFunction,
+    Camera, Classification, DensityRange, Kernel, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings,
+    Shading, Shadows, TransferFunction,
 };
-use crate::data::{DataKind, Histogram, KindName, Volume};
+use crate::data::{DataKind, Histogram, KindName, Shown, Volume};
 
 /// What a first look is to respect that the volume itself does not say.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -48,7 +48,7 @@ pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
 pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
     // Whatever was shown before.
     let robust = volume.ranges().robust;
-    if volume.shown_range() != robust {
+    if volume.shown() != Shown::Range(robust) {
         let volume = volume.showing(robust);
         return first_settings_with(&volume, &Histogram::of(&volume), wishes);
     }
@@ -58,6 +58,7 @@ pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishe
     let mut settings = Settings {
         camera: Camera { up, ..Camera::default() },
         transfer: found.transfer,
+        labels: found.labels,
         opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
         shading: shading(found.domain),
@@ -70,6 +71,8 @@ pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishe
         // Between two labels there is none of the numbers between them, and none of them is an outlier.
         settings.range = DensityRange::Full;
         settings.sampling.classification = Classification::Pre;
+        // Sharper than the B-spline, which would round off what voxels are.
+        (settings.sampling.kernel, settings.shadows.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
     }
     aim(&mut settings, volume);
     match kind {
@@ -149,7 +152,7 @@ pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<Ki
 
 /// The labels of a label map that settings do not show.
 pub fn labels_lost(settings: &Settings, volume: &Volume) -> usize {
-    transfer::lost_labels(&settings.transfer, volume)
+    transfer::lost_labels(settings, volume)
 }
 
 /// What of a histogram lies above a density.

@@ -58,6 +58,8 @@ impl LightKey {
             lights,
             // In the key of the volume.
             range: _,
+            // In those of the volume and of opacities.
+            labels: _,
             // In the key of opacities.
             transfer: _,
             lighting: _,
@@ -73,7 +75,7 @@ impl LightKey {
                     slabs: _,
                     quadrature: _,
                     gradients: _,
-                    classification,
+                    classification: _,
                     engine,
                     order: _,
                 },
@@ -125,7 +127,7 @@ impl LightKey {
             algorithm: *algorithm,
             // Rays need no sheets.
             classification: if *algorithm == ShadowAlgorithm::Splat {
-                *classification
+                request.settings.classification()
             } else {
                 Classification::Post
             },

@@ -17,7 +17,7 @@ pub(in crate::model::auto) fn start_of_object(volume: &Volume, histogram: &Histo
 pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
     let start = start_of_object(volume, histogram);
     let domain = Domain::of(volume, start);
-    Found { transfer: rising(volume, histogram, start, Palette::of(domain)), domain }
+    Found::of_values(rising(volume, histogram, start, Palette::of(domain)), domain)
 }
 
 /// Shows what begins at a density, in the colours of its field.
