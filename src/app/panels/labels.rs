@@ -52,8 +52,10 @@ fn listed<'a>(ui: &mut Ui, table: &LabelTable, all: &'a [LabelRow]) -> Vec<&'a L
     let mut filter = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     let words = text::labels::FILTER;
     let field = TextEdit::singleline(&mut filter).hint_text(text::labels::FILTER_HINT).char_limit(MAX_NAME);
-    let response = ui.name_inputs(words.name, |ui| ui.add(field.desired_width(ui.available_width() - 8.0)));
-    if response.has_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+    let response = ui.add(field.desired_width(ui.available_width() - 8.0));
+    name_text(&response, words.name);
+    // Which also takes the focus away.
+    if response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
         filter.clear();
     }
     response.on_hover_text(words.tip);
@@ -104,10 +106,8 @@ fn row(ui: &mut Ui, table: &mut LabelTable, label: &LabelRow) -> bool {
         let room = ui.available_width() - OPACITY_WIDTH - 3.0 * ui.spacing().item_spacing.x;
         let mut name = label.name(table);
         let field = TextEdit::singleline(&mut name).char_limit(MAX_NAME).hint_text(text::labels::NAME_HINT);
-        let words = text::labels::name(number);
-        let response = ui.name_inputs(words, |ui| {
-            ui.add_enabled(has_own_look, field.desired_width((room - 8.0).max(30.0)))
-        });
+        let response = ui.add_enabled(has_own_look, field.desired_width((room - 8.0).max(30.0)));
+        name_text(&response, &text::labels::name(number));
         if response.changed() {
             look.name = name;
         }
@@ -120,6 +120,12 @@ fn row(ui: &mut Ui, table: &mut LabelTable, label: &LabelRow) -> bool {
         *table.entry(label.stands_for) = look;
     }
     only
+}
+
+/// What screen readers call a field of text, instead of what stands in it while it is empty.
+fn name_text(field: &egui::Response, name: &str) {
+    let is_enabled = field.enabled();
+    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, is_enabled, name));
 }
 
 /// Shows or hides a label. What looks so already needs no entry.

@@ -47,11 +47,12 @@ impl App {
         self.settings = look;
     }
 
-    /// The automatic transfer function, for the kind of data that is shown.
+    /// The automatic transfer function, or table of labels, for the kind of data that is shown.
     pub(super) fn use_automatic_transfer(&mut self) {
         let kind = self.treated.shown(&self.settings);
         if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) {
             self.settings.transfer = auto::transfer_as(dataset.volume(), &facts.histogram, kind);
+            self.settings.labels = auto::labels_as(dataset.volume(), kind);
         }
     }
 }

@@ -14,8 +14,9 @@ const MOST_LABELS: usize = 1 << 16;
 /// Whole numbers beyond this are none that count things.
 const LARGEST_NUMBER: f64 = (1u64 << 32) as f64;
 
-/// Classes that densities tell apart at most. Tables of looks have 1024 entries, and what is looked up between two of
-/// them is mixed. With 256 classes entries of a class begin at most 1023/255/2 = 2.006 entries from its density, and a
+/// Classes that densities tell apart at most.
+///
+/// Tables of looks have 1024 entries, and what is looked up between two of them is mixed. With 256 classes entries of a class begin at most 1023/255/2 = 2.006 entries from its density, and a
 /// look-up reaches less than one: so densities may be wrong by 1.006/1023 = 9.8e-4. As 16-bit floats they are by half
 /// of 2^-11, which is 2.4e-4, as 16-bit shares by 7.6e-6. With 512 classes floats would mix neighbours.
 pub const MAX_CLASSES: usize = 256;
@@ -29,7 +30,9 @@ pub struct CountedLabel {
     pub voxels: u64,
 }
 
-/// The labels of a volume, at least two. Each belongs to a class, which decides what it looks like: up to
+/// The labels of a volume, at least two.
+///
+/// Each belongs to a class, which decides what it looks like: up to
 /// [`MAX_CLASSES`] labels have classes of their own, in the order of their numbers. Of more of them, 0 (or the lowest,
 /// where no voxel has 0), which is what is around, has a class of its own, and the others take turns.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -159,7 +159,7 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Hints, Meaning};
+    use crate::data::{Hints, Meaning, Missing};
 
     #[test]
     fn blocks_become_their_means_where_they_were() {
@@ -189,7 +189,7 @@ mod tests {
         let half = padded.reduced([2, 1, 1]).unwrap();
         // The first mean is −5, and −5.5 rounds to −6; the third block is missing, and so is half of the last.
         assert_eq!([0, 1, 2, 3].map(|x| half.value(x, 0, 0)), [-4.0, -6.0, -5.0, 7.0]);
-        assert_eq!(half.missing().map(|missing| missing.count()), Some(1));
+        assert_eq!(half.missing().map(Missing::count), Some(1));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Planning a picture: compares what it needs with what is there, and lists the steps that make the difference.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use super::job::Job;
@@ -41,12 +42,17 @@ impl Renderer {
     pub fn begin(
         &mut self,
         dataset: &Dataset,
-        request: Request,
+        mut request: Request,
         options: &RenderOptions,
     ) -> Result<Job<'_>, GpuError> {
         // The passes need not know of labels: keys are the same.
-        let request =
-            Request { settings: request.settings.as_drawn(dataset.volume()).into_owned(), ..request };
+        let drawn = match request.settings.as_drawn(dataset.volume()) {
+            Cow::Owned(drawn) => Some(drawn),
+            Cow::Borrowed(_) => None,
+        };
+        if let Some(drawn) = drawn {
+            request.settings = drawn;
+        }
         let mut keys = FrameKeys::of(&request, options);
         let lit = LitLights::of(&request.settings);
         let shape = shape(&request, options);

@@ -25,8 +25,8 @@ use self::domain::Domain;
 use self::object::Object;
 pub use self::visible::{densest, show_something};
 use super::{
-    Camera, Classification, DensityRange, Kernel, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings,
-    Shading, Shadows, TransferFunction,
+    Camera, Classification, DensityRange, Kernel, LabelTable, Length, ObjectTurn, Quality, Rig, SceneAxis,
+    Settings, Shading, Shadows, TransferFunction,
 };
 use crate::data::{DataKind, Histogram, KindName, Shown, Volume};
 
@@ -148,6 +148,15 @@ fn ramp(volume: &Volume, histogram: &Histogram, start: f64) -> TransferFunction 
 /// A transfer function as if the volume held data of that kind; of its own where none is named.
 pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> TransferFunction {
     transfer::find(volume, histogram, kind_of(volume, treated_as)).transfer
+}
+
+/// A table of labels as if the volume held data of that kind; of its own where none is named. Empty of all but label
+/// maps.
+pub fn labels_as(volume: &Volume, treated_as: Option<KindName>) -> LabelTable {
+    match kind_of(volume, treated_as) {
+        DataKind::LabelMap { .. } => transfer::label_table(volume),
+        _ => LabelTable::default(),
+    }
 }
 
 /// The labels of a label map that settings do not show.

@@ -54,8 +54,9 @@ struct Named {
     visible: Option<bool>,
 }
 
-/// Looks by the number that voxels hold, at most [`MAX_POINTS`]; labels without an entry look like
-/// [`LabelLook::of`]. In JSON an object with the numbers as keys; an entry need not name all of a look. Copies share
+/// Looks by the number that voxels hold, at most [`MAX_POINTS`]; labels without an entry look like [`LabelLook::of`].
+///
+/// In JSON an object with the numbers as keys; an entry need not name all of a look. Copies share
 /// the entries.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(from = "Option<BTreeMap<i64, Named>>", into = "BTreeMap<i64, LabelLook>")]
@@ -129,7 +130,9 @@ impl LabelTable {
 
     /// Changes every entry.
     pub fn for_each(&mut self, change: impl Fn(i64, &mut LabelLook)) {
-        Arc::make_mut(&mut self.0).iter_mut().for_each(|(&number, look)| change(number, look));
+        for (&number, look) in Arc::make_mut(&mut self.0).iter_mut() {
+            change(number, look);
+        }
     }
 
     /// The table without what labels are called.
@@ -321,6 +324,7 @@ mod tests {
         }
         assert_eq!(settings.classification(), Classification::Pre);
         assert_eq!(drawn.sampling.classification, Classification::Pre);
+        assert_eq!(settings.over(crate::data::ValueRange::new(-5.0, 5.0), &volume.ranges()), settings);
         // Once drawn, it stays as it is.
         assert_eq!(drawn.as_drawn(&volume), drawn);
     }

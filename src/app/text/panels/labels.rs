@@ -15,10 +15,8 @@ pub(crate) const NAME_HINT: &str = "unnamed";
 
 /// In place of the curve.
 pub(crate) const INSTEAD: &str = "Labels have a table of looks instead of a curve: see Labels in the panel";
-pub(crate) const USE_CURVE: Named = named(
-    "Use a curve",
-    "Shows numbers as values, by a curve; Treat as › Label map, under Data, brings the table back",
-);
+pub(crate) const USE_CURVE: Named =
+    named("Use a curve", "Shows numbers as values, by a curve; Automatic brings the table back");
 
 /// What screen readers call the parts of a row.
 pub(crate) fn visible(number: i64) -> String {

@@ -33,7 +33,7 @@ pub(super) fn transfer(volume: &Volume) -> TransferFunction {
 }
 
 /// A look for each label that stands for a class; empty where values are no labels.
-pub(super) fn table(volume: &Volume) -> LabelTable {
+pub(in crate::model::auto) fn table(volume: &Volume) -> LabelTable {
     let Some(labels) = volume.labels() else { return LabelTable::default() };
     let numbers = (0..labels.class_count()).map(|class| labels.first_of_class(class).number);
     numbers.map(|number| (number, look(volume, number))).collect()

@@ -14,7 +14,7 @@ use super::palette::Palette;
 use crate::data::{DataKind, Histogram, Volume};
 use crate::model::{ControlPoint, Interpolation, LabelTable, Mixing, TransferFunction};
 
-pub(super) use self::labels::lost_labels;
+pub(super) use self::labels::{lost_labels, table as label_table};
 
 /// What is shown of a volume, and what it is.
 pub(super) struct Found {
