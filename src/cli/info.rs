@@ -9,7 +9,7 @@ use super::CliError;
 use super::outputs::print_line;
 use super::scene::LoadArgs;
 use crate::data::load::LoadControl;
-use crate::data::{DataKind, Dataset, Hints, ValueRange, open};
+use crate::data::{CountedLabel, DataKind, Dataset, Hints, ValueRange, Volume, open};
 use crate::gpu::small_volume;
 use crate::model::auto;
 
@@ -17,7 +17,7 @@ use crate::model::auto;
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
 
 /// Labels that are listed for people; machines get all.
-const LISTED_LABELS: usize = 12;
+const LISTED_LABELS: usize = 20;
 
 /// Arguments of `info`.
 #[derive(Debug, Args)]
@@ -54,6 +54,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "kind": kind(&volume.kind().kind),
         "kind_why": volume.kind().why,
         "hints": hints(volume.hints()),
+        "labels": labels(&volume).iter().map(LabelFacts::json).collect::<Vec<_>>(),
         "percentiles": percentiles,
         "cpu_bytes": voxels * volume.samples().voxel_type().bytes() as u64,
         "gpu_bytes_with_one_light": gpu_bytes,
@@ -74,6 +75,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  percentiles  {}", listed.join(", ")))?;
     print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().why))?;
     for line in hint_lines(volume.hints()) {
+        print_line(&line)?;
+    }
+    for line in label_lines(&volume) {
         print_line(&line)?;
     }
     if volume.non_finite_voxels() > 0 {
@@ -127,13 +131,46 @@ fn hint_lines(hints: &Hints) -> Vec<String> {
     add("rescaled", hints.is_rescaled.then_some("yes"));
     add("padding", hints.padding.map(|value| value.to_string()).as_deref());
     add("acquisition", hints.acquisition());
-    for (number, label) in hints.labels.iter().take(LISTED_LABELS) {
-        add("label", Some(&format!("{number}: {}", label.name)));
-    }
-    if hints.labels.len() > LISTED_LABELS {
-        add("label", Some(&format!("and {} more", hints.labels.len() - LISTED_LABELS)));
-    }
     lines
+}
+
+/// A label of a label map.
+struct LabelFacts {
+    number: i64,
+    /// What the file calls it; empty if it does not say.
+    name: String,
+    voxels: u64,
+}
+
+impl LabelFacts {
+    fn json(&self) -> Value {
+        json!({ "number": self.number, "name": self.name, "voxels": self.voxels })
+    }
+
+    fn line(&self) -> String {
+        let name = if self.name.is_empty() { "" } else { &format!(": {}", self.name) };
+        format!("  label        {}{name}, {} voxels", self.number, self.voxels)
+    }
+}
+
+/// The labels of a label map; of other data none.
+fn labels(volume: &Volume) -> Vec<LabelFacts> {
+    let is_label_map = matches!(volume.kind().kind, DataKind::LabelMap { .. });
+    let counted = volume.labels().filter(|_| is_label_map).map_or(&[][..], |labels| labels.labels());
+    let facts = |label: &CountedLabel| LabelFacts {
+        number: label.number,
+        name: volume.hints().labels.get(label.number).map_or_else(String::new, |known| known.name.clone()),
+        voxels: label.voxels,
+    };
+    counted.iter().map(facts).collect()
+}
+
+/// The labels of a label map, for people.
+fn label_lines(volume: &Volume) -> Vec<String> {
+    let all = labels(volume);
+    let more = all.len().saturating_sub(LISTED_LABELS);
+    let rest = (more > 0).then(|| format!("  label        and {more} more"));
+    all.iter().take(LISTED_LABELS).map(LabelFacts::line).chain(rest).collect()
 }
 
 /// The looks that are proposed, for `--look`.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Bricks, Histogram, ValueRange, Volume};
+use super::{Bricks, Histogram, Shown, Volume};
 
 /// A volume with the bounds of its bricks and its histogram, which are made from it and cannot be mixed up with
 /// those of another. Copies share the voxels.
@@ -21,10 +21,11 @@ impl Dataset {
         Self { volume, bricks, histogram }
     }
 
-    /// The same voxels with other values at densities 0 and 1, and bounds and histogram of these densities.
+    /// The same voxels with densities that stand for something else, and bounds and histogram of these densities.
     #[must_use]
-    pub fn showing(&self, range: ValueRange) -> Self {
-        if range == self.volume.shown_range() { self.clone() } else { Self::new(self.volume.showing(range)) }
+    pub fn showing(&self, shown: impl Into<Shown>) -> Self {
+        let shown = shown.into();
+        if shown == self.volume.shown() { self.clone() } else { Self::new(self.volume.showing(shown)) }
     }
 
     /// The voxels.

@@ -28,4 +28,7 @@ pub use small_file::read_small;
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{Samples, VoxelType};
-pub use volume::{DataKind, KindFound, KindName, Missing, Volume, VolumeError, VolumeId, reduced_dims};
+pub use volume::{
+    CountedLabel, DataKind, KindFound, KindName, LabelSet, MAX_CLASSES, Missing, Shown, Volume, VolumeError,
+    VolumeId, reduced_dims,
+};

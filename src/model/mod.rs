@@ -18,6 +18,7 @@ mod variant;
 pub use self::settings::camera::{Camera, FRAME_ASPECT, Fit, Projection};
 pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
 pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
+pub use self::settings::labels::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::length::Length;
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, SceneLight};
 pub use self::settings::quality::Quality;
@@ -40,8 +41,11 @@ pub use self::stored::preset::{apply_json, apply_path, assign, load_json, to_jso
 pub use self::stored::preset_error::PresetError;
 pub use self::stored::record::{PictureRecord, Record, VolumeRecord};
 pub use self::transfer::baked::BakedTransfer;
+pub use self::transfer::categories::category;
 pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
-pub use self::transfer::oklab::{lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear};
+pub use self::transfer::oklab::{
+    lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear, srgb_from_lch,
+};
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
 pub use light_place::LightPlace;

@@ -1,7 +1,7 @@
 //! What is asked of the renderer: which volume, which look, how large, and how it is to be computed.
 
 use super::PixelWindow;
-use crate::data::{ValueRange, VolumeId};
+use crate::data::{Shown, VolumeId};
 use crate::model::{Depth, ImageSpec, Resolution, Settings};
 
 /// A picture to be made: of which volume, how, and how large.
@@ -22,15 +22,15 @@ pub struct Request {
 pub struct VolumeKey {
     /// `Volume::content_id`.
     pub content_id: u64,
-    /// The values that have densities from 0 to 1.
-    pub shown: ValueRange,
+    /// What densities from 0 to 1 stand for.
+    pub shown: Shown,
 }
 
 impl Request {
     /// The volume as this picture shows it.
     pub fn shown_volume(&self) -> VolumeKey {
         let VolumeId { content_id, ranges } = self.volume;
-        VolumeKey { content_id, shown: self.settings.shown_range(&ranges) }
+        VolumeKey { content_id, shown: self.settings.shown(&ranges) }
     }
 }
 

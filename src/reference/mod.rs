@@ -113,10 +113,10 @@ pub struct Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    /// A reference for a volume with some settings.
+    /// A reference for a volume with some settings; of labels, settings [as drawn](Settings::as_drawn).
     pub fn new(volume: &Volume, settings: &'a Settings, options: Options) -> Self {
-        let range = settings.shown_range(&volume.ranges());
-        let volume = &volume.showing(range);
+        let volume = &volume.showing(settings.shown(&volume.ranges()));
+        let range = volume.table_range();
         let field = Field::with_rounding(volume, options.rounding.unwrap_or(|density| density));
         let pyramid = Pyramid::of(&field, kernel_width(options.fault), options.rounding);
         // Stored in eight bits.

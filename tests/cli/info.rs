@@ -42,14 +42,71 @@ fn info_says_what_kind_of_data_it_is_and_what_the_file_says_of_it() {
     );
     assert_eq!(hints["padding"], 7.0);
     assert_eq!(hints["labels"][0]["name"], "a ·b");
+    let labels = serde_json::json!([
+        { "number": 0, "name": "", "voxels": 3 }, { "number": 3, "name": "a ·b", "voxels": 4 },
+    ]);
+    assert_eq!(facts["labels"], labels);
     let text = folder.succeed("info s.nrrd");
-    for line in ["kind         labels: ", "modality     ct", "label        3: a ·b", "padding      7"] {
+    for line in
+        ["kind         labels: ", "modality     ct", "label        3: a ·b, 4 voxels", "padding      7"]
+    {
         assert!(text.contains(line), "{line:?} is not in {text}");
     }
     let ball: Value =
         serde_json::from_str(&folder.succeed("info builtin:sphere:24 --json")).expect("valid JSON");
-    assert_eq!(ball["kind"]["name"], "scalar");
+    assert_eq!((&ball["kind"]["name"], &ball["labels"]), (&"scalar".into(), &serde_json::json!([])));
     assert_eq!(ball["hints"]["modality"], Value::Null);
+}
+
+/// A label map of slabs along x, with so many voxels along each edge: labels 0, 3, 9, 200 and so on.
+fn slabs(folder: &Folder, name: &str, labels: &[u8]) {
+    let n = 16;
+    let header = format!(
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {n} {n} {n}\nencoding: raw\nmodality:=SEG\n\
+         Segment0_Name:=Lung\nSegment0_LabelValue:=9\n\n"
+    );
+    let voxels = (0..n * n * n).map(|at| labels[at % n * labels.len() / n]);
+    let file: Vec<u8> = header.bytes().chain(voxels).collect();
+    std::fs::write(folder.path(name), file).expect("a file");
+}
+
+#[test]
+fn many_labels_are_cut_short_for_people() {
+    let folder = Folder::new();
+    let text_of = |count: u8| {
+        let header = format!(
+            "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {count} 2 2\nencoding: raw\n\
+             Segment0_Name:=a\nSegment0_LabelValue:=1\n\n"
+        );
+        let voxels = (0..4).flat_map(|_| 0..count);
+        std::fs::write(folder.path("m.nrrd"), header.bytes().chain(voxels).collect::<Vec<_>>())
+            .expect("a file");
+        folder.succeed("info m.nrrd")
+    };
+    let listed = |text: &str| text.lines().filter(|line| line.starts_with("  label ")).count();
+    let text = text_of(20);
+    assert!(listed(&text) == 20 && !text.contains(" more"), "{text}");
+    let text = text_of(90);
+    assert!(listed(&text) == 21 && text.contains("label        and 70 more"), "{text}");
+}
+
+#[test]
+fn labels_are_set_by_their_numbers() {
+    let folder = Folder::new();
+    slabs(&folder, "l.nrrd", &[0, 3, 9, 200]);
+    let render = |arguments: &str| {
+        folder.succeed(&format!("render l.nrrd --size 64x48 -o p.png --report r.json {arguments}"));
+        (folder.read("p.png"), folder.json("r.json")["settings"]["labels"].clone())
+    };
+    let (first, labels) = render("");
+    assert_eq!(labels.as_object().expect("an object").len(), 4);
+    assert_eq!((&labels["9"]["name"], &labels["9"]["visible"]), (&"Lung".into(), &true.into()));
+    assert_eq!(labels["0"]["visible"], false);
+    let (hidden, labels) = render("--set labels.9.visible=false");
+    assert_eq!((&labels["9"]["name"], &labels["9"]["visible"]), (&"Lung".into(), &false.into()));
+    assert!(hidden != first);
+    // As another kind of data there is no table.
+    assert_eq!(render("--as scalar").1, serde_json::json!({}));
 }
 
 const RENDER: &str = "render builtin:chair:24 --size 64x48 -o p.png --report r.json";

@@ -4,8 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::worker::loader::Reading;
-use crate::data::{DataKind, Dataset, Histogram, ValueRange, ValueRanges, VoxelType};
+use crate::data::{
+    CountedLabel, DataKind, Dataset, Histogram, Shown, ValueRange, ValueRanges, Volume, VoxelType,
+};
 use crate::math::SceneSpace;
+use crate::model::{LabelTable, Settings};
 
 /// Facts about a volume; all of them fixed, but for what of its values is shown.
 #[derive(Debug, Clone)]
@@ -26,7 +29,9 @@ pub(crate) struct VolumeFacts {
     pub spacing_mm: [f64; 3],
     /// All values of the file, and those that matter.
     pub ranges: ValueRanges,
-    /// The values that the picture shows, which the histogram counts.
+    /// What densities stand for in the picture and in the histogram.
+    pub shown: Shown,
+    /// The values that the picture shows.
     pub range: ValueRange,
     /// How many different values there can be, for integers.
     pub levels: Option<usize>,
@@ -40,6 +45,8 @@ pub(crate) struct VolumeFacts {
     pub kind: DataKind,
     /// Whether +x, +y and +z are a body's right, front and head.
     pub is_anatomical: bool,
+    /// The labels of a label map, by number; of other data none.
+    pub labels: Arc<[LabelRow]>,
     /// How often each value occurs.
     pub histogram: Arc<Histogram>,
 }
@@ -47,6 +54,42 @@ pub(crate) struct VolumeFacts {
 /// How many whole numbers there are from one end of a range to the other, however far apart somebody has typed them.
 fn levels_in(range: ValueRange) -> usize {
     (range.span() as usize).saturating_add(1)
+}
+
+/// A label of the volume.
+#[derive(Debug, Clone)]
+pub(crate) struct LabelRow {
+    /// What voxels hold.
+    pub number: i64,
+    /// The number whose look it has: its own, unless there are more labels than looks.
+    pub stands_for: i64,
+    /// How many voxels hold it.
+    pub voxels: u64,
+    /// What the file calls it; empty if it does not say.
+    in_file: String,
+}
+
+impl LabelRow {
+    /// What a label is called: in the table, or else in the file.
+    pub(crate) fn name(&self, table: &LabelTable) -> String {
+        let own = table.get(self.number).map_or("", |look| &look.name);
+        if own.is_empty() { self.in_file.clone() } else { own.to_owned() }
+    }
+
+    /// The labels of a volume that are known, or that it shows.
+    fn all_of(volume: &Volume) -> Arc<[Self]> {
+        let is_known = matches!(volume.kind().kind, DataKind::LabelMap { .. });
+        let Some(labels) = (if is_known { volume.labels() } else { volume.shown_labels() }) else {
+            return Arc::default();
+        };
+        let row = |label: &CountedLabel| Self {
+            number: label.number,
+            stands_for: labels.standing_for(label.number),
+            voxels: label.voxels,
+            in_file: volume.hints().labels.get(label.number).map_or_else(String::new, |own| own.name.clone()),
+        };
+        labels.labels().iter().map(row).collect()
+    }
 }
 
 impl VolumeFacts {
@@ -65,6 +108,7 @@ impl VolumeFacts {
             voxel_type: voxel_type.name(),
             spacing_mm: volume.spacing_mm().into(),
             ranges: volume.ranges(),
+            shown: volume.shown(),
             range,
             levels: whole.then(|| levels_in(range)),
             non_finite_voxels: volume.non_finite_voxels(),
@@ -72,8 +116,14 @@ impl VolumeFacts {
             scene: volume.scene(),
             kind: volume.kind().kind,
             is_anatomical: volume.is_anatomical(),
+            labels: LabelRow::all_of(volume),
             histogram: Arc::clone(dataset.histogram()),
         }
+    }
+
+    /// Whether pictures with these settings show labels, which have looks by their numbers.
+    pub(crate) fn is_shown_by_label(&self, settings: &Settings) -> bool {
+        !settings.labels.is_empty() && !self.labels.is_empty()
     }
 
     /// Takes over what of the values is shown from now on.

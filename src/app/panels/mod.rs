@@ -6,6 +6,7 @@ pub(super) mod controls;
 mod cuts;
 mod data;
 mod floor;
+mod labels;
 mod lights;
 mod range;
 mod sampling;
@@ -50,6 +51,9 @@ pub(super) struct Panels<'a> {
 pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
+        if panels.volume.is_some_and(|volume| volume.is_shown_by_label(panels.settings)) {
+            controls::section(ui, text::sections::LABELS, true, |ui| labels::show(ui, panels));
+        }
         controls::section(ui, text::sections::LIGHTS, true, |ui| lights::show(ui, panels));
         controls::section(ui, text::sections::SHADOWS, true, |ui| shadows::show(ui, panels));
         controls::section(ui, text::sections::SHADING, false, |ui| shading::show(ui, panels));

@@ -16,7 +16,7 @@ use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
 use crate::gpu::GpuError;
-use crate::model::{COLOR_MAPS, Camera, Settings};
+use crate::model::{COLOR_MAPS, Camera, LabelTable, Settings};
 
 impl App {
     /// Does what the user asked for.
@@ -240,7 +240,9 @@ impl App {
             self.chosen(purpose, &path, ctx);
         }
         let volume = self.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
-        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), &self.settings.transfer);
+        let drawn = volume.as_ref().filter(|_| self.slices.open).map(|volume| self.settings.as_drawn(volume));
+        let transfer = drawn.as_ref().map_or(&self.settings.transfer, |drawn| &drawn.transfer);
+        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), transfer);
         let scene = light_slice::Scene {
             settings: &self.settings,
             dataset: self.viewport.dataset(),
@@ -281,7 +283,10 @@ impl App {
             Purpose::LoadSettings => self.load_settings(path),
             Purpose::ImportTransfer => {
                 match files::import_transfer(path, &self.settings, &self.value_ranges()) {
-                    Ok(function) => self.settings.transfer = function,
+                    Ok(function) => {
+                        self.settings.transfer = function;
+                        self.settings.labels = LabelTable::default();
+                    }
                     Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
                 }
             }

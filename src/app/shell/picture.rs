@@ -77,13 +77,15 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
         return (canvas, Ok(()));
     };
+    let is_by_value = settings.labels.is_empty();
     orbit::navigate(
         ui,
         &response,
         settings,
         *selected_light,
         !(handles.takes_wheel || cut_handles.takes_wheel),
-        viewport.dataset().map(|dataset| dataset.volume().shown_range()),
+        // Labels have no window of values.
+        viewport.dataset().map(|dataset| dataset.volume().shown_range()).filter(|_| is_by_value),
     );
     if response.double_clicked()
         && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
@@ -168,7 +170,7 @@ impl App {
     /// Editor and panels show the values that the picture does.
     fn follow_range(&mut self) {
         if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
-            && dataset.volume().shown_range() != facts.range
+            && dataset.volume().shown() != facts.shown
         {
             facts.follow(&dataset);
         }

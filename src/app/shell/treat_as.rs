@@ -9,15 +9,15 @@ use super::first_lights::FirstLights;
 use crate::app::worker::task::Work;
 use crate::app::{App, text};
 use crate::data::KindName;
-use crate::model::{Settings, TransferFunction, auto};
+use crate::model::{LabelTable, Settings, TransferFunction, auto};
 
 /// Something that was made of all voxels.
 #[derive(Debug)]
 enum Made {
     /// A first look, for data of a kind.
     Look(Option<KindName>, Box<Settings>),
-    /// A transfer function.
-    Transfer(TransferFunction),
+    /// A transfer function, or a table of labels.
+    Transfer(TransferFunction, LabelTable),
 }
 
 /// Which kind of data the volume is treated as, and the first looks for other kinds.
@@ -65,11 +65,14 @@ impl App {
         self.make(task, ctx);
     }
 
-    /// Makes the automatic transfer function, for the kind of data that is shown.
+    /// Makes the automatic transfer function, or table of labels, for the kind of data that is shown.
     pub(super) fn use_automatic_transfer(&mut self, ctx: &egui::Context) {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
         let (histogram, kind) = (Arc::clone(&facts.histogram), self.treated.kind);
-        let task = move || Made::Transfer(auto::transfer_as(dataset.volume(), &histogram, kind));
+        let task = move || {
+            let volume = dataset.volume();
+            Made::Transfer(auto::transfer_as(volume, &histogram, kind), auto::labels_as(volume, kind))
+        };
         self.make(task, ctx);
     }
 
@@ -87,7 +90,9 @@ impl App {
         self.treated.making = None;
         match made {
             Ok(Made::Look(kind, look)) => self.use_first_look(kind, *look, ctx),
-            Ok(Made::Transfer(transfer)) => self.settings.transfer = transfer,
+            Ok(Made::Transfer(transfer, labels)) => {
+                (self.settings.transfer, self.settings.labels) = (transfer, labels);
+            }
             Err(panic) => self.messages.error(text::messages::LOOK_NOT_MADE, panic),
         }
     }

@@ -12,7 +12,9 @@ mod viewport;
 mod windows;
 pub(super) mod work;
 
-pub(super) use self::panels::{camera, cuts, data, floor, lights, sampling, sections, shading, shadows};
+pub(super) use self::panels::{
+    camera, cuts, data, floor, labels, lights, sampling, sections, shading, shadows,
+};
 pub(super) use self::shell::{commands, memory, menu, messages, opening, status};
 pub(super) use self::viewport::{compared, cut_handles, overlay, picture, probe};
 pub(super) use self::windows::{contact_sheet, export, files, foreign_path, help, light_volume, raw, slices};

@@ -22,7 +22,7 @@ use super::common::volume_facts::VolumeFacts;
 use super::text;
 use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
-use crate::model::{Settings, TransferFunction};
+use crate::model::{LabelTable, Settings, TransferFunction};
 
 /// Which curve is edited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,6 +47,15 @@ pub(super) struct TransferEditor {
     zoom: Zoom,
     span: Span,
     backdrop: Backdrop,
+}
+
+/// What stands where the curve would, if labels have looks.
+fn instead_of_labels(ui: &mut Ui, settings: &mut Settings) {
+    ui.label(text::labels::INSTEAD);
+    let curve = text::labels::USE_CURVE;
+    if ui.button(curve.name).on_hover_text(curve.tip).clicked() {
+        settings.labels = LabelTable::default();
+    }
 }
 
 impl TransferEditor {
@@ -81,6 +90,9 @@ impl TransferEditor {
         marked: Option<f64>,
         commands: &mut Vec<Command>,
     ) {
+        if volume.is_shown_by_label(settings) {
+            return instead_of_labels(ui, settings);
+        }
         if settings.lighting.linked {
             self.curve = Curve::Eye;
         }

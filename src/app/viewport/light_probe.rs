@@ -41,7 +41,8 @@ impl LightProbe {
         if let Some(found) = found {
             rays(&painter, picture, settings, found);
         }
-        let words = found.map_or_else(|| text::probe::NOTHING.to_owned(), |found| answer(settings, found));
+        let words =
+            found.map_or_else(|| text::probe::NOTHING.to_owned(), |found| answer(settings, volume, found));
         // In a corner of its own, so that it does not hide what it speaks of.
         let galley = painter.layout(
             words,
@@ -75,9 +76,17 @@ pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: P
 }
 
 /// The answer in words and numbers.
-fn answer(settings: &Settings, found: &Probe) -> String {
+fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     let (voxel, mm) = (found.index.to_array(), found.world_mm.to_array());
-    let mut words = text::probe::found(found.value, found.opacity, voxel, mm);
+    let mut words = if settings.labels.is_empty() || volume.labels().is_none() {
+        text::probe::found(found.value, found.opacity, voxel, mm)
+    } else {
+        let number = found.value as i64;
+        let named =
+            settings.labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
+        let in_file = volume.hints().labels.get(number).map(|label| label.name.as_str());
+        text::probe::found_label(number, named.or(in_file).unwrap_or_default(), found.opacity, voxel, mm)
+    };
     for (light, arrival) in settings.lights.iter().zip(&found.lights) {
         words.push('\n');
         words.push_str(&text::probe::of_light(&light.name, &reason(light, arrival)));

@@ -37,6 +37,7 @@ pub(crate) fn show(
         if ui.add(egui::Button::new(reset.name)).on_hover_text(reset.tip).clicked() {
             settings.range = defaults.range;
             settings.transfer = defaults.transfer.clone();
+            settings.labels = defaults.labels.clone();
             settings.lighting = defaults.lighting.clone();
             settings.opacity_unit = defaults.opacity_unit;
         }

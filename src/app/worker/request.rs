@@ -1,6 +1,6 @@
 //! What the window asks of the thread that renders its pictures.
 
-use crate::data::{Dataset, ValueRange, ValueRanges};
+use crate::data::{Dataset, Shown, ValueRange, ValueRanges};
 use crate::gpu::{RenderOptions, Renderer};
 use crate::model::Settings;
 use crate::plan::{FrameKeys, Request};
@@ -18,8 +18,10 @@ impl Looks {
     /// Two looks with densities for the values of both: the volume is uploaded for a range, and would be for each of
     /// the two in each picture.
     fn over_one_range(self, ranges: &ValueRanges) -> Self {
-        let Some(right) = self.right else { return self };
-        let [a, b] = [&self.left, &right].map(|look| look.shown_range(ranges));
+        let Some(right) = &self.right else { return self };
+        let (Shown::Range(a), Shown::Range(b)) = (self.left.shown(ranges), right.shown(ranges)) else {
+            return self;
+        };
         let both = ValueRange::new(a.low.min(b.low), a.high.max(b.high));
         Self { left: self.left.over(both, ranges), right: Some(right.over(both, ranges)) }
     }
@@ -99,6 +101,6 @@ mod tests {
         let both = FrameRequest::new(1, &dataset, Looks { left, right: Some(right) }, [8; 2]);
         let right_keys = both.right_keys.as_ref().expect("two looks");
         assert_eq!(both.left_keys.volume, right_keys.volume);
-        assert_eq!(both.left_keys.volume.shown, ValueRange::new(all.at(0.0), all.at(1.0)));
+        assert_eq!(both.left_keys.volume.shown, ValueRange::new(all.at(0.0), all.at(1.0)).into());
     }
 }

@@ -113,6 +113,18 @@ impl Samples {
         with_samples!(self, values => values[voxel] as f64)
     }
 
+    /// The values of some voxels.
+    pub(in crate::data) fn picked(&self, voxels: &[usize]) -> Self {
+        macro_rules! picked {
+            ($($variant:ident),+) => {
+                match self {
+                    $(Self::$variant(values) => Self::$variant(voxels.iter().map(|&voxel| values[voxel]).collect()),)+
+                }
+            };
+        }
+        picked!(U8, I8, U16, I16, U32, I32, F32, F64)
+    }
+
     /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
     pub(in crate::data) fn finite_range(&self) -> Option<(ValueRange, usize)> {
         self.range_without(f64::NAN)

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
-use super::{Samples, Volume, VolumeError};
+use super::{Samples, Shown, Volume, VolumeError};
 use crate::data::ValueRanges;
 
 /// Which voxels of a grid hold nothing, and what stands in for them.
@@ -130,7 +130,8 @@ impl Volume {
         self.content_id = self.content_id.rotate_left(9) ^ padding_value.to_bits();
         self.padding_value = Some(padding_value);
         self.ranges = ValueRanges::without(&self.samples, value_range, padding_value);
-        self.shown_range = self.ranges.robust;
+        self.shown = Shown::Range(self.ranges.robust);
+        self.labels = OnceLock::new();
         self.kind = OnceLock::new();
         Ok(self.with_missing())
     }

@@ -2,20 +2,23 @@
 
 mod error;
 mod kind;
+mod label_set;
 mod missing;
 mod reduce;
+mod shown;
 
 pub use error::VolumeError;
 pub use kind::{DataKind, KindFound, KindName};
+pub use label_set::{CountedLabel, LabelSet, MAX_CLASSES};
 pub use missing::Missing;
 pub use reduce::reduced_dims;
+pub use shown::Shown;
 
 use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::values::robust::quantile;
-use super::values::samples::with_samples;
 use super::{Hints, Samples, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
@@ -38,8 +41,7 @@ pub struct Volume {
     world_from_index: DAffine3,
     samples: Arc<Samples>,
     ranges: ValueRanges,
-    /// What densities from 0 to 1 stand for.
-    shown_range: ValueRange,
+    shown: Shown,
     missing: Option<Arc<Missing>>,
     non_finite_voxels: usize,
     padding_value: Option<f64>,
@@ -48,6 +50,8 @@ pub struct Volume {
     hints: Hints,
     /// Found when it is first asked for.
     kind: OnceLock<KindFound>,
+    /// Found when they are first asked for.
+    labels: OnceLock<Option<Arc<LabelSet>>>,
     content_id: u64,
 }
 
@@ -95,7 +99,7 @@ impl Volume {
             world_from_index,
             samples: Arc::new(samples),
             ranges,
-            shown_range: ranges.robust,
+            shown: Shown::Range(ranges.robust),
             missing: None,
             non_finite_voxels,
             padding_value: None,
@@ -103,6 +107,7 @@ impl Volume {
             is_anatomical: false,
             hints: Hints::default(),
             kind: OnceLock::new(),
+            labels: OnceLock::new(),
             content_id,
         };
         Ok(if non_finite_voxels > 0 { volume.with_missing() } else { volume })
@@ -155,7 +160,7 @@ impl Volume {
             unit_mm: whole.unit_mm,
             is_anatomical: whole.is_anatomical,
             hints: whole.hints.clone(),
-            kind: OnceLock::new(),
+            kind: whole.kind_of_parts(),
             ..self
         }
     }
@@ -226,21 +231,9 @@ impl Volume {
         self.ranges
     }
 
-    /// The values that have densities from 0 to 1, in data units: those that matter, unless others were asked for by
-    /// [`Self::showing`].
-    pub fn shown_range(&self) -> ValueRange {
-        self.shown_range
-    }
-
     /// The value below which about that share of the voxels lies.
     pub fn quantile(&self, share: f64) -> f64 {
         quantile(&self.samples, self.padding_value.unwrap_or(f64::NAN), share)
-    }
-
-    /// The same voxels with other values at densities 0 and 1.
-    #[must_use]
-    pub fn showing(&self, range: ValueRange) -> Self {
-        Self { shown_range: range, ..self.clone() }
     }
 
     /// How many voxels hold NaN or an infinity: nothing is there.
@@ -268,39 +261,6 @@ impl Volume {
         let voxel = x + self.dims[0] * (y + self.dims[1] * z);
         let is_missing = self.missing().is_some_and(|missing| missing.contains(voxel));
         (!is_missing).then(|| self.density_of(self.samples.value(voxel)))
-    }
-
-    /// A value in data units as a density in [0, 1]: 0 at the lowest value that is shown and below, 1 at the highest and
-    /// above. Values that are not finite have density 0.
-    pub fn density_of(&self, value: f64) -> f64 {
-        let ValueRange { low, .. } = self.shown_range;
-        let span = self.shown_range.span();
-        if value.is_finite() && span > 0.0 { ((value - low) / span).clamp(0.0, 1.0) } else { 0.0 }
-    }
-
-    /// The inverse of [`Self::density_of`], for values that are shown.
-    pub fn value_of(&self, density: f64) -> f64 {
-        self.shown_range.at(density)
-    }
-
-    /// Densities in [0, 1] of the voxels of one z-slice, x fastest. Those that hold nothing have the mean of what is
-    /// near.
-    #[expect(
-        trivial_numeric_casts,
-        clippy::unnecessary_cast,
-        reason = "one of the eight types is f64 already"
-    )]
-    pub fn slice_densities(&self, z: usize) -> Vec<f32> {
-        let count = self.dims[0] * self.dims[1];
-        let range = z * count..(z + 1) * count;
-        let mut densities: Vec<f32> = with_samples!(&*self.samples, values => values[range]
-            .iter()
-            .map(|&value| self.density_of(value as f64) as f32)
-            .collect());
-        for (at, value) in self.missing.iter().flat_map(|missing| missing.in_slice(z)) {
-            densities[at] = self.density_of(value) as f32;
-        }
-        densities
     }
 }
 

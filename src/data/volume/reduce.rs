@@ -3,12 +3,13 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::{Samples, Volume, VolumeError};
+use super::{DataKind, Samples, Volume, VolumeError};
 
 impl Volume {
     /// The volume with blocks of so many voxels along x, y and z averaged into one each: same place in the world,
     /// same number type (means are rounded), at least one voxel along each axis. The last block of an axis may
-    /// have fewer voxels; values that are not finite, and padding, are left out of means.
+    /// have fewer voxels; values that are not finite, and padding, are left out of means. Of label maps, whose numbers
+    /// have no mean, a block has the label that most of its voxels have.
     ///
     /// # Errors
     /// As [`Volume::new`].
@@ -27,7 +28,9 @@ impl Volume {
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
         let padding = self.padding_value();
         let blocks = Blocks { dims, block, padding };
+        let is_labelled = matches!(self.kind().kind, DataKind::LabelMap { .. });
         let samples = match self.samples() {
+            samples if is_labelled => blocks.most_frequent(samples),
             Samples::U8(values) => Samples::U8(blocks.whole_means(values, |mean| mean as u8)),
             Samples::I8(values) => Samples::I8(blocks.whole_means(values, |mean| mean as i8)),
             Samples::U16(values) => Samples::U16(blocks.whole_means(values, |mean| mean as u16)),
@@ -78,6 +81,46 @@ impl Blocks {
         })
     }
 
+    /// The value that most voxels of every block have, the lowest of those that are equally frequent; where nothing is
+    /// finite the padding value, or NaN where there is none.
+    fn most_frequent(&self, samples: &Samples) -> Samples {
+        let chosen = self.chosen(|voxel| samples.value(voxel));
+        samples.picked(&chosen)
+    }
+
+    /// For every block a voxel with its most frequent value.
+    fn chosen(&self, value: impl Fn(usize) -> f64 + Sync) -> Vec<usize> {
+        let &Self { dims, block, padding } = self;
+        let [nx, ny, _] = dims;
+        let [width, height, depth] = reduced_dims(dims, block);
+        let choose = |at: usize| {
+            let low = [at % width, at / width % height, at / (width * height)];
+            let [xs, ys, zs] = [0, 1, 2]
+                .map(|axis| low[axis] * block[axis]..((low[axis] + 1) * block[axis]).min(dims[axis]));
+            // A block has a few different labels at most.
+            let mut counted: Vec<(f64, usize, usize)> = Vec::new();
+            for z in zs.clone() {
+                for y in ys.clone() {
+                    for voxel in (z * ny + y) * nx + xs.start..(z * ny + y) * nx + xs.end {
+                        let found = value(voxel);
+                        match counted.iter_mut().find(|(known, ..)| *known == found) {
+                            Some((_, count, _)) => *count += 1,
+                            None => counted.push((found, 1, voxel)),
+                        }
+                    }
+                }
+            }
+            let is_something = |value: f64| value.is_finite() && Some(value) != padding;
+            counted
+                .iter()
+                .max_by(|(a, m, _), (b, n, _)| {
+                    is_something(*a).cmp(&is_something(*b)).then(m.cmp(n)).then(b.total_cmp(a))
+                })
+                .map_or((zs.start * ny + ys.start) * nx + xs.start, |&(.., voxel)| voxel)
+        };
+        (0..width * height * depth).into_par_iter().map(choose).collect()
+    }
+
     /// The mean of every block, rounded; of nothing finite the padding value, or NaN where there is none.
     fn means<T: Copy + Into<f64> + Sync, R: Send>(
         &self,
@@ -116,6 +159,7 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::{Hints, Meaning, Missing};
 
     #[test]
     fn blocks_become_their_means_where_they_were() {
@@ -145,7 +189,20 @@ mod tests {
         let half = padded.reduced([2, 1, 1]).unwrap();
         // The first mean is −5, and −5.5 rounds to −6; the third block is missing, and so is half of the last.
         assert_eq!([0, 1, 2, 3].map(|x| half.value(x, 0, 0)), [-4.0, -6.0, -5.0, 7.0]);
-        assert_eq!(half.missing().map(|missing| missing.count()), Some(1));
+        assert_eq!(half.missing().map(Missing::count), Some(1));
+    }
+
+    #[test]
+    fn blocks_of_labels_have_the_label_of_most() {
+        let mut hints = Hints::default();
+        hints.meaning = Meaning::Labels;
+        let values = vec![0, 0, 0, 9, 3, 9, 255, 9, 255, 255, 9, 9];
+        let volume = Volume::with_spacing("t", [12, 1, 1], DVec3::ONE, Samples::U8(values)).unwrap();
+        let volume = volume.with_hints(hints).with_padding(255.0).unwrap();
+        let half = volume.reduced([2, 1, 1]).unwrap();
+        let Samples::U8(labels) = half.samples() else { panic!("the type changed") };
+        assert_eq!(labels, &[0, 0, 3, 9, 255, 9], "and never one that is none of both");
+        assert!(matches!(half.kind().kind, DataKind::LabelMap { .. }));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Planning a picture: compares what it needs with what is there, and lists the steps that make the difference.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -44,9 +45,17 @@ impl Renderer {
     pub fn begin(
         &mut self,
         dataset: &Dataset,
-        request: Request,
+        mut request: Request,
         options: &RenderOptions,
     ) -> Result<Job<'_>, GpuError> {
+        // The passes need not know of labels: keys are the same.
+        let drawn = match request.settings.as_drawn(dataset.volume()) {
+            Cow::Owned(drawn) => Some(drawn),
+            Cow::Borrowed(_) => None,
+        };
+        if let Some(drawn) = drawn {
+            request.settings = drawn;
+        }
         let mut keys = FrameKeys::of(&request, options);
         let lit = LitLights::of(&request.settings);
         let shape = shape(&request, options);
@@ -72,7 +81,7 @@ impl Renderer {
                     let presence = if known.is_complete() { known.value.volume.presence } else { None };
                     (Some(known.value.dataset), presence)
                 });
-                let known = known.filter(|known| known.volume().shown_range() == keys.volume.shown);
+                let known = known.filter(|known| known.volume().shown() == keys.volume.shown);
                 let dataset = known.unwrap_or_else(|| dataset.showing(keys.volume.shown));
                 let has_presence = presence.is_some();
                 let (context, settings) = (&self.tools.context, &request.settings);

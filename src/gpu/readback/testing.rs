@@ -63,6 +63,7 @@ impl Renderer {
         view: usize,
     ) -> Result<Vec<f32>, GpuError> {
         let size = [8, 8];
+        let settings = &*settings.as_drawn(dataset.volume());
         self.draw(dataset, settings, size, &RenderOptions::default())?;
         let request =
             Request { volume: dataset.volume().id(), settings: settings.clone(), size, coarse: None };

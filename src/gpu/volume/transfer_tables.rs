@@ -161,7 +161,7 @@ impl Tables {
         key: &TablesKey,
         previous: Option<(&TablesKey, &Self)>,
     ) -> Result<(Self, u32), GpuError> {
-        let range = volume.volume.shown_range();
+        let range = volume.volume.table_range();
         let bounded = key.cells_are_bounds;
         let previous = previous.filter(|(known, _)| known.cells_are_bounds == bounded);
         let known = || previous.into_iter().flat_map(|(_, tables)| [&tables.eye, &tables.lighting]);

@@ -66,6 +66,7 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
     all.push(proposal("On paper", "before white, as in print", paper));
     let mut thin = first.clone();
     scale_opacity(&mut thin.transfer, TRANSLUCENT);
+    thin.labels.for_each(|_, look| look.opacity *= TRANSLUCENT);
     all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
     if let Some(start) = inner_start(&first.transfer, volume, histogram) {
         let inner = Settings { transfer: inner(&first.transfer, start), ..first.clone() };
@@ -153,6 +154,7 @@ fn clay(first: &Settings) -> Settings {
     for point in &mut clay.transfer.points {
         point.color = CLAY;
     }
+    clay.labels.for_each(|_, look| look.color = CLAY);
     clay.shading.specular = 0.08;
     clay
 }

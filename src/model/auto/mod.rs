@@ -28,10 +28,10 @@ use self::domain::Domain;
 use self::object::Object;
 pub use self::visible::{densest, show_something};
 use super::{
-    Camera, Classification, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings, Shading, Shadows,
-    TransferFunction,
+    Camera, Classification, Kernel, LabelTable, Length, ObjectTurn, Quality, Rig, SceneAxis, Settings,
+    Shading, Shadows, TransferFunction,
 };
-use crate::data::{DataKind, Histogram, KindName, Volume};
+use crate::data::{DataKind, Histogram, KindName, Shown, Volume};
 
 /// Opacity per opacity unit from which something counts as shown: of white in full light, 63 of 255 before black.
 const LEAST_SHOWN: f64 = 0.05;
@@ -62,7 +62,7 @@ fn with_what_matters<T>(
     ask: impl FnOnce(&Volume, &Histogram) -> T,
 ) -> T {
     let robust = volume.ranges().robust;
-    if volume.shown_range() == robust {
+    if volume.shown() == Shown::Range(robust) {
         return ask(volume, histogram);
     }
     let volume = volume.showing(robust);
@@ -77,6 +77,7 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
     let mut settings = Settings {
         camera: Camera { up, ..Camera::default() },
         transfer: found.transfer,
+        labels: found.labels,
         opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
         lights: Vec::new(),
         shading: shading(found.domain),
@@ -89,6 +90,8 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
         // Between two labels there is none of the numbers between them, and none of them is an outlier.
         settings.range = transfer::range_of_labels(volume);
         settings.sampling.classification = Classification::Pre;
+        // Sharper than the B-spline, which would round off what voxels are.
+        (settings.sampling.kernel, settings.shadows.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
     }
     aim(&mut settings, volume);
     match kind {
@@ -162,6 +165,15 @@ pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<Ki
     with_what_matters(volume, histogram, |volume, histogram| {
         transfer::find(volume, histogram, kind_of(volume, treated_as)).transfer
     })
+}
+
+/// A table of labels as if the volume held data of that kind; of its own where none is named. Empty of all but label
+/// maps.
+pub fn labels_as(volume: &Volume, treated_as: Option<KindName>) -> LabelTable {
+    match kind_of(volume, treated_as) {
+        DataKind::LabelMap { .. } => transfer::label_table(volume),
+        _ => LabelTable::default(),
+    }
 }
 
 /// How many labels of a label map settings do not show, or not in the colour that they give them.

@@ -49,15 +49,16 @@ impl Object {
 
     /// All that is shown.
     pub(super) fn of_shown(settings: &Settings, volume: &Volume) -> Self {
-        let volume = &volume.showing(settings.shown_range(&volume.ranges()));
+        let volume = &volume.showing(settings.shown(&volume.ranges()));
+        let (settings, range) = (settings.as_drawn(volume), volume.table_range());
         let dims = volume.dims();
         let edge = dims.map(|n| n.div_ceil(MOST_CELLS));
         let cells = [0, 1, 2].map(|axis| dims[axis].div_ceil(edge[axis]));
         // Whether each of many densities is shown: a look-up per voxel.
         let shown: Vec<bool> = (0..=HISTOGRAM_BINS)
             .map(|bin| {
-                settings.transfer.opacity_at(volume.value_of(bin as f64 / HISTOGRAM_BINS as f64))
-                    > LEAST_SHOWN
+                // Labels lie at least four bins apart: the one of a density's bin is its own.
+                settings.transfer.opacity_at(range.at(bin as f64 / HISTOGRAM_BINS as f64)) > LEAST_SHOWN
             })
             .collect();
         let is_there = (0..cells[2])

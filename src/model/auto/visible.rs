@@ -7,7 +7,8 @@ use super::object::Object;
 use super::{aim, threshold, transfer};
 use crate::data::{DataKind, Histogram, ValueRange, Volume};
 use crate::model::{
-    ControlPoint, DensityRange, FRAME_ASPECT, Interpolation, LightingTransfer, Settings, TransferFunction,
+    ControlPoint, DensityRange, FRAME_ASPECT, Interpolation, LabelTable, LightingTransfer, Settings,
+    TransferFunction,
 };
 
 /// Pixels of the frame in which the object is looked for.
@@ -119,6 +120,7 @@ pub fn densest(volume: &Volume) -> TransferFunction {
 pub fn show_something(settings: &Settings, volume: &Volume) -> Settings {
     Settings {
         range: DensityRange::Robust,
+        labels: LabelTable::default(),
         transfer: densest(volume),
         lighting: LightingTransfer::default(),
         ..settings.clone()

@@ -3,6 +3,7 @@
 pub(super) mod camera;
 pub(super) mod cut;
 pub(super) mod floor;
+pub(super) mod labels;
 pub(super) mod length;
 pub(super) mod light;
 pub(super) mod quality;
@@ -18,9 +19,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kernel, Length,
-    Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
-    TransferFunction,
+    BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kernel, LabelTable,
+    Length, Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder,
+    Slabs, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
@@ -41,6 +42,9 @@ pub struct Settings {
     pub lights: Vec<Light>,
     /// The values that densities are spent on.
     pub range: DensityRange,
+    /// What labels look like, by number. With it volumes of whole numbers are shown by their labels, and the transfer
+    /// functions wait until it is empty.
+    pub labels: LabelTable,
     /// What the eye sees: colour and opacity of every value.
     pub transfer: TransferFunction,
     /// What the light meets.
@@ -70,6 +74,7 @@ impl Default for Settings {
             camera: Camera::default(),
             lights: vec![Light::default()],
             range: DensityRange::Robust,
+            labels: LabelTable::default(),
             transfer: TransferFunction::default(),
             lighting: LightingTransfer::default(),
             opacity_unit: Length::Voxels(1.0),
@@ -231,12 +236,12 @@ impl Settings {
     /// holds much: not where gradients come from sheets, or voxels are classified; and where a slab is a mean of two
     /// points it need not be.
     pub fn has_slabs_by_need(&self) -> bool {
-        let Sampling { slabs, quadrature, gradients, classification, .. } = self.sampling;
+        let Sampling { slabs, quadrature, gradients, .. } = self.sampling;
         slabs == Slabs::ByNeed
             && !self.scatters()
             && quadrature == Quadrature::One
             && gradients != Gradients::Sheets
-            && classification == Classification::Post
+            && self.classification() == Classification::Post
     }
 
     /// The kernel of what the eye gathers: voxels that are classified first are spread by the prefiltered one, whichever
@@ -279,7 +284,7 @@ impl Settings {
             Kernel::BSpline | Kernel::Prefiltered => true,
             Kernel::Gaussian { sigma } => (sigma - BOUNDED_SIGMA).abs() <= SIGMA_TOLERANCE,
         };
-        self.sampling.classification == Classification::Post
+        self.classification() == Classification::Post
             && is_bounded(self.sampling.kernel)
             && is_bounded(self.shadows.kernel)
     }
@@ -306,12 +311,13 @@ impl Settings {
         self.opacity_unit.in_scene(scene).max(1e-9)
     }
 
-    /// The eye's transfer function as a table over a range of values, which are those that a volume shows.
+    /// The eye's transfer function as a table over a range, which is that of what a volume shows
+    /// ([`crate::data::Volume::table_range`]). Of labels, that of settings [as drawn](Self::as_drawn).
     pub fn baked_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         self.transfer.bake(range, self.unit_in_scene(scene), 1.0)
     }
 
-    /// The lighting transfer function as a table over a range of values, which are those that a volume shows.
+    /// The lighting transfer function as a table over a range: see [`Self::baked_eye`].
     pub fn baked_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
         function.bake(range, self.unit_in_scene(scene), self.lighting.scale)

@@ -75,11 +75,12 @@ impl Settings {
 }
 
 impl Settings {
-    /// The same picture of a volume with these values, with densities for a range that holds those of the look.
+    /// The same picture of a volume with these values, with densities for a range that holds those of the look. Labels have
+    /// none.
     #[must_use]
     pub fn over(&self, range: ValueRange, ranges: &ValueRanges) -> Self {
         let own = self.shown_range(ranges);
-        if own == range {
+        if own == range || !self.labels.is_empty() {
             return self.clone();
         }
         let mut wider = Self { range: DensityRange::Typed(range), ..self.clone() };

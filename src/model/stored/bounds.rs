@@ -20,8 +20,9 @@ pub const MAX_LOOK_BYTES: usize = 1 << 20;
 /// Lists and objects in one another: settings have 6 levels.
 const MAX_DEPTH: usize = 64;
 
-/// Values in a look: two transfer functions have 2 × 4096 points of 8, and the rest a few hundred.
-const MAX_VALUES: usize = 100_000;
+/// Values in a look: two transfer functions have 2 × 4096 points of 8, a table of labels 4096 of 8, and the rest a few
+/// hundred.
+const MAX_VALUES: usize = 140_000;
 
 /// Views that can be kept: one for each digit.
 const MAX_VIEWS: usize = 9;
@@ -116,7 +117,7 @@ impl Place<'_> {
         match self.path.as_str() {
             "lights" => MAX_LIGHTS,
             "views" => MAX_VIEWS,
-            // Of transfer functions, and of whatever later versions may have.
+            // Of transfer functions, tables of labels, and of whatever later versions may have.
             _ => MAX_POINTS,
         }
     }
@@ -275,7 +276,8 @@ mod tests {
         assert!(read(&nested(MAX_DEPTH)).is_ok());
         assert!(refused(&nested(MAX_DEPTH + 1)).contains("nested deeper than the 64 levels"));
         assert!(!refused(&nested(200)).is_empty());
-        let nothings = format!("[{}0]", "[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0],".repeat(4000));
+        let row = format!("[{}0],", "0,".repeat(39));
+        let nothings = format!("[{}0]", row.repeat(4000));
         assert!(refused(&nothings).contains("values"), "{}", refused(&nothings));
         assert!(refused(&" ".repeat(MAX_LOOK_BYTES + 1)).contains("1 MiB"));
         assert!(!refused("{} {}").is_empty() && !refused("").is_empty() && !refused("[1e999]").is_empty());

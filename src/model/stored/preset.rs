@@ -7,9 +7,9 @@ use serde_json::Value;
 use super::bounds::{self, Bounded};
 use super::preset_error::PresetError;
 use super::renames::{current_path, rename};
-use super::schemas::{complete, keep_named_balance};
+use super::schemas::{complete, keep_named_balance, lays_labels_anew, shows_values};
 use crate::data::plain;
-use crate::model::{MAX_NAME, SCHEMA, Settings};
+use crate::model::{LabelLook, LabelTable, MAX_NAME, SCHEMA, Settings};
 
 /// Unknown settings that are told one by one.
 const MAX_TOLD: usize = 8;
@@ -35,6 +35,9 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     complete(&mut overlay);
     keep_named_balance(&mut overlay);
     let mut merged = serde_json::to_value(settings).map_err(PresetError::Form)?;
+    if lays_labels_anew(&overlay) || shows_values(&overlay) {
+        merged["labels"] = Value::Object(serde_json::Map::new());
+    }
     merge(&mut merged, &overlay);
     let mut result: Settings = serde_json::from_value(merged).map_err(PresetError::Form)?;
     if result.schema > SCHEMA {
@@ -84,6 +87,11 @@ pub fn assign(
     // It says how a file is to be read, and nothing of how a picture looks.
     tree.as_object_mut().map(|fields| fields.shift_remove("schema"));
     let current = current_path(path);
+    let number = current.strip_prefix("labels.").and_then(|rest| rest.split('.').next()?.parse::<i64>().ok());
+    if let Some(number) = number.filter(|&number| settings.labels.get(number).is_none()) {
+        let look = serde_json::to_value(LabelLook::of(number)).map_err(PresetError::Form)?;
+        tree["labels"][number.to_string()] = look;
+    }
     if let Some((parent, key)) = current.rsplit_once('.')
         && is_other_variant(&tree, &pointer(parent), key)
         && let Some(node) = tree.pointer_mut(&pointer(parent))
@@ -115,6 +123,9 @@ pub fn assign(
     let mut result: Settings = serde_json::from_value(tree).map_err(PresetError::Form)?;
     // As in a preset: whoever names the balance means it.
     result.shadows.keep_balanced &= current != "shadows.balance";
+    if current.split('.').next() == Some("transfer") {
+        result.labels = LabelTable::default();
+    }
     let asked = value_at(&result, &current);
     result.sanitise();
     let used = value_at(&result, &current);
@@ -166,9 +177,12 @@ fn merge(base: &mut Value, overlay: &Value) {
     }
 }
 
-/// `{"voxels": 1}` laid over `{"mm": 2}`: two variants of one enum, which must not be mixed.
+/// `{"voxels": 1}` laid over `{"mm": 2}`: two variants of one enum, which must not be mixed. Numbers are no variants,
+/// but those of labels and saved views.
 fn is_tagged_swap(base: &serde_json::Map<String, Value>, overlay: &serde_json::Map<String, Value>) -> bool {
-    base.len() == 1 && overlay.len() == 1 && base.keys().next() != overlay.keys().next()
+    let is_variant = |key: Option<&String>| key.is_some_and(|key| key.parse::<i64>().is_err());
+    let (before, after) = (base.keys().next(), overlay.keys().next());
+    base.len() == 1 && overlay.len() == 1 && before != after && is_variant(before) && is_variant(after)
 }
 
 /// Lists the paths of what was given and does not come back. Presets may carry remarks under names that begin with an

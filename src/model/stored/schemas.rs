@@ -66,6 +66,18 @@ fn complete_range(groups: &mut Map<String, Value>) {
     }
 }
 
+/// Whether what a record says of labels is all of it: a session names every label that its look knows, those that it is
+/// laid over are others.
+pub(super) fn lays_labels_anew(record: &Value) -> bool {
+    record.get("labels").is_some() && record.get("schema").is_some()
+}
+
+/// Whether a record is about values, and not about labels: it says what is seen at which
+/// value. So were all before there were tables of labels.
+pub(super) fn shows_values(record: &Value) -> bool {
+    record.get("labels").is_none() && record.pointer("/transfer/points").is_some()
+}
+
 /// Gives the angle of view of a camera to the picture's height, if it says how far away the eye is, which frames
 /// what is seen, and not what it is framed in; and its z up, if it says from where it looks: all cameras of schema 1
 /// are so, and those of schema 2 from before there was a choice.
@@ -96,7 +108,8 @@ pub(super) fn keep_named_balance(record: &mut Value) {
 mod tests {
     use super::*;
     use crate::model::{
-        Camera, DensityRange, Fit, Gradients, NearField, ReverseKernel, SCHEMA, Settings, Sides, load_json,
+        Camera, DensityRange, Fit, Gradients, LabelLook, LabelTable, NearField, ReverseKernel, SCHEMA,
+        Settings, Sides, apply_path, load_json, to_json,
     };
 
     #[test]
@@ -175,6 +188,33 @@ mod tests {
         ] {
             assert_eq!(range(now), DensityRange::Robust, "{now}");
         }
+    }
+
+    #[test]
+    fn what_was_saved_of_values_does_not_show_labels() {
+        let table: LabelTable = [1, 2, 3].map(|number| (number, LabelLook::of(number))).into_iter().collect();
+        let first = Settings { labels: table.clone(), ..Settings::default() };
+        let labels = |text: &str| load_json(&first, text).expect("settings").0.labels;
+        for of_values in [
+            r#"{"schema": 2, "transfer": {"points": []}}"#,
+            r#"{"transfer": {"points": []}}"#,
+            r#"{"schema": 2, "labels": {}}"#,
+            r#"{"labels": null}"#,
+        ] {
+            assert!(labels(of_values).is_empty(), "{of_values}");
+        }
+        for of_neither in [r#"{"schema": 2, "shadows": {"gain": 2.0}}"#, r#"{"labels": {}}"#] {
+            assert_eq!(labels(of_neither), table, "{of_neither}");
+        }
+        // A session has all that its look had, a preset lays its entries over those that there are.
+        assert_eq!(labels(r#"{"schema": 2, "labels": {"9": {}}, "transfer": {"points": []}}"#).len(), 1);
+        assert_eq!(labels(r#"{"labels": {"9": {}}}"#).len(), 4);
+        let kept = load_json(&Settings::default(), &to_json(&first)).expect("settings").0;
+        assert_eq!(kept, first);
+        // Whoever names the curve means it.
+        let curve = apply_path(&first, "transfer.interpolation", "extinction").expect("settings");
+        assert!(curve.labels.is_empty());
+        assert!(!apply_path(&first, "shadows.gain", "2").expect("settings").labels.is_empty());
     }
 
     #[test]

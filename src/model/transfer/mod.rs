@@ -4,6 +4,7 @@
 //! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
 
 pub(super) mod baked;
+pub(super) mod categories;
 pub(super) mod color_map;
 pub(super) mod oklab;
 

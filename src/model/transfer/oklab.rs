@@ -1,6 +1,8 @@
 //! Oklab: colours by lightness, and by how green or red, blue or yellow they look (Ottosson 2020, the
 //! matrices of 2021-01-25). Equal steps look equally large, so that mixtures stay clean and lightness even.
 
+use crate::model::srgb_from_linear;
+
 /// Linear RGB to lightness (0 … 1), green to red, blue to yellow.
 pub fn oklab_from_linear(rgb: [f64; 3]) -> [f64; 3] {
     let cones = product(&CONES_FROM_RGB, rgb).map(f64::cbrt);
@@ -25,6 +27,11 @@ pub fn lch_from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
 pub fn lab_from_lch([l, chroma, hue_deg]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = hue_deg.to_radians().sin_cos();
     [l, chroma * cos, chroma * sin]
+}
+
+/// A colour by lightness, chroma and hue in degrees as control points have it: sRGB. What no display can show is cut.
+pub fn srgb_from_lch(lch: [f64; 3]) -> [f32; 3] {
+    linear_from_oklab(lab_from_lch(lch)).map(|c| srgb_from_linear(c).clamp(0.0, 1.0) as f32)
 }
 
 fn product(matrix: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {

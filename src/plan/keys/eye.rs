@@ -65,8 +65,9 @@ struct RaysKey {
 
 impl SamplingKey {
     fn of(settings: &Settings) -> Self {
-        let Sampling { kernel, slab, slabs, quadrature, gradients, classification, engine, order } =
+        let Sampling { kernel, slab, slabs, quadrature, gradients, classification: _, engine, order } =
             settings.sampling;
+        let classification = settings.classification();
         let order = settings.scatters().then_some(order);
         Self { kernel, slab, slabs, quadrature, gradients, classification, engine, order }
     }
@@ -98,6 +99,8 @@ impl EyeKey {
             lights: _,
             // In the key of the volume.
             range: _,
+            // In the keys of the volume and of the tables.
+            labels: _,
             transfer: _,
             lighting: _,
             opacity_unit,

@@ -58,6 +58,8 @@ impl LightKey {
             lights,
             // In the key of the volume.
             range: _,
+            // In those of the volume and of opacities.
+            labels: _,
             // In the key of opacities.
             transfer: _,
             lighting: _,
@@ -73,7 +75,7 @@ impl LightKey {
                     slabs: _,
                     quadrature: _,
                     gradients: _,
-                    classification,
+                    classification: _,
                     engine,
                     order: _,
                 },
@@ -123,7 +125,7 @@ impl LightKey {
             hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
             density_scale: *density_scale,
             algorithm: *algorithm,
-            classification: *classification,
+            classification: request.settings.classification(),
             // Rays need no sheets.
             engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
             opacity: OpacityKey::of(&request.settings),

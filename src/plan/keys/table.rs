@@ -1,6 +1,8 @@
 //! What the lookup tables of the transfer functions are made from.
 
-use crate::model::{Easing, Interpolation, Length, LightingTransfer, Settings, TransferFunction};
+use crate::model::{
+    Easing, Interpolation, LabelMaterial, Length, LightingTransfer, Settings, TransferFunction,
+};
 use crate::plan::{Request, VolumeKey};
 
 /// Everything that both lookup tables are made from, besides the volume.
@@ -16,20 +18,32 @@ pub struct TablesKey {
     pub cells_are_bounds: bool,
 }
 
-/// Everything that the eye's table is made from: the curve with its colours, and the length to which it refers.
+/// Everything that the eye's table is made from: the curve with its colours, or looks of labels, and the length to which
+/// it refers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeTableKey {
-    curve: TransferFunction,
+    looks: Looks,
     unit: Length,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Looks {
+    OfValues(TransferFunction),
+    OfLabels(Vec<LabelMaterial>),
 }
 
 /// Everything that the opacities met by light are made from: no colours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpacityKey {
-    points: Vec<([f64; 2], Easing)>,
-    interpolation: Interpolation,
+    opacities: Opacities,
     scale: f64,
     unit: Length,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Opacities {
+    OfValues { points: Vec<([f64; 2], Easing)>, interpolation: Interpolation },
+    OfLabels(Vec<(i64, f64)>),
 }
 
 impl TablesKey {
@@ -48,7 +62,12 @@ impl TablesKey {
 impl EyeTableKey {
     /// The key of what the eye sees in a look.
     pub(super) fn of(settings: &Settings) -> Self {
-        Self { curve: settings.transfer.clone(), unit: settings.opacity_unit }
+        let looks = if settings.labels.is_empty() {
+            Looks::OfValues(settings.transfer.clone())
+        } else {
+            Looks::OfLabels(settings.labels.materials())
+        };
+        Self { looks, unit: settings.opacity_unit }
     }
 }
 
@@ -56,13 +75,17 @@ impl OpacityKey {
     /// The key of what light meets in a look.
     pub(super) fn of(settings: &Settings) -> Self {
         let LightingTransfer { linked, scale, curve } = &settings.lighting;
-        let curve = if *linked { &settings.transfer } else { curve };
-        let TransferFunction { points, interpolation, mixing: _ } = curve;
-        Self {
-            points: points.iter().map(|point| ([point.value, point.opacity], point.easing)).collect(),
-            interpolation: *interpolation,
-            scale: *scale,
-            unit: settings.opacity_unit,
-        }
+        let opacities = if settings.labels.is_empty() {
+            let curve = if *linked { &settings.transfer } else { curve };
+            let TransferFunction { points, interpolation, mixing: _ } = curve;
+            Opacities::OfValues {
+                points: points.iter().map(|point| ([point.value, point.opacity], point.easing)).collect(),
+                interpolation: *interpolation,
+            }
+        } else {
+            let materials = settings.labels.materials().into_iter();
+            Opacities::OfLabels(materials.map(|material| (material.number, material.opacity)).collect())
+        };
+        Self { opacities, scale: *scale, unit: settings.opacity_unit }
     }
 }

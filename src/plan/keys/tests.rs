@@ -3,9 +3,10 @@
 use serde_json::Value;
 
 use super::*;
-use crate::data::{ValueRange, ValueRanges, VolumeId};
+use crate::data::{Shown, ValueRange, ValueRanges, VolumeId};
 use crate::model::{
-    Camera, ControlPoint, Light, LightKind, LightLock, Settings, TransferFunction, apply_path, to_json,
+    Camera, ControlPoint, LabelLook, Light, LightKind, LightLock, Settings, TransferFunction, apply_path,
+    to_json,
 };
 
 fn request() -> Request {
@@ -21,6 +22,14 @@ fn request() -> Request {
     };
     let ranges = ValueRanges { all: ValueRange::new(-9.0, 9.0), robust: ValueRange::UNIT };
     Request { volume: VolumeId { content_id: 1, ranges }, settings, size: [100, 80], coarse: None }
+}
+
+/// With a table of labels.
+fn of_labels() -> Request {
+    let mut request = request();
+    request.settings.labels.entry(1);
+    *request.settings.labels.entry(2) = LabelLook { visible: false, ..LabelLook::of(2) };
+    request
 }
 
 fn keys(request: &Request) -> FrameKeys {
@@ -145,6 +154,27 @@ fn every_setting_causes_what_the_design_says() {
     for (path, value, expected) in &table {
         assert_eq!(&effect_of(&request(), path, value), expected, "{path} = {value}");
     }
+    // Of a look of labels.
+    for (path, value, expected) in [
+        ("labels.1.name", "Liver", Effect::Nothing),
+        ("labels.1.color", "[1,0,0]", Effect::Eye),
+        ("labels.1.opacity", "0.5", Effect::AllLights),
+        ("labels.1.visible", "false", Effect::AllLights),
+        ("labels", r#"{"1": {}, "2": {"visible": false}}"#, Effect::Nothing),
+        ("labels", r#"{"1": {}, "2": {}}"#, Effect::AllLights),
+        // Hidden is hidden, however opaque.
+        ("labels.2.opacity", "0.5", Effect::Nothing),
+        ("labels", "{}", Effect::AllLights),
+        // They wait until there is no table.
+        ("range", "full", Effect::Nothing),
+        ("lighting.linked", "false", Effect::Nothing),
+        ("lighting.curve.interpolation", "extinction", Effect::Nothing),
+        ("sampling.classification", "pre", Effect::Nothing),
+        ("sampling.slabs", "by_need", Effect::Eye),
+        ("lighting.scale", "0.5", Effect::AllLights),
+    ] {
+        assert_eq!(effect_of(&of_labels(), path, value), expected, "{path} = {value}");
+    }
     // The table is complete: every leaf of the settings is named, or lies below a name.
     let tree: Value = serde_json::from_str(&to_json(&request().settings)).unwrap();
     let mut leaves = Vec::new();
@@ -154,8 +184,9 @@ fn every_setting_causes_what_the_design_says() {
         let covered = |path: &str| general == path || general.starts_with(&format!("{path}."));
         let listed =
             table.iter().any(|(path, ..)| covered(path) || covered(&path.replace("points.1", "points.0")));
-        let exempt =
-            ["schema", "views", "lighting.curve.points", "transfer.points"].iter().any(|path| covered(path));
+        let exempt = ["schema", "views", "labels", "lighting.curve.points", "transfer.points"]
+            .iter()
+            .any(|path| covered(path));
         assert!(listed || exempt, "{leaf} is not classified");
     }
 }
@@ -243,8 +274,25 @@ fn another_range_changes_every_key() {
     let after = keys(&Request { settings, ..before.clone() });
     let before = keys(&before);
     assert!(before.volume != after.volume && before.tables != after.tables && before.eye != after.eye);
-    assert_eq!((before.volume.shown, after.volume.shown.high), (ValueRange::UNIT, 9.0));
+    assert_eq!(
+        (before.volume.shown, after.volume.shown),
+        (Shown::Range(ValueRange::UNIT), Shown::Range(ValueRange::new(-9.0, 9.0)))
+    );
     assert_eq!(after.lights_missing_in(&before), 3);
+}
+
+#[test]
+fn a_table_of_labels_shows_another_volume_and_settings_as_drawn_have_its_keys() {
+    let before = of_labels();
+    assert_eq!((keys(&before).volume.shown, keys(&request()).volume.shown), {
+        (Shown::Labels, Shown::Range(ValueRange::UNIT))
+    });
+    assert_ne!(keys(&before).tables, keys(&request()).tables);
+    let samples = crate::data::Samples::U8(vec![0, 1, 2]);
+    let volume = crate::data::Volume::with_spacing("t", [3, 1, 1], glam::DVec3::ONE, samples).unwrap();
+    let drawn = before.settings.as_drawn(&volume).into_owned();
+    assert_ne!(drawn, before.settings);
+    assert_eq!(keys(&Request { settings: drawn, ..before.clone() }), keys(&before));
 }
 
 #[test]

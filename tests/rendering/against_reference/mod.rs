@@ -12,6 +12,7 @@ use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
 mod gather;
+mod labels;
 mod limit;
 mod mutations;
 mod presence;
@@ -40,7 +41,8 @@ pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, roun
     let loaded = Dataset::new(volume);
     let context = context();
     let options = Options { rounding, ..Options::default() };
-    let reference = Reference::new(loaded.volume(), settings, options);
+    let drawn = settings.as_drawn(loaded.volume());
+    let reference = Reference::new(loaded.volume(), &drawn, options);
     let mut renderer = Renderer::new(&context).expect("a renderer");
     let mut failures = Vec::new();
     for light in (0..settings.lights.len()).filter(|&light| settings.lights[light].needs_volume()) {

@@ -213,6 +213,7 @@ fn brightness(settings: &Settings) -> Settings {
         camera: _,
         lights,
         range,
+        labels,
         transfer,
         lighting,
         opacity_unit,
@@ -232,6 +233,8 @@ fn brightness(settings: &Settings) -> Settings {
         schema: *schema,
         lights,
         range: *range,
+        // What a label is called has no brightness.
+        labels: labels.unnamed(),
         transfer: transfer.clone(),
         lighting: lighting.clone(),
         opacity_unit: *opacity_unit,

@@ -4,6 +4,7 @@ pub(in crate::app) mod camera;
 pub(in crate::app) mod cuts;
 pub(in crate::app) mod data;
 pub(in crate::app) mod floor;
+pub(in crate::app) mod labels;
 pub(in crate::app) mod lights;
 pub(in crate::app) mod sampling;
 pub(in crate::app) mod sections;

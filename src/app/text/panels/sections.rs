@@ -1,5 +1,6 @@
 //! The titles of the side panel's sections.
 
+pub(crate) const LABELS: &str = "Labels";
 pub(crate) const LIGHTS: &str = "Lights";
 pub(crate) const SHADOWS: &str = "Shadows";
 pub(crate) const SHADING: &str = "Shading";

@@ -11,11 +11,17 @@ pub(crate) const IN_ITS_WAY: &str = "nothing arrives: something stands in its wa
 
 /// What is there: value, opacity, voxel, and the place in millimetres.
 pub(crate) fn found(value: f64, opacity: f64, voxel: [f64; 3], mm: [f64; 3]) -> String {
-    let ([i, j, k], [x, y, z]) = (voxel, mm);
-    format!(
-        "Value {value:.4}, opacity {:.0} %\nvoxel {i:.0}, {j:.0}, {k:.0} · {x:.1}, {y:.1}, {z:.1} mm",
-        100.0 * opacity,
-    )
+    format!("Value {value:.4}, opacity {:.0} %\n{}", 100.0 * opacity, place(voxel, mm))
+}
+
+/// The label that is there, and as [`found`].
+pub(crate) fn found_label(number: i64, name: &str, opacity: f64, voxel: [f64; 3], mm: [f64; 3]) -> String {
+    let name = if name.is_empty() { String::new() } else { format!(": {name}") };
+    format!("Label {number}{name}, opacity {:.0} %\n{}", 100.0 * opacity, place(voxel, mm))
+}
+
+fn place([i, j, k]: [f64; 3], [x, y, z]: [f64; 3]) -> String {
+    format!("voxel {i:.0}, {j:.0}, {k:.0} · {x:.1}, {y:.1}, {z:.1} mm")
 }
 
 /// A light, and what of it gets there or why nothing does.

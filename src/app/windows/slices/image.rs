@@ -39,14 +39,17 @@ pub(crate) fn across(axis: usize) -> [usize; 2] {
     [[1, 2], [0, 2], [0, 1]][axis]
 }
 
-/// Colours of densities from 0 to 1. With a transfer function, in its colours as far as it is opaque.
+/// Colours of densities from 0 to 1. With a transfer function, that of settings as they are drawn, in its colours as far
+/// as it is opaque.
 pub(crate) fn lookup(volume: &Volume, grey: Grey, transfer: Option<&TransferFunction>) -> Vec<Color32> {
     let color = |step: usize| {
-        let value = volume.value_of(step as f64 / STEPS as f64);
+        let density = step as f64 / STEPS as f64;
+        let value = volume.value_of(density);
         let level = ((value - grey.black) / (grey.white - grey.black)).clamp(0.0, 1.0) as f32;
         let Some(transfer) = transfer else { return Color32::from_gray((level * 255.0).round() as u8) };
-        let opacity = transfer.opacity_at(value) as f32;
-        let shown = transfer.at(value).0.map(|c| f32::from(gamma_u8_from_linear_f32(c as f32)));
+        let place = volume.table_range().at(density);
+        let opacity = transfer.opacity_at(place) as f32;
+        let shown = transfer.at(place).0.map(|c| f32::from(gamma_u8_from_linear_f32(c as f32)));
         let [r, g, b] = shown.map(|c| (level * 255.0 + (c - level * 255.0) * opacity).round() as u8);
         Color32::from_rgb(r, g, b)
     };

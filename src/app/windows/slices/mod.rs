@@ -17,7 +17,7 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::app::viewport::orbit::wheel_notches;
 use crate::app::viewport::view_projection::ViewProjection;
-use crate::data::{ValueRange, Volume};
+use crate::data::{Shown, ValueRange, Volume};
 use crate::math::SceneSpace;
 use crate::model::TransferFunction;
 
@@ -125,7 +125,8 @@ impl Slices {
             line(text::slices::PLACE_MM, format!("{:.1}, {:.1}, {:.1}", world.x, world.y, world.z));
             let digits = if facts.levels.is_some() { format!("{value}") } else { format!("{value:.5}") };
             line(text::slices::VALUE, digits);
-            line(text::slices::OPACITY, format!("{:.2}", transfer.opacity_at(value)));
+            let place = volume.table_range().at(volume.density_of(value));
+            line(text::slices::OPACITY, format!("{:.2}", transfer.opacity_at(place)));
         });
         let speed = facts.range.span() / 500.0;
         for (name, level) in [(text::slices::BLACK, &mut grey.black), (text::slices::WHITE, &mut grey.white)]
@@ -157,7 +158,10 @@ impl Slices {
         if cut.drawn.as_ref() != Some(&what) {
             // Whatever the picture shows: beyond these all values look the same.
             let ValueRange { low, high } = volume.shown_range();
-            let volume = volume.showing(ValueRange::new(low.min(grey.black), high.max(grey.white)));
+            let greys = Shown::Range(ValueRange::new(low.min(grey.black), high.max(grey.white)));
+            let is_by_label = self.colored && volume.shown_labels().is_some();
+            let shown = if is_by_label { Shown::Labels } else { greys };
+            let volume = volume.showing(shown);
             let table = lookup(&volume, *grey, what.3.as_ref());
             let image = slice(&volume, axis, self.cursor[axis], &table);
             match &mut cut.texture {

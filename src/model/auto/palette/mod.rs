@@ -1,12 +1,8 @@
 //! Colours by what is shown. All are about equally light, so that light and shadow carry the shape, and colour says what
 //! it is.
 
-mod categories;
-
-pub(super) use self::categories::category;
-
 use super::domain::Domain;
-use crate::model::{lab_from_lch, linear_from_oklab, srgb_from_linear};
+use crate::model::srgb_from_lch;
 
 /// A colour in Oklab: lightness, chroma, hue in degrees.
 type Lch = [f64; 3];
@@ -90,15 +86,10 @@ impl Palette {
     }
 }
 
-/// A colour as control points have it; what no display can show is cut.
-pub(super) fn srgb_from_lch(lch: Lch) -> [f32; 3] {
-    linear_from_oklab(lab_from_lch(lch)).map(|c| srgb_from_linear(c).clamp(0.0, 1.0) as f32)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{lch_from_lab, linear_from_srgb, oklab_from_linear};
+    use crate::model::{lab_from_lch, lch_from_lab, linear_from_srgb, oklab_from_linear};
 
     fn shown(srgb: [f32; 3]) -> Lch {
         lch_from_lab(oklab_from_linear(srgb.map(|c| linear_from_srgb(f64::from(c)))))

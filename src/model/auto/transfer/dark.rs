@@ -24,5 +24,5 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
         place,
         opacity,
     });
-    Found { transfer: through(stops, Palette::of(domain)), domain }
+    Found::of_values(through(stops, Palette::of(domain)), domain)
 }

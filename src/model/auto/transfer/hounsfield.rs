@@ -46,5 +46,5 @@ pub(super) fn find(volume: &Volume, water: f64) -> Option<Found> {
         (water + END, 1.0, 0.97),
     ];
     let stops = stops.map(|(value, place, opacity)| Stop { value, place, opacity });
-    Some(Found { transfer: through(stops, Palette::of(Domain::Bone)), domain: Domain::Bone })
+    Some(Found::of_values(through(stops, Palette::of(Domain::Bone)), Domain::Bone))
 }

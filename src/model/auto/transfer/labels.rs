@@ -1,17 +1,14 @@
-//! Label maps: every label has its colour, and all are equally opaque.
+//! Label maps: every label has its colour, and all are equally opaque. The table says so, and a curve over values that
+//! stands for it where the table is taken away.
 
 use std::collections::BTreeSet;
 
 use super::super::LEAST_SHOWN;
-use super::super::palette::category;
 use crate::data::{ValueRange, Volume};
 use crate::model::{
-    ControlPoint, DensityRange, Easing, Interpolation, LUT_SIZE, MAX_POINTS, Mixing, Settings,
-    TransferFunction, oklab_from_linear,
+    ControlPoint, DensityRange, Easing, Interpolation, LUT_SIZE, LabelLook, LabelTable, MAX_POINTS, Mixing,
+    Settings, TransferFunction, oklab_from_linear,
 };
-
-/// Opacity of all labels: one hides what is behind it within a voxel or two.
-const OPACITY: f64 = 0.9;
 
 /// Labels are whole numbers: from halfway to the one below on, it is this one.
 const HALF: f64 = 0.5;
@@ -27,8 +24,8 @@ pub(super) fn transfer(volume: &Volume) -> TransferFunction {
     // Nothing below the first.
     let mut points = vec![step(lowest - 1.0, [1.0; 3], 0.0)];
     points.extend(numbers.iter().map(|&number| {
-        let said = volume.hints().labels.get(number).and_then(|label| label.color);
-        step(number as f64 - HALF, said.unwrap_or_else(|| category(number)), OPACITY)
+        let LabelLook { color, opacity, .. } = look(volume, number);
+        step(number as f64 - HALF, color, opacity)
     }));
     TransferFunction { points, interpolation: Interpolation::Opacity, mixing: Mixing::Light }
 }
@@ -57,17 +54,34 @@ pub(in crate::model::auto) fn range(volume: &Volume) -> DensityRange {
 /// are apart.
 const ALIKE: f64 = 0.0075;
 
+/// A look for each label that stands for a class; empty where values are no labels.
+pub(in crate::model::auto) fn table(volume: &Volume) -> LabelTable {
+    let Some(labels) = volume.labels() else { return LabelTable::default() };
+    let numbers = (0..labels.class_count()).map(|class| labels.first_of_class(class).number);
+    numbers.map(|number| (number, look(volume, number))).collect()
+}
+
+/// The look of a label as the file has it, as far as it does.
+fn look(volume: &Volume, number: i64) -> LabelLook {
+    let own = LabelLook::of(number);
+    let Some(label) = volume.hints().labels.get(number) else { return own };
+    LabelLook { name: label.name.clone(), color: label.color.unwrap_or(own.color), ..own }
+}
+
 /// How many of the labels that there are settings do not show, or in a colour that is not the one that they give it. What
 /// counts is the table that pictures are made with.
 pub(in crate::model::auto) fn lost_labels(settings: &Settings, volume: &Volume) -> usize {
-    let volume = volume.showing(settings.shown_range(&volume.ranges()));
-    let function = &settings.transfer;
-    let table = function.bake(volume.shown_range(), 1.0, 1.0);
+    let drawn = settings.as_drawn(volume);
+    let volume = volume.showing(settings.shown(&volume.ranges()));
+    let function = &drawn.transfer;
+    let table = function.bake(volume.table_range(), 1.0, 1.0);
     let is_lost = |number: &i64| {
-        let value = *number as f64;
-        let [red, green, blue, depth] = table.sample(volume.density_of(value));
+        let density = volume.density_of(*number as f64);
+        // The classes of labels; values as they are, also beyond those that are shown.
+        let place = volume.shown_labels().map_or(*number as f64, |labels| labels.classes().at(density));
+        let [red, green, blue, depth] = table.sample(density);
         let opacity = 1.0 - (-depth).exp();
-        let [found, own] = [[red, green, blue], function.at(value).0].map(oklab_from_linear);
+        let [found, own] = [[red, green, blue], function.at(place).0].map(oklab_from_linear);
         let apart = found.iter().zip(own).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         opacity < LEAST_SHOWN || apart > ALIKE
     };

@@ -1,9 +1,10 @@
 //! Something or nothing: a surface halfway between the two.
 
-use super::super::palette::{PLAIN, srgb_from_lch};
+use super::super::palette::PLAIN;
 use super::super::threshold::otsu;
 use super::of_points;
 use crate::data::{DataKind, Histogram, Volume};
+use crate::model::srgb_from_lch;
 use crate::model::{ControlPoint, TransferFunction};
 
 /// How far from halfway the surface begins and is opaque, as a share of the way: a surface, not a haze; and not so

@@ -13,22 +13,35 @@ use super::above;
 use super::domain::Domain;
 use super::palette::Palette;
 use crate::data::{DataKind, Histogram, Volume};
-use crate::model::{ControlPoint, Interpolation, Mixing, TransferFunction};
+use crate::model::{ControlPoint, Interpolation, LabelTable, Mixing, TransferFunction};
 
-pub(super) use self::labels::{lost_labels, range as range_of_labels};
+pub(super) use self::labels::{lost_labels, range as range_of_labels, table as label_table};
 pub(super) use self::scalar::beginning_at;
 
 /// What is shown of a volume, and what it is.
 pub(super) struct Found {
     pub(super) transfer: TransferFunction,
+    /// Of label maps alone.
+    pub(super) labels: LabelTable,
     pub(super) domain: Domain,
+}
+
+impl Found {
+    /// A look of values.
+    fn of_values(transfer: TransferFunction, domain: Domain) -> Self {
+        Self { transfer, labels: LabelTable::default(), domain }
+    }
 }
 
 /// A transfer function for data of a kind.
 pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Found {
     match kind {
-        DataKind::Mask => Found { transfer: mask::transfer(volume, histogram), domain: Domain::Unknown },
-        DataKind::LabelMap { .. } => Found { transfer: labels::transfer(volume), domain: Domain::Unknown },
+        DataKind::Mask => Found::of_values(mask::transfer(volume, histogram), Domain::Unknown),
+        DataKind::LabelMap { .. } => Found {
+            transfer: labels::transfer(volume),
+            labels: labels::table(volume),
+            domain: Domain::Unknown,
+        },
         DataKind::Signed => signed::find(volume).unwrap_or_else(|| scalar::find(volume, histogram)),
         DataKind::HounsfieldCt { water } => {
             hounsfield::find(volume, water).unwrap_or_else(|| scalar::find(volume, histogram))

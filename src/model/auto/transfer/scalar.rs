@@ -11,7 +11,7 @@ use crate::model::TransferFunction;
 pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
     let start = object_threshold(volume, histogram);
     let domain = Domain::of(volume, start);
-    Found { transfer: in_colors_of(domain, volume, histogram, start), domain }
+    Found::of_values(in_colors_of(domain, volume, histogram, start), domain)
 }
 
 /// Shows what begins at a density, in the colours of its field.

@@ -53,7 +53,7 @@ pub(super) fn find(volume: &Volume) -> Option<Found> {
         let side = stops.map(|(magnitude, place, opacity)| Stop { value: sign * magnitude, place, opacity });
         points.extend(through(side, Palette::diverging(is_negative)).points);
     }
-    Some(Found { transfer: of_points(points), domain: Domain::Simulation })
+    Some(Found::of_values(of_points(points), Domain::Simulation))
 }
 
 /// The magnitude from which values are strong, of magnitudes in order.

@@ -152,6 +152,18 @@ fn every_label_is_shown_alike_in_a_color_of_its_own() {
     assert!((red - crate::model::linear_from_srgb(f64::from(0.1f32))).abs() < 1e-9, "the file's own colour");
     let settings = Settings { transfer: function, ..Settings::default() };
     assert_eq!(labels_lost(&settings, &labels), 0);
+    // The first look has a table, which says the same.
+    let wishes = Wishes { treated_as: Some(KindName::LabelMap), ..Wishes::default() };
+    let first = first_settings_with(&labels, &Histogram::of(&labels), wishes);
+    assert_eq!((first.labels.len(), labels_lost(&first, &labels)), (11, 0));
+    let named = first.labels.get(38).expect("an entry");
+    assert_eq!((named.name.as_str(), named.color), ("named", [0.1, 0.2, 0.3]));
+    assert!(!first.labels.look(0).visible && named.visible);
+    let mut hidden = first.clone();
+    hidden.labels.entry(38).visible = false;
+    assert_eq!(labels_lost(&hidden, &labels), 1);
+    let other = Wishes { treated_as: Some(KindName::Scalar), ..wishes };
+    assert!(first_settings_with(&labels, &Histogram::of(&labels), other).labels.is_empty());
     let ramp = Settings { transfer: shown(&labels, KindName::Scalar), ..Settings::default() };
     assert!(labels_lost(&ramp, &labels) > 0, "what it is for");
 }

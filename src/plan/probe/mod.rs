@@ -1,20 +1,13 @@
 //! What is at a point of the picture, and what light gets there: answers for a pointer, on the CPU, by
 //! single rays.
 
+mod rays;
+
 use glam::DVec3;
 
-use crate::data::{Missing, Volume};
-use crate::math::{Bounds, Region, SceneSpace};
-use crate::model::{BakedTransfer, LightKind, Settings, Sides};
-
-/// Share of the light to the eye that must have been met for something to count as seen: half.
-const SEEN: f64 = 0.5;
-
-/// Less than this share of a ray's light met: nothing is seen.
-const NOTHING: f64 = 0.03;
-
-/// Voxel edges (the smallest) per step of a ray.
-const STEP: f64 = 0.5;
+use self::rays::Rays;
+use crate::data::Volume;
+use crate::model::{LightKind, Settings, Sides};
 
 /// What is seen somewhere in the picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,29 +38,25 @@ pub struct Arrival {
     pub facing: Option<f64>,
 }
 
-/// A volume and what makes it visible, for single rays.
-struct Rays<'a> {
-    volume: &'a Volume,
-    scene: SceneSpace,
-}
-
 /// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
-    let range = settings.shown_range(&volume.ranges());
-    let volume = &volume.showing(range);
-    let rays = Rays { volume, scene: volume.scene() };
+    let volume = &volume.showing(settings.shown(&volume.ranges()));
+    let (settings, range) = (&*settings.as_drawn(volume), volume.table_range());
+    let is_by_label = volume.shown_labels().is_some();
+    let rays = Rays { volume, scene: volume.scene(), is_by_label };
     let scene = &rays.scene;
     let eye = settings.baked_eye(range, scene);
     let seen = settings.cuts.seen().region(scene);
     let point = rays.first_seen(&eye, &seen, origin, direction)?;
     let index = scene.index_from_scene.transform_point3(point);
     // As the file has it, beyond what is shown, too.
-    let value = rays.value(index);
+    let value = rays.value(index, &eye);
     let lighting = settings.baked_lighting(range, scene);
     let is_one_sided = settings.shading.sides == Sides::One;
     // Opacity falls towards high densities: into a solid, too, in which it rises.
-    let turned = if is_one_sided && eye.side(rays.density(index)) < 0.0 { -1.0 } else { 1.0 };
-    let normal = rays.gradient(point, &seen, turned).normalize_or_zero() * -turned;
+    let falls = is_one_sided && !is_by_label && eye.side(rays.field(index, &eye).0) < 0.0;
+    let turned = if falls { -1.0 } else { 1.0 };
+    let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
     let shading_cut = settings.cuts.shading().region(scene);
     let lights = settings
         .lights
@@ -101,133 +90,9 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         index,
         world_mm: volume.world_from_index().transform_point3(index),
         value,
-        opacity: settings.transfer.opacity_at(value),
+        opacity: settings.transfer.opacity_at(range.at(volume.density_of(value))),
         lights,
     })
-}
-
-impl Rays<'_> {
-    /// The box of the voxels, in index space: nothing lies outside.
-    fn grid(&self) -> Bounds {
-        Bounds::of_grid(self.volume.dims(), 0.0)
-    }
-
-    fn step(&self) -> f64 {
-        STEP * self.scene.smallest_edge()
-    }
-
-    /// Where a ray enters what remains of the grid and where it leaves it, from its origin on.
-    fn span(&self, remains: &Region, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
-        let origin = self.scene.index_from_scene.transform_point3(origin);
-        let direction = self.scene.index_from_scene.transform_vector3(direction);
-        let (enter, leave) = remains.within(&self.grid()).span(origin, direction);
-        let enter = enter.max(0.0);
-        (enter < leave).then_some((enter, leave))
-    }
-
-    /// Where half of what a ray meets has been met.
-    fn first_seen(
-        &self,
-        table: &BakedTransfer,
-        seen: &Region,
-        origin: DVec3,
-        direction: DVec3,
-    ) -> Option<DVec3> {
-        let (enter, leave) = self.span(seen, origin, direction)?;
-        let step = self.step();
-        let mut met = Vec::new();
-        let mut transmittance = 1.0;
-        let mut at = enter + 0.5 * step;
-        while at < leave && transmittance > 0.01 {
-            let tau = self.extinction(table, origin + direction * at) * step;
-            transmittance *= (-tau).exp();
-            met.push((at, 1.0 - transmittance));
-            at += step;
-        }
-        let all = 1.0 - transmittance;
-        if all < NOTHING {
-            return None;
-        }
-        let (at, _) = met.into_iter().find(|&(_, opacity)| opacity >= SEEN * all)?;
-        Some(origin + direction * at)
-    }
-
-    /// ∫ extinction from a step beyond a point towards a light: what is seen does not shade itself.
-    fn optical_depth(
-        &self,
-        table: &BakedTransfer,
-        remains: &Region,
-        point: DVec3,
-        towards: DVec3,
-        distance: f64,
-    ) -> f64 {
-        let Some((enter, leave)) = self.span(remains, point, towards) else { return 0.0 };
-        let step = self.step();
-        let first = (enter / step).ceil().max(1.0) as usize;
-        let last = (leave.min(distance) / step).floor().max(1.0) as usize;
-        let sum: f64 =
-            (first..last).map(|k| self.extinction(table, point + towards * ((k as f64 + 0.5) * step))).sum();
-        sum * step
-    }
-
-    fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {
-        let index = self.scene.index_from_scene.transform_point3(point);
-        let (density, there) = self.density_where_there(index);
-        table.sample(density)[3] * there
-    }
-
-    /// The density between voxels, linearly; that of the border beyond it; 0 where no voxel nearby is there.
-    fn density(&self, index: DVec3) -> f64 {
-        self.density_where_there(index).0
-    }
-
-    /// The density, and the share of the voxels nearby that are there.
-    fn density_where_there(&self, index: DVec3) -> (f64, f64) {
-        self.between_voxels(index, |value| self.volume.density_of(value))
-    }
-
-    /// The value between voxels, linearly.
-    fn value(&self, index: DVec3) -> f64 {
-        self.between_voxels(index, |value| value).0
-    }
-
-    /// The mean of what the voxels around a point that are there are, by their weights, and the sum of these.
-    fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
-        let dims = self.volume.dims();
-        let last = DVec3::from(dims.map(|n| (n - 1) as f64));
-        let at = index.clamp(DVec3::ZERO, last);
-        let low = at.floor();
-        let f = at - low;
-        let (mut sum, mut there) = (0.0, 0.0);
-        for side in 0..8 {
-            let [x, y, z] =
-                [0, 1, 2].map(|axis| (low[axis] as usize + (side >> axis & 1)).min(dims[axis] - 1));
-            let is_missing = |missing: &Missing| missing.contains(x + dims[0] * (y + dims[1] * z));
-            if self.volume.missing().is_some_and(is_missing) {
-                continue;
-            }
-            let weight: f64 =
-                (0..3).map(|axis| if side >> axis & 1 == 1 { f[axis] } else { 1.0 - f[axis] }).product();
-            sum += weight * of(self.volume.value(x, y, z));
-            there += weight;
-        }
-        if there > 0.0 { (sum / there, there) } else { (0.0, 0.0) }
-    }
-
-    /// ∇ density in scene space, by central differences over a voxel, and `turned` times that of a solid of density 1
-    /// which ends where voxels are missing, at the faces of the grid and where it is cut.
-    fn gradient(&self, point: DVec3, seen: &Region, turned: f64) -> DVec3 {
-        let edge = self.scene.smallest_edge();
-        let seen = seen.within(&self.grid());
-        let index_of = |point| self.scene.index_from_scene.transform_point3(point);
-        let here = self.density(index_of(point));
-        let at = |offset: DVec3| {
-            let index = index_of(point + offset * edge);
-            let (density, there) = self.density_where_there(index);
-            if there > 0.0 && seen.contains(index) { density + turned * there } else { here }
-        };
-        DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)
-    }
 }
 
 #[cfg(test)]
@@ -354,6 +219,40 @@ mod tests {
         assert!(from_above(&turned, &settings) < -0.9);
         settings.shading.sides = Sides::Two;
         assert!(from_above(&turned, &settings) > 0.9);
+    }
+
+    #[test]
+    fn of_labels_one_is_met_and_none_between_two() {
+        use crate::model::LabelLook;
+        let n = 16;
+        // A box of label 9 in a box of label 3, with nothing around.
+        let value = |at: usize| {
+            let [x, y, z] = [at % n, at / n % n, at / n / n].map(|c| c.abs_diff(8).max(c.abs_diff(7)));
+            match x.max(y).max(z) {
+                0..=3 => 9,
+                4..=6 => 3,
+                _ => 0,
+            }
+        };
+        let samples = Samples::U8((0..n * n * n).map(value).collect());
+        let volume = Volume::with_spacing("boxes", [n; 3], DVec3::ONE, samples).unwrap();
+        let mut settings = Settings { lights: vec![Light::default()], ..Settings::default() };
+        let look = |visible| LabelLook { opacity: 0.95, visible, ..LabelLook::of(9) };
+        settings.labels = [(3, look(true)), (9, look(true))].into_iter().collect();
+        let found = |settings: &Settings| {
+            let rows = (0..20).flat_map(|x| (0..20).map(move |y| [x, y].map(|c| f64::from(c) / 12.0 - 0.8)));
+            rows.filter_map(|[x, y]| probe(&volume, settings, DVec3::new(x, y, 3.0), DVec3::NEG_Z))
+                .map(|seen| seen.value)
+                .collect::<Vec<_>>()
+        };
+        let values = found(&settings);
+        assert!(values.len() > 100 && values.iter().all(|&value| value == 3.0), "{values:?}");
+        settings.labels.entry(3).visible = false;
+        let values = found(&settings);
+        assert!(values.len() > 30 && values.iter().all(|&value| value == 9.0), "{values:?}");
+        let seen = probe(&volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).unwrap();
+        assert!((seen.opacity - 0.95).abs() < 1e-9, "{seen:?}");
+        assert!(seen.index.z > 8.0 && seen.index.z < 12.5, "{seen:?}");
     }
 
     #[test]

@@ -3,8 +3,7 @@
 
 use std::sync::OnceLock;
 
-use super::srgb_from_lch;
-use crate::model::{lab_from_lch, linear_from_oklab, oklab_from_linear};
+use crate::model::{lab_from_lch, linear_from_oklab, oklab_from_linear, srgb_from_lch};
 
 /// Different colours; they repeat for numbers beyond. The most alike of them are 0.015 apart in Oklab (a test measures
 /// it), which is hardly told apart side by side: more could not be.
@@ -20,7 +19,7 @@ const SPREAD: f64 = 0.07;
 const MOST_CHROMA: f64 = 0.17;
 
 /// The colour of a label by its number: always the same for the same number.
-pub(in crate::model::auto) fn category(number: i64) -> [f32; 3] {
+pub fn category(number: i64) -> [f32; 3] {
     static COLORS: OnceLock<Vec<[f32; 3]>> = OnceLock::new();
     let colors = COLORS.get_or_init(|| farthest_first().into_iter().map(srgb_from_lch).collect());
     // Zero is what is around: labels begin with one.

@@ -1,0 +1,53 @@
+//! The section of the labels, and what the transfer editor says of them.
+
+use crate::app::text::{Named, named};
+
+pub(crate) const FILTER: Named =
+    named("Filter labels", "Lists only those whose number or name has this in it; empties with Escape");
+pub(crate) const FILTER_HINT: &str = "number or name";
+pub(crate) const SHOW_ALL: Named =
+    named("Show listed", "Shows every label of the list; not 0 and what is below, which is around them");
+pub(crate) const HIDE_ALL: Named = named("Hide listed", "Hides every label of the list, and its shadow");
+pub(crate) const ONLY_TIP: &str = "Shows this one alone";
+pub(crate) const VISIBLE_TIP: &str = "Whether it is there at all, for the eye and for light";
+pub(crate) const OPACITY_TIP: &str = "Per opacity unit";
+pub(crate) const NAME_HINT: &str = "unnamed";
+
+/// In place of the curve.
+pub(crate) const INSTEAD: &str = "Labels have a table of looks instead of a curve: see Labels in the panel";
+pub(crate) const USE_CURVE: Named =
+    named("Use a curve", "Shows numbers as values, by a curve; Automatic brings the table back");
+
+/// What screen readers call the parts of a row.
+pub(crate) fn visible(number: i64) -> String {
+    format!("Show label {number}")
+}
+
+pub(crate) fn color(number: i64) -> String {
+    format!("Colour of label {number}")
+}
+
+pub(crate) fn only(number: i64) -> String {
+    format!("Only label {number}")
+}
+
+pub(crate) fn name(number: i64) -> String {
+    format!("Name of label {number}")
+}
+
+pub(crate) fn opacity(number: i64) -> String {
+    format!("Opacity of label {number}")
+}
+
+/// How many labels are listed, of all.
+pub(crate) fn count(listed: usize, all: usize) -> String {
+    if listed == all { format!("{all} labels") } else { format!("{listed} of {all} labels") }
+}
+
+/// What a label's number tells when it is pointed at: its name, how much there is of it, and with which label it shares
+/// its look, if it does.
+pub(crate) fn facts(name: &str, voxels: u64, shares_with: Option<i64>) -> String {
+    let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
+    let shares = shares_with.map_or_else(String::new, |other| format!(", with the look of label {other}"));
+    format!("{name}{voxels} voxels{shares}")
+}

@@ -1,0 +1,193 @@
+//! What the densities of a volume stand for: values, or labels.
+
+use std::sync::{Arc, OnceLock};
+
+use super::{DataKind, KindFound, LabelSet, Samples, Volume};
+use crate::data::ValueRange;
+use crate::data::values::samples::with_samples;
+
+/// What densities from 0 to 1 stand for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shown {
+    /// The values of a range; those outside count as the nearest of them.
+    Range(ValueRange),
+    /// The classes of labels ([`LabelSet`]). Where values are no labels, those that matter.
+    Labels,
+}
+
+impl Volume {
+    /// The same voxels with densities that stand for something else.
+    #[must_use]
+    pub fn showing(&self, shown: impl Into<Shown>) -> Self {
+        let shown = shown.into();
+        if shown == Shown::Labels {
+            // Once for all copies.
+            self.labels();
+        }
+        Self { shown, ..self.clone() }
+    }
+
+    /// What densities stand for: the values that matter, unless something else was asked for by [`Self::showing`].
+    pub fn shown(&self) -> Shown {
+        self.shown
+    }
+
+    /// The labels whose classes densities stand for; `None` where they stand for values.
+    pub fn shown_labels(&self) -> Option<&LabelSet> {
+        if self.shown == Shown::Labels { self.labels() } else { None }
+    }
+
+    /// The values that have densities from 0 to 1, in data units; of labels all.
+    pub fn shown_range(&self) -> ValueRange {
+        match self.shown {
+            Shown::Range(range) => range,
+            Shown::Labels if self.labels().is_some() => self.ranges.all,
+            Shown::Labels => self.ranges.robust,
+        }
+    }
+
+    /// The range that tables of densities are made over: the values that are shown, or the classes of labels.
+    pub fn table_range(&self) -> ValueRange {
+        self.shown_labels().map_or_else(|| self.shown_range(), LabelSet::classes)
+    }
+
+    /// The labels of the volume, if its values can be any: see [`LabelSet`]. The first to ask waits until they are
+    /// counted: about a second for 512³ voxels.
+    pub fn labels(&self) -> Option<&LabelSet> {
+        self.labels.get_or_init(|| LabelSet::of(self).map(Arc::new)).as_deref()
+    }
+
+    /// What is known of the kind of a volume whose voxels stand for blocks of these: fewer voxels of labels are labels,
+    /// whatever can be told of them.
+    pub(super) fn kind_of_parts(&self) -> OnceLock<KindFound> {
+        match self.kind.get() {
+            Some(found) if matches!(found.kind, DataKind::LabelMap { .. }) => OnceLock::from(found.clone()),
+            _ => OnceLock::new(),
+        }
+    }
+
+    /// A value in data units as a density in [0, 1]: 0 at the lowest value that is shown and below, 1 at the highest and
+    /// above; of labels that of the class. Values that are not finite have density 0.
+    pub fn density_of(&self, value: f64) -> f64 {
+        if let Some(labels) = self.shown_labels() {
+            return labels.density_of(value);
+        }
+        density_in(self.shown_range(), value)
+    }
+
+    /// The inverse of [`Self::density_of`], for values that are shown; of labels the first of a class.
+    pub fn value_of(&self, density: f64) -> f64 {
+        match self.shown_labels() {
+            Some(labels) => labels.number_at(density) as f64,
+            None => self.shown_range().at(density),
+        }
+    }
+
+    /// Densities in [0, 1] of the voxels of one z-slice, x fastest. Those that hold nothing have the mean of what is
+    /// near; among labels, of which there is no mean, the density of a neighbour, or where none holds anything, 0.
+    #[expect(
+        trivial_numeric_casts,
+        clippy::unnecessary_cast,
+        reason = "one of the eight types is f64 already"
+    )]
+    pub fn slice_densities(&self, z: usize) -> Vec<f32> {
+        let count = self.dims[0] * self.dims[1];
+        let range = z * count..(z + 1) * count;
+        if let Some(labels) = self.shown_labels() {
+            return self.slice_classes(z, labels);
+        }
+        let shown = self.shown_range();
+        let mut densities: Vec<f32> = with_samples!(&*self.samples, values => values[range]
+            .iter()
+            .map(|&value| density_in(shown, value as f64) as f32)
+            .collect());
+        for (at, value) in self.missing.iter().flat_map(|missing| missing.in_slice(z)) {
+            densities[at] = density_in(shown, value) as f32;
+        }
+        densities
+    }
+
+    /// As [`Self::slice_densities`], of labels.
+    fn slice_classes(&self, z: usize, labels: &LabelSet) -> Vec<f32> {
+        let [nx, ny, nz] = self.dims;
+        // Neighbours are mostly equal.
+        let mut last = (f64::NAN, 0.0);
+        let mut density = |value: f64| {
+            if value != last.0 {
+                last = (value, labels.density_of(value) as f32);
+            }
+            last.1
+        };
+        let first = z * nx * ny;
+        let mut densities: Vec<f32> =
+            (first..first + nx * ny).map(|voxel| density(self.samples.value(voxel))).collect();
+        let Some(missing) = self.missing() else { return densities };
+        // The nearest first: faces, edges, corners.
+        let mut beside: Vec<[isize; 3]> =
+            (0..27).map(|at: isize| [at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1]).collect();
+        beside.sort_by_key(|offset| offset.map(isize::abs).iter().sum::<isize>());
+        for at in (0..nx * ny).filter(|at| missing.contains(first + at)) {
+            let place = [at % nx, at / nx, z];
+            let neighbour = |offset: &[isize; 3]| {
+                let [x, y, z] = [0, 1, 2].map(|axis| place[axis].checked_add_signed(offset[axis]));
+                let (x, y, z) = (x.filter(|&x| x < nx)?, y.filter(|&y| y < ny)?, z.filter(|&z| z < nz)?);
+                Some(x + nx * (y + ny * z)).filter(|&voxel| !missing.contains(voxel))
+            };
+            let near = beside.iter().find_map(neighbour);
+            densities[at] = near.map_or(0.0, |voxel| density(self.samples.value(voxel)));
+        }
+        densities
+    }
+}
+
+impl From<ValueRange> for Shown {
+    fn from(range: ValueRange) -> Self {
+        Self::Range(range)
+    }
+}
+
+/// Where a value lies in a range, as a density.
+fn density_in(range: ValueRange, value: f64) -> f64 {
+    let span = range.span();
+    if value.is_finite() && span > 0.0 { ((value - range.low) / span).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn volume(values: Vec<i16>) -> Volume {
+        Volume::with_spacing("t", [values.len(), 1, 1], DVec3::ONE, Samples::I16(values)).unwrap()
+    }
+
+    #[test]
+    fn labels_have_densities_by_rank() {
+        let labels = volume(vec![0, 40, 3, 3, 900]).showing(Shown::Labels);
+        assert_eq!(labels.slice_densities(0), [0.0, 2.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]);
+        assert_eq!((labels.density_of(40.0), labels.value_of(0.7)), (2.0 / 3.0, 40.0));
+        assert_eq!(labels.table_range(), ValueRange::new(0.0, 3.0));
+        assert_eq!(labels.shown_range(), labels.value_range());
+        // The file's values stay what they are.
+        assert_eq!((labels.value(1, 0, 0), labels.id()), (40.0, volume(vec![0, 40, 3, 3, 900]).id()));
+        let values = labels.showing(labels.value_range());
+        assert_eq!(values.slice_densities(0)[4], 1.0);
+        assert!((values.density_of(40.0) - 40.0 / 900.0).abs() < 1e-12 && values.shown_labels().is_none());
+    }
+
+    #[test]
+    fn what_has_no_labels_shows_the_values_that_matter() {
+        let samples = Samples::F32(vec![0.5, 1.5, 2.5]);
+        let plain = Volume::with_spacing("t", [3, 1, 1], DVec3::ONE, samples).unwrap();
+        let shown = plain.showing(Shown::Labels);
+        assert_eq!((shown.slice_densities(0), shown.shown_labels()), (vec![0.0, 0.5, 1.0], None));
+        assert_eq!(shown.table_range(), shown.ranges().robust);
+    }
+
+    #[test]
+    fn among_labels_neighbours_stand_in_for_what_is_missing() {
+        let padded = volume(vec![3, 255, 255, 255, 9, 9]).with_padding(255.0).unwrap().showing(Shown::Labels);
+        // No label between the two, though their mean is one.
+        assert_eq!(padded.slice_densities(0), [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+    }
+}

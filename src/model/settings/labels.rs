@@ -1,0 +1,385 @@
+//! What labels look like: a table by their numbers instead of a curve over values.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::{LabelSet, Shown, ValueRanges, Volume, single_line};
+use crate::model::{
+    Classification, ControlPoint, Easing, Interpolation, MAX_NAME, MAX_POINTS, Mixing, Settings,
+    TransferFunction, category,
+};
+
+/// Opacity of a label that nobody has chosen one for: it hides what is behind it within a voxel or two.
+const OPACITY: f64 = 0.9;
+
+/// A class is around its number: from halfway to the one below on.
+const HALF: f64 = 0.5;
+
+/// What a label looks like.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LabelLook {
+    /// What it is called; may be empty.
+    pub name: String,
+    /// sRGB, 0 … 1.
+    pub color: [f32; 3],
+    /// Per opacity unit, 0 … 1.
+    pub opacity: f64,
+    /// Whether there is any material.
+    pub visible: bool,
+}
+
+impl LabelLook {
+    /// The look of a label that nobody has given one: the colour of its number; 0 and what is below is what is around
+    /// the labels.
+    pub fn of(number: i64) -> Self {
+        Self { name: String::new(), color: category(number), opacity: OPACITY, visible: number > 0 }
+    }
+
+    /// How opaque it is drawn.
+    pub fn drawn_opacity(&self) -> f64 {
+        if self.visible { self.opacity } else { 0.0 }
+    }
+}
+
+/// The parts of a look that a file names.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Named {
+    name: Option<String>,
+    color: Option<[f32; 3]>,
+    opacity: Option<f64>,
+    visible: Option<bool>,
+}
+
+/// Looks by the number that voxels hold, at most [`MAX_POINTS`]; labels without an entry look like [`LabelLook::of`].
+///
+/// In JSON an object with the numbers as keys; an entry need not name all of a look. Copies share
+/// the entries.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(from = "Option<BTreeMap<i64, Named>>", into = "BTreeMap<i64, LabelLook>")]
+pub struct LabelTable(Arc<BTreeMap<i64, LabelLook>>);
+
+impl PartialEq for LabelTable {
+    fn eq(&self, other: &Self) -> bool {
+        // Settings are compared in every frame.
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
+    }
+}
+
+impl From<Option<BTreeMap<i64, Named>>> for LabelTable {
+    fn from(named: Option<BTreeMap<i64, Named>>) -> Self {
+        let look = |(number, named): (i64, Named)| {
+            let LabelLook { name, color, opacity, visible } = LabelLook::of(number);
+            let look = LabelLook {
+                name: named.name.unwrap_or(name),
+                color: named.color.unwrap_or(color),
+                opacity: named.opacity.unwrap_or(opacity),
+                visible: named.visible.unwrap_or(visible),
+            };
+            (number, look)
+        };
+        named.into_iter().flatten().map(look).collect()
+    }
+}
+
+impl From<LabelTable> for BTreeMap<i64, LabelLook> {
+    fn from(table: LabelTable) -> Self {
+        Arc::unwrap_or_clone(table.0)
+    }
+}
+
+impl FromIterator<(i64, LabelLook)> for LabelTable {
+    fn from_iter<I: IntoIterator<Item = (i64, LabelLook)>>(looks: I) -> Self {
+        Self(Arc::new(looks.into_iter().collect()))
+    }
+}
+
+impl LabelTable {
+    /// Whether there is no table: volumes are shown by their values.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// How many entries it has.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The entry of a number.
+    pub fn get(&self, number: i64) -> Option<&LabelLook> {
+        self.0.get(&number)
+    }
+
+    /// All entries, by number.
+    pub fn iter(&self) -> impl Iterator<Item = (i64, &LabelLook)> {
+        self.0.iter().map(|(&number, look)| (number, look))
+    }
+
+    /// What a label looks like, whether it has an entry or not.
+    pub fn look(&self, number: i64) -> Cow<'_, LabelLook> {
+        self.get(number).map_or_else(|| Cow::Owned(LabelLook::of(number)), Cow::Borrowed)
+    }
+
+    /// The entry of a number, to be changed; made if there is none.
+    pub fn entry(&mut self, number: i64) -> &mut LabelLook {
+        Arc::make_mut(&mut self.0).entry(number).or_insert_with(|| LabelLook::of(number))
+    }
+
+    /// Changes every entry.
+    pub fn for_each(&mut self, change: impl Fn(i64, &mut LabelLook)) {
+        for (&number, look) in Arc::make_mut(&mut self.0).iter_mut() {
+            change(number, look);
+        }
+    }
+
+    /// The table without what labels are called.
+    #[must_use]
+    pub fn unnamed(&self) -> Self {
+        if self.0.values().all(|look| look.name.is_empty()) {
+            return self.clone();
+        }
+        self.iter()
+            .map(|(number, look)| (number, LabelLook { name: String::new(), ..look.clone() }))
+            .collect()
+    }
+
+    /// What pictures are made from: of each entry number, colour and opacity, without what it is called.
+    pub fn materials(&self) -> Vec<LabelMaterial> {
+        let material = |(number, look): (i64, &LabelLook)| LabelMaterial {
+            number,
+            color: look.color,
+            opacity: look.drawn_opacity(),
+        };
+        self.iter().map(material).collect()
+    }
+
+    /// A curve of steps over the classes of labels: from half a class below to half a class above there is the look of
+    /// the label that stands for it.
+    pub fn curve(&self, labels: &LabelSet) -> TransferFunction {
+        let step = |class: usize| {
+            let look = self.look(labels.first_of_class(class).number);
+            let point = ControlPoint::new(class as f64 - HALF, look.color, look.drawn_opacity());
+            ControlPoint { easing: Easing::Step, ..point }
+        };
+        let points = (0..labels.class_count()).map(step).collect();
+        TransferFunction { points, interpolation: Interpolation::Opacity, mixing: Mixing::Light }
+    }
+
+    /// Cuts names and the table to lengths that can be shown, and brings numbers into their ranges.
+    pub(super) fn sanitise(&mut self) {
+        let is_sane = |look: &LabelLook| {
+            (0.0..=1.0).contains(&look.opacity)
+                && look.color.iter().all(|c| (0.0..=1.0).contains(c))
+                && single_line(&look.name, MAX_NAME) == look.name
+        };
+        if self.len() <= MAX_POINTS && self.0.values().all(is_sane) {
+            return;
+        }
+        let table = Arc::make_mut(&mut self.0);
+        while table.len() > MAX_POINTS {
+            table.pop_last();
+        }
+        for LabelLook { name, color, opacity, visible: _ } in table.values_mut() {
+            *name = single_line(name, MAX_NAME);
+            *color = color.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 });
+            *opacity = if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 0.0 };
+        }
+    }
+}
+
+/// What a picture shows of a label.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LabelMaterial {
+    /// What voxels hold.
+    pub number: i64,
+    /// sRGB, 0 … 1.
+    pub color: [f32; 3],
+    /// Per opacity unit; 0 where it is hidden.
+    pub opacity: f64,
+}
+
+impl Settings {
+    /// What densities stand for in pictures of a volume with these values.
+    pub fn shown(&self, ranges: &ValueRanges) -> Shown {
+        if self.labels.is_empty() { Shown::Range(self.shown_range(ranges)) } else { Shown::Labels }
+    }
+
+    /// When the transfer function is applied. Between two labels there is none of the numbers between them: they are
+    /// always classified first.
+    pub fn classification(&self) -> Classification {
+        if self.labels.is_empty() { self.sampling.classification } else { Classification::Pre }
+    }
+
+    /// The settings as a volume is drawn with them: where it is shown by labels, the curve of the eye is made of their
+    /// looks, over their classes; light meets the same, and voxels are classified before they are spread. Keys are the
+    /// same as before.
+    pub fn as_drawn(&self, volume: &Volume) -> Cow<'_, Self> {
+        if self.labels.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let Some(labels) = volume.labels() else { return Cow::Borrowed(self) };
+        let mut drawn = self.clone();
+        drawn.transfer = self.labels.curve(labels);
+        drawn.lighting.linked = true;
+        drawn.sampling.classification = self.classification();
+        Cow::Owned(drawn)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{MAX_CLASSES, Samples};
+    use crate::model::{BakedTransfer, Length, apply_path, load_json, to_json};
+    use glam::DVec3;
+    use half::f16;
+
+    /// A volume with these labels in a row.
+    fn volume(numbers: Vec<i32>) -> Volume {
+        let dims = [numbers.len(), 1, 1];
+        Volume::with_spacing("t", dims, DVec3::ONE, Samples::I32(numbers)).unwrap().showing(Shown::Labels)
+    }
+
+    fn baked(settings: &Settings, volume: &Volume) -> BakedTransfer {
+        settings.as_drawn(volume).baked_eye(volume.table_range(), &volume.scene())
+    }
+
+    fn with(labels: LabelTable) -> Settings {
+        Settings { labels, opacity_unit: Length::Mm(1.0), ..Settings::default() }
+    }
+
+    /// A look that no other number has.
+    fn unmistakable(number: i64) -> LabelLook {
+        let share = |by: i64| ((number * by).rem_euclid(251) as f32 + 1.0) / 256.0;
+        let opacity = f64::from(share(101));
+        LabelLook { color: [share(1), share(7), share(31)], opacity, ..LabelLook::of(number) }
+    }
+
+    #[test]
+    fn every_label_has_its_look_and_nothing_of_another() {
+        for count in 2..=MAX_CLASSES {
+            let numbers: Vec<i32> = (0..count).map(|rank| 3 * rank as i32 + 1).collect();
+            let volume = volume(numbers.clone());
+            let looks = numbers.iter().map(|&number| (i64::from(number), unmistakable(number.into())));
+            let settings = with(looks.collect());
+            let table = baked(&settings, &volume);
+            let wanted = settings.as_drawn(&volume).into_owned().transfer;
+            for (rank, density) in volume.slice_densities(0).into_iter().enumerate() {
+                let look = settings.labels.look(numbers[rank].into());
+                assert_eq!(wanted.opacity_at(rank as f64) as f32, look.opacity as f32);
+                let own = table.entries[(rank as f64 * 1023.0 / (count - 1) as f64).round() as usize];
+                let unorm = (density * 65535.0).round() / 65535.0;
+                for stored in [f16::from_f32(density).to_f32(), unorm] {
+                    let at = f64::from(stored) * 1023.0;
+                    let low = (at as usize).min(1022);
+                    for entry in low..=low + usize::from(at > low as f64) {
+                        assert_eq!(table.entries[entry], own, "{count} labels, {rank}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_do_not_matter_and_their_order_decides_densities_alone() {
+        let before = [0, 3, 9, 3, 200];
+        let looks = [(0, 0), (3, 1), (9, 2), (200, 3)];
+        let look = |at: i64| LabelLook { visible: true, ..unmistakable(10 + at) };
+        let material = |volume: &Volume, settings: &Settings| -> Vec<[f64; 4]> {
+            let table = baked(settings, volume);
+            volume.slice_densities(0).into_iter().map(|density| table.sample(f64::from(density))).collect()
+        };
+        let table = |renumbered: &dyn Fn(i32) -> i32| {
+            let entries = looks.map(|(number, at)| (i64::from(renumbered(number)), look(at)));
+            let settings = with(entries.into_iter().collect());
+            (volume(before.map(renumbered).to_vec()), settings)
+        };
+        let (plain, settings) = table(&|number| number);
+        let (kept, kept_settings) = table(&|number| 2 * number + 1000);
+        assert_eq!(kept.slice_densities(0), plain.slice_densities(0));
+        assert_eq!(baked(&kept_settings, &kept), baked(&settings, &plain));
+        let (turned, turned_settings) = table(&|number| 500 - number);
+        assert_ne!(turned.slice_densities(0), plain.slice_densities(0));
+        assert_eq!(material(&turned, &turned_settings), material(&plain, &settings));
+    }
+
+    #[test]
+    fn what_is_hidden_has_no_material_for_eye_and_light() {
+        let volume = volume(vec![0, 1, 2]);
+        let mut settings =
+            with([(2, LabelLook { visible: false, ..LabelLook::of(2) })].into_iter().collect());
+        // A curve for light makes no sense over labels.
+        settings.lighting.linked = false;
+        settings.lighting.scale = 0.5;
+        let drawn = settings.as_drawn(&volume);
+        let (range, scene) = (volume.table_range(), volume.scene());
+        let (eye, light) = (drawn.baked_eye(range, &scene), drawn.baked_lighting(range, &scene));
+        assert_eq!([0.0, 1.0].map(|density| eye.sample(density)[3]), [0.0; 2]);
+        assert!(eye.sample(0.5)[3] > 0.0);
+        for (eye, light) in eye.entries.iter().zip(&light.entries) {
+            assert_eq!(0.5 * eye[3], light[3]);
+        }
+        assert_eq!(settings.classification(), Classification::Pre);
+        assert_eq!(drawn.sampling.classification, Classification::Pre);
+        assert_eq!(settings.over(crate::data::ValueRange::new(-5.0, 5.0), &volume.ranges()), settings);
+        // Once drawn, it stays as it is.
+        assert_eq!(drawn.as_drawn(&volume), drawn);
+    }
+
+    #[test]
+    fn without_a_table_nothing_changes() {
+        let volume = volume(vec![0, 1, 2]);
+        let settings = Settings::default();
+        assert!(matches!(settings.as_drawn(&volume), Cow::Borrowed(same) if *same == settings));
+        assert_eq!(settings.shown(&volume.ranges()), Shown::Range(volume.ranges().robust));
+        // Nor where there are no labels to be looked up.
+        let fields = Volume::with_spacing("t", [2, 1, 1], DVec3::ONE, Samples::F32(vec![0.0, 0.5])).unwrap();
+        let settings = with([(1, LabelLook::of(1))].into_iter().collect());
+        assert!(matches!(settings.as_drawn(&fields), Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn tables_are_written_by_number_and_read_in_part() {
+        let look = LabelLook { name: "Left lung".to_owned(), visible: false, ..LabelLook::of(17) };
+        let settings = with([(17, look), (-3, LabelLook::of(-3))].into_iter().collect());
+        let text = to_json(&settings);
+        assert!(text.contains(r#""17": {"#) && text.contains(r#""-3": {"#), "{text}");
+        let (back, warnings) = load_json(&Settings::default(), &text).unwrap();
+        assert_eq!((back.labels, warnings.len()), (settings.labels.clone(), 0));
+        let part = r#"{"labels": {"17": {"opacity": 0.2}, "4": {"visible": false}}}"#;
+        let (laid_over, warnings) = load_json(&settings, part).unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+        let changed = laid_over.labels.get(17).unwrap();
+        assert_eq!((changed.opacity, changed.name.as_str(), changed.visible), (0.2, "Left lung", false));
+        assert_eq!(laid_over.labels.get(4), Some(&LabelLook { visible: false, ..LabelLook::of(4) }));
+        assert_eq!(laid_over.labels.len(), 3);
+        let set = |path: &str, value: &str| apply_path(&settings, path, value).unwrap().labels;
+        assert!(set("labels.17.visible", "true").get(17).unwrap().visible);
+        assert_eq!(set("labels.5.opacity", "0.25").get(5).unwrap().opacity, 0.25, "made where there is none");
+        assert!(set("labels", "{}").is_empty());
+        assert!(apply_path(&settings, "labels.lung.visible", "true").is_err());
+        assert!(apply_path(&settings, "labels.17.colour", "true").is_err());
+    }
+
+    #[test]
+    fn tables_are_bounded_and_sane() {
+        let wild = LabelLook {
+            name: format!("a\u{1b}{}", "n".repeat(1000)),
+            color: [f32::NAN, 2.0, -1.0],
+            opacity: f64::INFINITY,
+            visible: true,
+        };
+        let mut settings = with((0..MAX_POINTS as i64 + 9).map(|number| (number, wild.clone())).collect());
+        settings.sanitise();
+        assert_eq!(settings.labels.len(), MAX_POINTS);
+        let look = settings.labels.get(3).unwrap();
+        assert_eq!((look.color, look.opacity), ([1.0, 1.0, 0.0], 0.0));
+        assert!(look.name.chars().count() == MAX_NAME && !look.name.contains('\u{1b}'));
+        let sane = settings.clone();
+        settings.sanitise();
+        assert_eq!(settings, sane);
+    }
+}

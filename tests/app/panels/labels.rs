@@ -1,0 +1,109 @@
+//! The table of labels in the panel, and what it changes in the picture.
+
+use chiaroscuro::app::{App, Options};
+use eframe::egui::{self, Modifiers, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{click, picture, wait_until_idle, window_with};
+
+/// Voxels along each edge of the label map.
+const N: usize = 24;
+
+/// A window with a label map: slabs of these labels along x, with a margin of 0 around.
+fn window_of(labels: &[u8]) -> (Harness<'static, App>, tempfile::TempDir) {
+    let header = format!(
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {N} {N} {N}\nencoding: raw\nmodality:=SEG\n\
+         Segment0_Name:=Left lung\nSegment0_LabelValue:=9\n\n"
+    );
+    let inner = N - 4;
+    let value = |at: usize| {
+        let place = [at % N, at / N % N, at / N / N];
+        let is_inside = place.iter().all(|c| (2..N - 2).contains(c));
+        if is_inside { labels[(place[0] - 2) * labels.len() / inner] } else { 0 }
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("labels.nrrd");
+    let file: Vec<u8> = header.bytes().chain((0..N * N * N).map(value)).collect();
+    std::fs::write(&path, file).expect("a file");
+    let options = Options { source: Some(path), ..Options::default() };
+    (window_with(options, Vec2::new(760.0, 1300.0)), folder)
+}
+
+/// Which labels are visible.
+fn visible(harness: &Harness<'_, App>) -> Vec<i64> {
+    let labels = &harness.state().settings().labels;
+    labels.iter().filter(|(_, look)| look.visible).map(|(number, _)| number).collect()
+}
+
+fn press(harness: &mut Harness<'_, App>, label: &str) {
+    click(harness, label);
+    wait_until_idle(harness);
+    harness.run_steps(2);
+}
+
+#[test]
+fn labels_are_hidden_and_shown_by_their_rows() {
+    let (mut harness, _folder) = window_of(&[3, 9, 200]);
+    assert_eq!(visible(&harness), [3, 9, 200]);
+    let unnamed = harness.unnamed_widgets();
+    assert!(unnamed.is_empty(), "{unnamed:#?}");
+    let (all, _) = picture(&mut harness);
+    press(&mut harness, "Show label 9");
+    assert_eq!(visible(&harness), [3, 200]);
+    let (two, _) = picture(&mut harness);
+    assert!(two != all, "one is gone");
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(visible(&harness), [3, 9, 200], "one step back");
+    assert!(picture(&mut harness).0 == all);
+    press(&mut harness, "Only label 200");
+    assert_eq!(visible(&harness), [200]);
+    harness.get_by_label("Name of label 200").focus();
+    harness.get_by_label("Name of label 200").type_text("Rib");
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings().labels.get(200).map(|look| look.name.as_str()), Some("Rib"));
+    press(&mut harness, "Show listed");
+    assert_eq!(visible(&harness), [3, 9, 200], "but not what is around them");
+    press(&mut harness, "Hide listed");
+    assert_eq!(visible(&harness), [0; 0]);
+    assert_eq!(harness.state().errors(), [""; 0]);
+}
+
+#[test]
+fn a_curve_takes_the_place_of_the_table_and_gives_it_back() {
+    let (mut harness, _folder) = window_of(&[3, 9, 200]);
+    let table = harness.state().settings().labels.clone();
+    assert_eq!(table.get(9).map(|look| look.name.as_str()), Some("Left lung"));
+    assert!(harness.query_by_label("Transfer function").is_none(), "there is no curve");
+    press(&mut harness, "Use a curve");
+    assert!(harness.state().settings().labels.is_empty());
+    assert!(harness.query_by_label("Transfer function").is_some());
+    assert!(harness.query_by_label("Show label 9").is_none());
+    press(&mut harness, "Automatic");
+    assert_eq!(harness.state().settings().labels, table);
+    assert_eq!(harness.state().errors(), [""; 0]);
+}
+
+#[test]
+fn long_tables_are_filtered_and_scrolled() {
+    let labels: Vec<u8> = (1..=20).collect();
+    let (mut harness, _folder) = window_of(&labels);
+    assert!(harness.query_by_label("Show label 3").is_some());
+    assert!(harness.query_by_label("Show label 20").is_none(), "it is further down");
+    for (words, hidden) in [("lung", 9), ("20", 20)] {
+        let field = harness.get_by_label("Filter labels");
+        field.focus();
+        field.type_text(words);
+        harness.run_steps(3);
+        assert!(harness.query_by_label("Show label 3").is_none(), "{words}");
+        press(&mut harness, &format!("Show label {hidden}"));
+        assert!(!visible(&harness).contains(&hidden), "{words}");
+        harness.get_by_label("Filter labels").focus();
+        harness.run_steps(1);
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(3);
+        assert!(harness.query_by_label("Show label 3").is_some(), "Escape empties the filter");
+    }
+    assert_eq!(visible(&harness).len(), 18);
+}
