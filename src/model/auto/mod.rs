@@ -78,7 +78,7 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
         camera: Camera { up, ..Camera::default() },
         transfer: found.transfer,
         labels: found.labels,
-        opacity_unit: volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm),
+        opacity_unit: opacity_unit(volume),
         lights: Vec::new(),
         shading: shading(found.domain),
         // A look that nobody has made by hand stays as bright as without shadows.
@@ -95,8 +95,13 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
     }
     aim(&mut settings, volume);
     match kind {
-        // Every number is shown already.
-        DataKind::LabelMap { .. } | DataKind::Mask => settings,
+        // Every number is shown already; what hides the others is framed, too.
+        DataKind::LabelMap { .. } => {
+            let unit = settings.opacity_unit;
+            transfer::thin_cover(&mut settings.labels, volume, unit);
+            settings
+        }
+        DataKind::Mask => settings,
         _ => visible::or_another(settings, volume, histogram, kind),
     }
 }
@@ -108,6 +113,11 @@ fn aim(settings: &mut Settings, volume: &Volume) {
     view::choose(&mut settings.camera, volume, &object);
     frame::frame(settings, volume, &object);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
+}
+
+/// The length to which opacities of a first look refer.
+fn opacity_unit(volume: &Volume) -> Length {
+    volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm)
 }
 
 /// Stands what settings show of a volume up so that an axis of the scene points up, on the floor and in the light as
@@ -171,7 +181,11 @@ pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<Ki
 /// maps.
 pub fn labels_as(volume: &Volume, treated_as: Option<KindName>) -> LabelTable {
     match kind_of(volume, treated_as) {
-        DataKind::LabelMap { .. } => transfer::label_table(volume),
+        DataKind::LabelMap { .. } => {
+            let mut labels = transfer::label_table(volume);
+            transfer::thin_cover(&mut labels, volume, opacity_unit(volume));
+            labels
+        }
         _ => LabelTable::default(),
     }
 }

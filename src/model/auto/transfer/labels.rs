@@ -75,12 +75,18 @@ pub(in crate::model::auto) fn lost_labels(settings: &Settings, volume: &Volume) 
     let volume = volume.showing(settings.shown(&volume.ranges()));
     let function = &drawn.transfer;
     let table = function.bake(volume.table_range(), 1.0, 1.0);
+    // Of a label as a whole: a veil is not lost.
+    let thickness = |number: i64| {
+        let labels = volume.labels().map_or(&[][..], |labels| labels.labels());
+        let own = labels.iter().find(|label| label.number == number);
+        own.map_or(1.0, |label| (label.voxels as f64).cbrt())
+    };
     let is_lost = |number: &i64| {
         let density = volume.density_of(*number as f64);
         // The classes of labels; values as they are, also beyond those that are shown.
         let place = volume.shown_labels().map_or(*number as f64, |labels| labels.classes().at(density));
         let [red, green, blue, depth] = table.sample(density);
-        let opacity = 1.0 - (-depth).exp();
+        let opacity = 1.0 - (-depth * thickness(*number)).exp();
         let [found, own] = [[red, green, blue], function.at(place).0].map(oklab_from_linear);
         let apart = found.iter().zip(own).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         opacity < LEAST_SHOWN || apart > ALIKE

@@ -1,5 +1,6 @@
 //! Transfer functions by the kind of data.
 
+mod cover;
 mod dark;
 mod hounsfield;
 mod labels;
@@ -15,6 +16,7 @@ use super::palette::Palette;
 use crate::data::{DataKind, Histogram, Volume};
 use crate::model::{ControlPoint, Interpolation, LabelTable, Mixing, TransferFunction};
 
+pub(super) use self::cover::thin_cover;
 pub(super) use self::labels::{lost_labels, range as range_of_labels, table as label_table};
 pub(super) use self::scalar::beginning_at;
 

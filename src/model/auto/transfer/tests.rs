@@ -6,7 +6,7 @@ use super::find;
 use crate::data::{DataKind, Hints, Histogram, KindName, Meaning, Modality, Samples, Volume};
 use crate::model::auto::domain::Domain;
 use crate::model::auto::{Wishes, first_settings_with, labels_lost, transfer_as};
-use crate::model::{DensityRange, Easing, MAX_POINTS, Settings, TransferFunction};
+use crate::model::{DensityRange, Easing, LabelTable, MAX_POINTS, Settings, TransferFunction};
 
 const N: usize = 32;
 
@@ -181,7 +181,9 @@ fn regions(first: usize, count: usize) -> Volume {
 fn labels_are_told_apart_in_the_table_where_it_has_an_entry_for_each() {
     let look = |volume: &Volume| {
         let wishes = Wishes { treated_as: Some(KindName::LabelMap), ..Wishes::default() };
-        first_settings_with(volume, &Histogram::of(volume), wishes)
+        // As where the table is taken away.
+        let labels = LabelTable::default();
+        Settings { labels, ..first_settings_with(volume, &Histogram::of(volume), wishes) }
     };
     for (first, count) in [(1, 40), (1, 500), (1, 600), (1, 900), (1, 1022), (5000, 800)] {
         let volume = regions(first, count);

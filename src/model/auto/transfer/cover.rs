@@ -1,0 +1,137 @@
+//! A label that hides all others, as skin does in a map of organs: it is shown as a veil.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::data::{CountedLabel, Volume};
+use crate::model::{LabelLook, LabelTable, Length};
+
+/// Share of all faces to what is around labels that a cover has. In maps of organs within a body it is 98 % and more; of
+/// regions beside each other none has a third.
+const LEAST_OUTSIDE: f64 = 0.9;
+
+/// Share of the faces of all others that border on it: else they lie beside it, and it hides none of them.
+const LEAST_INSIDE: f64 = 0.75;
+
+/// Light that is left behind a veil as thick as a cube of its voxels: enough to tell colours behind it, and little enough
+/// to see that it is there.
+const LEFT_BEHIND: f64 = 0.75;
+
+/// Makes a veil of a label that hides all others, where opacities refer to a length.
+pub(in crate::model::auto) fn thin_cover(labels: &mut LabelTable, volume: &Volume, opacity_unit: Length) {
+    let Some(CountedLabel { number, voxels }) = cover(volume) else { return };
+    let scene = volume.scene();
+    let voxel = scene.scene_from_index.matrix3.determinant().abs();
+    let thickness = (voxels as f64 * voxel).cbrt() / opacity_unit.in_scene(&scene).max(1e-9);
+    labels.entry(number).opacity = 1.0 - LEFT_BEHIND.powf(1.0 / thickness.max(1.0));
+}
+
+/// The label that hides all others.
+fn cover(volume: &Volume) -> Option<CountedLabel> {
+    let labels = volume.labels().filter(|labels| labels.has_own_classes())?;
+    let faces = Faces::of(volume);
+    let outside: u64 = faces.outside.values().sum();
+    let (&number, &own) = faces.outside.iter().max_by_key(|(_, count)| **count)?;
+    // Faces between two others are within, too.
+    let others: u64 =
+        faces.outside.iter().filter(|(other, _)| **other != number).map(|(_, count)| count).sum();
+    let (mut with_it, mut between) = (0, 0);
+    for (&(a, b), &count) in &faces.between {
+        *(if a == number || b == number { &mut with_it } else { &mut between }) += count;
+    }
+    let hides = with_it as f64 >= LEAST_INSIDE * (with_it + between + others) as f64;
+    let is_cover = own as f64 >= LEAST_OUTSIDE * outside as f64 && with_it > 0 && hides;
+    labels.labels().iter().find(|label| label.number == number && is_cover).copied()
+}
+
+/// Faces between voxels of different labels.
+#[derive(Default)]
+struct Faces {
+    /// Between a label and what is around all of them.
+    outside: BTreeMap<i64, u64>,
+    /// Between two labels, the lower one first.
+    between: BTreeMap<(i64, i64), u64>,
+}
+
+impl Faces {
+    fn of(volume: &Volume) -> Self {
+        let [nx, ny, nz] = volume.dims();
+        let label = |voxel: usize| {
+            let is_missing = volume.missing().is_some_and(|missing| missing.contains(voxel));
+            let number = volume.samples().value(voxel) as i64;
+            Some(number).filter(|&number| !is_missing && LabelLook::of(number).visible)
+        };
+        let of_slice = |z: usize| {
+            let mut faces = Self::default();
+            for at in 0..nx * ny {
+                let voxel = at + nx * ny * z;
+                let own = label(voxel);
+                let beside = [(at % nx + 1 < nx, 1), (at / nx + 1 < ny, nx), (z + 1 < nz, nx * ny)];
+                for (_, offset) in beside.into_iter().filter(|(is_there, _)| *is_there) {
+                    faces.add(own, label(voxel + offset));
+                }
+            }
+            faces
+        };
+        (0..nz).into_par_iter().map(of_slice).reduce(Self::default, Self::with)
+    }
+
+    fn add(&mut self, a: Option<i64>, b: Option<i64>) {
+        match (a, b) {
+            (Some(a), Some(b)) if a != b => *self.between.entry((a.min(b), a.max(b))).or_default() += 1,
+            (Some(own), None) | (None, Some(own)) => *self.outside.entry(own).or_default() += 1,
+            _ => (),
+        }
+    }
+
+    fn with(mut self, other: Self) -> Self {
+        for (label, count) in other.outside {
+            *self.outside.entry(label).or_default() += count;
+        }
+        for (pair, count) in other.between {
+            *self.between.entry(pair).or_default() += count;
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::data::Samples;
+
+    /// Balls of labels, each with a middle and a radius; later ones lie over earlier ones.
+    fn balls(balls: &[(u8, [f64; 3], f64)]) -> Volume {
+        const N: usize = 32;
+        let label = |at: usize| {
+            let place = DVec3::from([at % N, at / N % N, at / N / N].map(|c| c as f64));
+            let last =
+                balls.iter().rev().find(|(_, middle, radius)| place.distance((*middle).into()) < *radius);
+            last.map_or(0, |(label, ..)| *label)
+        };
+        let samples = Samples::U8((0..N * N * N).map(label).collect());
+        Volume::with_spacing("t", [N; 3], DVec3::ONE, samples).unwrap()
+    }
+
+    #[test]
+    fn what_hides_all_others_is_a_veil() {
+        let middle = [15.5; 3];
+        let organs = balls(&[(7, middle, 14.0), (2, [12.0, 15.5, 15.5], 5.0), (3, [20.0, 15.5, 15.5], 4.0)]);
+        assert_eq!(cover(&organs).map(|label| label.number), Some(7));
+        let mut labels = LabelTable::default();
+        thin_cover(&mut labels, &organs, Length::Voxels(1.0));
+        let opacity = labels.look(7).opacity;
+        assert!((0.005..0.02).contains(&opacity), "{opacity}");
+        assert_eq!(labels.len(), 1, "others stay as they are");
+        // Beside each other, one alone, and a speck beside something: each is seen.
+        let beside = balls(&[(1, [9.0, 15.5, 15.5], 7.0), (2, [22.0, 15.5, 15.5], 7.0)]);
+        let alone = balls(&[(4, middle, 10.0)]);
+        let speck = balls(&[(4, middle, 10.0), (5, [2.0; 3], 1.5)]);
+        for (what, volume) in [("beside", beside), ("alone", alone), ("speck", speck)] {
+            assert_eq!(cover(&volume), None, "{what}");
+        }
+    }
+}
