@@ -18,8 +18,10 @@ pub fn treated_as(
     look
 }
 
-/// A first look in place of settings: what has nothing to do with the kind of data stays as it is there. That is how the
-/// picture is made and shown, shadows, cuts, what the floor looks like, and saved views.
+/// A first look in place of settings.
+///
+/// What has nothing to do with the kind of data stays as it is there: how the picture is made and shown, shadows, cuts,
+/// what the floor looks like, and saved views.
 #[must_use]
 pub fn in_place_of(look: Settings, settings: &Settings) -> Settings {
     let Settings { cuts, output, shadows, sampling, floor, views, .. } = settings.clone();
