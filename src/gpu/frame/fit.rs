@@ -1,7 +1,7 @@
 //! Volumes that an adapter cannot hold, with fewer voxels.
 
 use crate::data::load::memory_budget_bytes;
-use crate::data::{Volume, reduced_dims};
+use crate::data::{DataKind, Volume, reduced_dims};
 use crate::gpu::light::volume::attenuation_texture;
 use crate::gpu::volume::{self, presence::Presence};
 use crate::gpu::{Context, GpuError};
@@ -65,9 +65,10 @@ fn larger(block: [usize; 3], dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 
 
 /// Makes the textures of such a volume and of one light, and gives them back.
 fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuError> {
-    // Density, pyramid and light: 44/7 bytes per voxel; and 8/7 for what is there.
-    let per_voxel = if like.missing().is_some() { 52 } else { 44 };
-    let bytes = dims.iter().map(|&n| n as u64).product::<u64>() * per_voxel / 7;
+    // Sevenths of bytes per voxel: of density, pyramid and light 44, of what is there 8, of classified labels 64.
+    let of_missing = if like.missing().is_some() { 8 } else { 0 };
+    let of_labels = if matches!(like.kind().kind, DataKind::LabelMap { .. }) { 64 } else { 0 };
+    let bytes = dims.iter().map(|&n| n as u64).product::<u64>() * (44 + of_missing + of_labels) / 7;
     // A software driver takes memory when it is written to, and the system then ends the program.
     if context.is_software() && bytes > memory_budget_bytes() {
         return Err(GpuError::OutOfMemory { what: "the volume".to_owned(), mebibytes: bytes >> 20 });

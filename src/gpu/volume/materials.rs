@@ -11,6 +11,7 @@ use super::prefilter::{self, level_of, uniform_and_list};
 use super::shapes::padded;
 use super::{Gpu, GpuVolume, LevelViews, texture_3d};
 use crate::data::BRICK_EDGE;
+use crate::data::load::memory_budget_bytes;
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::variant::{Constants, Only, Variant, flag};
 use crate::gpu::resources::pass;
@@ -50,7 +51,15 @@ impl Materials {
         let table = context.buffer("Materials::table", &shares.numbers(), wgpu::BufferUsages::STORAGE);
         let (texture, held_all) = match left {
             Some(left) => (left.texture, left.holds_all),
-            None => (Self::texture(context, volume.volume.dims())?, false),
+            None => {
+                // A software driver takes memory when it is written to, and the system then ends the program.
+                let bytes = padded(volume.volume.dims()).iter().map(|&n| n as u64).product::<u64>() * 64 / 7;
+                if context.is_software() && bytes > memory_budget_bytes() {
+                    let what = "classified voxels".to_owned();
+                    return Err(GpuError::OutOfMemory { what, mebibytes: bytes >> 20 });
+                }
+                (Self::texture(context, volume.volume.dims())?, false)
+            }
         };
         // The lowest density is what bricks hold that are not listed.
         let holds_all = held_all || baked.shows_lowest();
