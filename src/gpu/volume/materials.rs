@@ -51,15 +51,7 @@ impl Materials {
         let table = context.buffer("Materials::table", &shares.numbers(), wgpu::BufferUsages::STORAGE);
         let (texture, held_all) = match left {
             Some(left) => (left.texture, left.holds_all),
-            None => {
-                // A software driver takes memory when it is written to, and the system then ends the program.
-                let bytes = padded(volume.volume.dims()).iter().map(|&n| n as u64).product::<u64>() * 64 / 7;
-                if context.is_software() && bytes > memory_budget_bytes() {
-                    let what = "classified voxels".to_owned();
-                    return Err(GpuError::OutOfMemory { what, mebibytes: bytes >> 20 });
-                }
-                (Self::texture(context, volume.volume.dims())?, false)
-            }
+            None => (Self::texture(context, volume.volume.dims())?, false),
         };
         // The lowest density is what bricks hold that are not listed.
         let holds_all = held_all || baked.shows_lowest();
@@ -76,6 +68,14 @@ impl Materials {
     }
 
     fn texture(context: &Context, dims: [usize; 3]) -> Result<wgpu::Texture, GpuError> {
+        let bytes = bytes(padded(dims).iter().map(|&n| n as u64).product());
+        // A software driver takes memory when it is written to, and the system then ends the program.
+        if context.is_software() && bytes > memory_budget_bytes() {
+            return Err(GpuError::OutOfMemory {
+                what: "classified voxels".to_owned(),
+                mebibytes: bytes >> 20,
+            });
+        }
         context.texture(&wgpu::TextureDescriptor {
             mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
             ..texture_3d(
@@ -152,9 +152,13 @@ impl Materials {
     pub(crate) fn bytes(&self) -> u64 {
         let size = self.texture.size();
         let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
-        // The coarser levels add a seventh.
-        texels * 64 / 7
+        bytes(texels)
     }
+}
+
+/// Bytes of four 16-bit channels for so many texels of the finest level; the coarser levels add a seventh.
+fn bytes(texels: u64) -> u64 {
+    texels * 64 / 7
 }
 
 /// What tells one pipeline that classifies voxels from another.
