@@ -154,10 +154,17 @@ impl<'a> Reference<'a> {
 
     /// What the density that is gathered means.
     fn gathered_table(&self, side: Side) -> BakedTransfer {
-        match (self.classified(side), side) {
-            (Some(classified), _) => classified.table.clone(),
-            (None, Side::Eye) => self.settings.baked_eye(self.range, &self.scene),
-            (None, Side::Lighting) => self.settings.baked_lighting(self.range, &self.scene),
+        match self.classified(side) {
+            Some(classified) => classified.table.clone(),
+            None => self.table(side),
+        }
+    }
+
+    /// The transfer function of a side.
+    fn table(&self, side: Side) -> BakedTransfer {
+        match side {
+            Side::Eye => self.settings.baked_eye(self.range, &self.scene),
+            Side::Lighting => self.settings.baked_lighting(self.range, &self.scene),
         }
     }
 

@@ -107,10 +107,7 @@ impl<'r> Stack<'r> {
         let weights = reference.weights();
         let Classified { field, colors, .. } = classified;
         if weights != Weights::Gather {
-            let voxels = match side {
-                Side::Eye => reference.settings.baked_eye(reference.range, &reference.scene),
-                Side::Lighting => reference.settings.baked_lighting(reference.range, &reference.scene),
-            };
+            let voxels = reference.table(*side);
             let points = (weights == Weights::Scatter).then_some(*quadrature);
             let channels: [Vec<f64>; 4] = std::array::from_fn(|channel| {
                 let of_voxel = |&density: &f64| associated(voxels.sample(density))[channel];
