@@ -93,7 +93,8 @@ fn open_and_close(count: usize) {
     assert!(refused * files.len() >= count / 2, "one of each round is not valid");
 }
 
-/// Gives up so many opens, at a time of chance each.
+/// Gives up so many opens, each at a place of chance: every second when so much has been read, the others after so much of
+/// the time that it usually takes.
 fn give_up(count: usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let edge = 256;
@@ -106,12 +107,19 @@ fn give_up(count: usize) {
     let usual = begin.elapsed();
     let mut random = Random::new(count as u64);
     let (mut given_up, mut slowest) = (0, Duration::ZERO);
-    for _ in 0..count {
+    for at in 0..count {
         let control = LoadControl::new();
-        let after = usual.mul_f64(random.below(1000) as f64 / 1000.0);
+        let share = random.below(1000) as f64 / 1000.0;
         let (result, took) = std::thread::scope(|threads| {
             let loader = threads.spawn(|| load(&control));
-            std::thread::sleep(after);
+            if at % 2 == 0 {
+                let is_read = || control.fraction().is_some_and(|read| read >= share);
+                while !is_read() && !loader.is_finished() {
+                    std::thread::sleep(Duration::from_micros(50));
+                }
+            } else {
+                std::thread::sleep(usual.mul_f64(share));
+            }
             let begin = Instant::now();
             control.cancel();
             (loader.join().expect("no panic"), begin.elapsed())
