@@ -170,15 +170,12 @@ impl Isosurfaces {
             return 0.0;
         }
         let gradient = self.contrast[bin] / self.area[bin];
-        let surface = self.area[bin] + self.on_faces[bin];
-        // A voxel alone has six faces.
-        let compactness = 1.0 - (surface / (6.0 * self.inside[bin])).min(1.0);
         let (usual, spread) = USUAL_SHARE;
         let unusual = (self.inside[bin] / self.voxels / usual).log10() / spread;
         gradient
             * (self.area[bin] / largest_area).sqrt()
             * (1.0 - self.blockness(bin)).powi(2)
-            * compactness
+            * self.compactness_of_bin(bin)
             * (-0.5 * unusual * unusual).exp()
     }
 
@@ -191,6 +188,24 @@ impl Isosurfaces {
             return start;
         }
         self.best().unwrap_or(start)
+    }
+
+    /// How much the density changes from voxel to voxel where it is this one: as it does across the boundary that lies
+    /// there. `None` where there is none.
+    pub(super) fn slope(&self, density: f64) -> Option<f64> {
+        let bin = bin(density as f32);
+        (self.area[bin] > 0.0).then(|| self.contrast[bin] / self.area[bin])
+    }
+
+    /// How much of what is above a density is inside of it: 0 of single voxels, nearly 1 of large pieces.
+    pub(super) fn compactness(&self, density: f64) -> f64 {
+        self.compactness_of_bin(bin(density as f32))
+    }
+
+    fn compactness_of_bin(&self, bin: usize) -> f64 {
+        // A voxel alone has six faces.
+        let surface = self.area[bin] + self.on_faces[bin];
+        if self.inside[bin] == 0.0 { 0.0 } else { 1.0 - (surface / (6.0 * self.inside[bin])).min(1.0) }
     }
 
     /// The density whose isosurface is the best that is not mainly the volume's box.

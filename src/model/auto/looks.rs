@@ -4,11 +4,9 @@
 use glam::DVec3;
 
 use super::threshold::otsu;
-use super::{LEAST_SHOWN, above, floor_color, frame};
+use super::{LEAST_SHOWN, above, floor_color, frame, transfer};
 use crate::data::{Histogram, Volume};
-use crate::model::{
-    Background, Camera, ControlPoint, Easing, Interpolation, Light, Rig, Settings, TransferFunction,
-};
+use crate::model::{Background, Camera, Easing, Light, Rig, Settings, TransferFunction};
 
 /// A look to be tried.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +25,10 @@ const INSIDE: std::ops::RangeInclusive<f64> = 0.01..=0.7;
 /// How much of the opacity of what is outside a veil keeps: the eye goes through it, and sees that it is there.
 const VEIL: f64 = 0.06;
 
+/// Opacity below which what is outside is a veil: surfaces that are opaque begin with 0.3, and a veil keeps half of that at
+/// most.
+const THINNEST: f64 = 0.2;
+
 /// How much of its opacity the whole keeps where what lies behind is to show through.
 const TRANSLUCENT: f64 = 0.3;
 
@@ -40,7 +42,8 @@ const LEFT_PROFILE_DEG: f64 = 120.0;
 /// Fired clay, as modellers use it to judge form by light alone.
 const CLAY: [f32; 3] = [0.80, 0.76, 0.72];
 
-/// Looks of a volume, the first one first: eight, and two more where it has an inner structure. The volume need not have
+/// Looks of a volume, the first one first: eight, another where it has an inner structure, and one more where that is not
+/// within a veil already. The volume need not have
 /// all of its voxels.
 ///
 /// Those that every volume has come first, so that the same number is the same look of whatever is shown.
@@ -65,19 +68,38 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
     paper.floor.shadow_only = true;
     all.push(proposal("On paper", "before white, as in print", paper));
     let mut thin = first.clone();
-    scale_opacity(&mut thin.transfer, TRANSLUCENT);
+    transfer::scale_opacity(&mut thin.transfer, TRANSLUCENT);
     thin.labels.for_each(|_, look| look.opacity *= TRANSLUCENT);
     all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
-    if let Some(start) = inner_start(&first.transfer, volume, histogram) {
-        let inner = Settings { transfer: inner(&first.transfer, start), ..first.clone() };
+    let has_veil = veil_end(&first.transfer);
+    if let Some(start) = has_veil.or_else(|| inner_start(&first.transfer, volume, histogram)) {
+        let inner = Settings { transfer: transfer::inner(&first.transfer, start), ..first.clone() };
         all.push(proposal("Inner structure", "only the densest material", framed(inner, first, volume)));
-        let veil = Settings { transfer: veil(&first.transfer, start), ..first.clone() };
+        if has_veil.is_some() {
+            return sane(all);
+        }
+        let veil = Settings { transfer: transfer::veiled(&first.transfer, start, VEIL), ..first.clone() };
         all.push(proposal("Veil", "the outside is a veil around the densest material", veil));
     }
+    sane(all)
+}
+
+fn sane(mut all: Vec<Proposal>) -> Vec<Proposal> {
     for Proposal { settings, .. } in &mut all {
         settings.sanitise();
     }
     all
+}
+
+/// The value at which what is within a veil begins, of a function that has one: from there on it rises, and all that is
+/// below is hardly opaque.
+fn veil_end(function: &TransferFunction) -> Option<f64> {
+    let points = &function.points;
+    let last_clear = points.iter().rposition(|point| point.opacity <= 0.0)?;
+    let (below, above) = points.split_at(last_clear);
+    let most = below.iter().map(|point| point.opacity).fold(0.0, f64::max);
+    let rises = above.windows(2).all(|pair| pair[0].opacity <= pair[1].opacity);
+    (rises && above.len() > 1 && most > 0.0 && most < THINNEST).then(|| points[last_clear].value)
 }
 
 /// The settings with the camera as near as what they show of the volume allows, and the lights where they were as seen
@@ -118,36 +140,6 @@ fn inner_start(function: &TransferFunction, volume: &Volume, histogram: &Histogr
     (is_ramp && INSIDE.contains(&inside)).then(|| volume.value_of(start))
 }
 
-/// A function that shows what is above a value alone, in ivory.
-fn inner(function: &TransferFunction, start: f64) -> TransferFunction {
-    let end = function.points.last().map_or(start, |point| point.value).max(start);
-    let at = |share: f64| start + share * (end - start);
-    let points = vec![
-        ControlPoint::new(at(0.0), [0.72, 0.60, 0.48], 0.0),
-        ControlPoint::new(at(0.15), [0.87, 0.78, 0.64], 0.6),
-        ControlPoint::new(at(0.5), [0.96, 0.91, 0.82], 0.9),
-        ControlPoint::new(at(1.0), [1.0, 0.98, 0.95], 0.96),
-    ];
-    TransferFunction { points, interpolation: Interpolation::Opacity, ..function.clone() }
-}
-
-/// A function with a veil below a value, and what is above as [`inner`] shows it.
-fn veil(function: &TransferFunction, start: f64) -> TransferFunction {
-    let mut thin = function.clone();
-    scale_opacity(&mut thin, VEIL);
-    let before = thin.points.iter().copied().filter(|point| point.value < start);
-    let edge = thin.point_at(start);
-    let within = inner(function, start).points.into_iter().skip(1);
-    let points = before.chain([edge]).chain(within).collect();
-    TransferFunction { points, ..function.clone() }
-}
-
-fn scale_opacity(function: &mut TransferFunction, share: f64) {
-    for point in &mut function.points {
-        point.opacity *= share;
-    }
-}
-
 /// All in one colour, a little rough, between three lights.
 fn clay(first: &Settings) -> Settings {
     let mut clay = Settings { lights: Rig::KeyFillBack.lights(&first.camera), ..first.clone() };
@@ -173,12 +165,12 @@ mod tests {
     }
 
     #[test]
-    fn looks_are_eight_or_ten_that_differ() {
+    fn looks_are_eight_to_ten_that_differ() {
         for volume in
             [ball(200.0, 0.0), builtin("chair", Some(32)).unwrap(), builtin("cloud", Some(32)).unwrap()]
         {
             let all = proposals(&volume);
-            assert!([8, 10].contains(&all.len()), "{}", all.len());
+            assert!((8..=10).contains(&all.len()), "{}", all.len());
             assert_eq!(all[0].settings, first_settings(&volume, &Histogram::of(&volume)));
             for (at, one) in all.iter().enumerate() {
                 let others = &all[at + 1..];
@@ -219,11 +211,14 @@ mod tests {
         let volume = Volume::with_spacing("core", [n; 3], DVec3::ONE, voxels).unwrap();
         let all = proposals(&volume);
         let of = |name: &str| &all.iter().find(|one| one.name == name).expect("a look").settings;
-        let (inner, veil) = (of("Inner structure"), of("Veil"));
+        // It is hidden: the first look has a veil around it, a skin that is clear as glass within.
+        let (inner, first) = (of("Inner structure"), &all[0].settings);
         assert_eq!(inner.transfer.opacity_at(90.0), 0.0);
-        assert!(inner.transfer.opacity_at(220.0) > 0.5 && veil.transfer.opacity_at(220.0) > 0.5);
-        assert!((0.001..0.1).contains(&veil.transfer.opacity_at(90.0)));
-        assert!(inner.camera.distance < all[0].settings.camera.distance, "nearer to what is smaller");
+        assert!(inner.transfer.opacity_at(220.0) > 0.5 && first.transfer.opacity_at(220.0) > 0.5);
+        let skin = (0..90).map(|value| first.transfer.opacity_at(f64::from(value))).fold(0.0, f64::max);
+        assert!((0.001..THINNEST).contains(&skin) && first.transfer.opacity_at(90.0) < 0.5 * skin, "{skin}");
+        assert!(inner.camera.distance < first.camera.distance, "nearer to what is smaller");
+        assert!(all.iter().all(|one| one.name != "Veil"), "it is the first");
     }
 
     #[test]
@@ -232,7 +227,8 @@ mod tests {
         let histogram = Histogram::of(&volume);
         let mut first = first_settings(&volume, &histogram);
         // Opaque at both ends, as signed fields are.
-        let opaque = ControlPoint::new(first.transfer.points[0].value - 1.0, [0.2, 0.3, 0.9], 0.9);
+        let opaque =
+            crate::model::ControlPoint::new(first.transfer.points[0].value - 1.0, [0.2, 0.3, 0.9], 0.9);
         first.transfer.points.insert(0, opaque);
         let all = looks(&first, &volume, &histogram);
         assert!(all.iter().all(|one| one.name != "Veil"));

@@ -12,12 +12,15 @@ mod isosurfaces;
 mod looks;
 mod object;
 mod palette;
+mod reveal;
 #[cfg(test)]
 mod robustness;
+mod skin;
 mod threshold;
 mod transfer;
 mod treated;
 mod view;
+mod visibility;
 mod visible;
 
 pub use self::floor::{floor_color, wants_floor};
@@ -73,6 +76,7 @@ fn with_what_matters<T>(
 fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
     let kind = kind_of(volume, wishes.treated_as);
     let found = transfer::find(volume, histogram, kind);
+    let (domain, has_veil) = (found.domain, found.has_veil);
     let up = if volume.is_anatomical() { SceneAxis::PlusZ } else { wishes.up };
     let mut settings = Settings {
         camera: Camera { up, ..Camera::default() },
@@ -94,6 +98,9 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
         (settings.sampling.kernel, settings.shadows.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
     }
     aim(&mut settings, volume);
+    if has_veil {
+        settings = framed_with_veil(settings, volume);
+    }
     match kind {
         // Every number is shown already; what hides the others is framed, too.
         DataKind::LabelMap { .. } => {
@@ -102,6 +109,19 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
             settings
         }
         DataKind::Mask => settings,
+        DataKind::Scalar => {
+            let settings = visible::or_another(settings, volume, histogram, kind);
+            reveal::revealed(settings, volume, histogram)
+        }
+        DataKind::HounsfieldCt { water } => {
+            let bones = (domain == Domain::Bone).then(|| settings.transfer.clone());
+            let settings = visible::or_another(settings, volume, histogram, kind);
+            if bones.is_some_and(|bones| bones == settings.transfer) {
+                skin::added(settings, volume, water)
+            } else {
+                settings
+            }
+        }
         _ => visible::or_another(settings, volume, histogram, kind),
     }
 }
@@ -113,6 +133,13 @@ fn aim(settings: &mut Settings, volume: &Volume) {
     view::choose(&mut settings.camera, volume, &object);
     frame::frame(settings, volume, &object);
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
+}
+
+/// Settings that frame a veil as if it were opaque: it is too clear to count as shown.
+fn framed_with_veil(settings: Settings, volume: &Volume) -> Settings {
+    let mut opaque = Settings { transfer: transfer::unveiled(&settings.transfer), ..settings.clone() };
+    aim(&mut opaque, volume);
+    Settings { transfer: settings.transfer, ..opaque }
 }
 
 /// The length to which opacities of a first look refer.

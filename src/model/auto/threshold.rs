@@ -15,10 +15,20 @@ pub(super) fn above_margin(margin: f64, split: f64) -> f64 {
     (margin + TOWARDS_SPLIT * (split - margin)).max(margin + LEAST_ABOVE)
 }
 
-/// The density at which the object begins.
-pub(super) fn object_threshold(volume: &Volume, histogram: &Histogram) -> f64 {
-    let start = above_surroundings(volume, histogram);
-    Isosurfaces::of(volume).unless_blocky(start)
+/// Where an object begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Edge {
+    /// The density at which it begins.
+    pub(super) start: f64,
+    /// How much the density rises there within a voxel.
+    pub(super) slope: f64,
+}
+
+/// Where the object begins.
+pub(super) fn object_edge(volume: &Volume, histogram: &Histogram) -> Edge {
+    let isosurfaces = Isosurfaces::of(volume);
+    let start = isosurfaces.unless_blocky(above_surroundings(volume, histogram));
+    Edge { start, slope: isosurfaces.slope(start).unwrap_or_default() }
 }
 
 /// Between what is around the object and the volume's two halves.

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::isosurfaces::Isosurfaces;
 use super::object::Object;
-use super::{aim, threshold, transfer};
+use super::threshold::{self, Edge};
+use super::{aim, transfer};
 use crate::data::{DataKind, Histogram, ValueRange, Volume};
 use crate::model::{
     ControlPoint, DensityRange, FRAME_ASPECT, Interpolation, LabelTable, LightingTransfer, Settings,
@@ -35,12 +36,14 @@ pub(super) fn or_another(
         return first;
     }
     let robust = |transfer: TransferFunction| Settings { transfer, ..first.clone() };
+    let isosurfaces = || Isosurfaces::of(volume);
+    let beginning_at = |start: f64| {
+        let edge = Edge { start, slope: isosurfaces().slope(start).unwrap_or_default() };
+        robust(transfer::beginning_at(volume, histogram, edge))
+    };
     let others: [&dyn Fn() -> Settings; 4] = [
-        &|| robust(transfer::beginning_at(volume, histogram, threshold::otsu(histogram))),
-        &|| {
-            let start = Isosurfaces::of(volume).best().unwrap_or(0.5);
-            robust(transfer::beginning_at(volume, histogram, start))
-        },
+        &|| beginning_at(threshold::otsu(histogram)),
+        &|| beginning_at(isosurfaces().best().unwrap_or(0.5)),
         &|| {
             let all = volume.showing(volume.value_range());
             let transfer = transfer::find(&all, &Histogram::of(&all), kind).transfer;

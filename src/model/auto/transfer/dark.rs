@@ -1,8 +1,9 @@
 //! An object that is darker than what is around it: opacity rises downwards.
 
 use super::super::domain::Domain;
+use super::super::isosurfaces::Isosurfaces;
 use super::super::palette::Palette;
-use super::super::threshold::{LEAST_ABOVE, above_margin, border_level, otsu};
+use super::super::threshold::{Edge, LEAST_ABOVE, above_margin, border_level, otsu};
 use super::{Found, Stop, rising, through};
 use crate::data::{Histogram, Volume};
 
@@ -19,7 +20,8 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
     // Never so dark that nothing is left.
     let start = above_margin(margin, split).min(1.0 - LEAST_ABOVE);
     let domain = Domain::Unknown;
-    let stops = rising(&darkness, start).map(|(darkness, place, opacity)| Stop {
+    let slope = Isosurfaces::of(volume).slope(1.0 - start).unwrap_or_default();
+    let stops = rising(&darkness, Edge { start, slope }).map(|(darkness, place, opacity)| Stop {
         value: volume.value_of((1.0 - darkness).max(0.0)),
         place,
         opacity,

@@ -4,6 +4,7 @@ use super::super::domain::Domain;
 use super::super::palette::Palette;
 use super::{Found, Stop, quantile, some_values, through};
 use crate::data::Volume;
+use crate::model::{ControlPoint, TransferFunction};
 
 /// Hounsfield units at which bone and contrast agent begin: spongy bone and enhanced blood are above 130, organs below
 /// 80 (100 with agent in them).
@@ -24,6 +25,24 @@ const HARDER: f64 = 150.0;
 
 /// Hounsfield units just below 3071, the last that scanners of 12 bits have.
 const END: f64 = 3000.0;
+
+/// Hounsfield units between which air ends and a body begins: where a voxel is half of each, it has the one in the middle.
+/// Lungs are below, fat is above; a step from air to flesh spends half a voxel there.
+const SKIN: [f64; 3] = [-600.0, -300.0, -20.0];
+
+/// Opacity of skin that is a veil: two of them, and the two of the lungs, leave nine tenths of the light.
+const VEIL: f64 = 0.03;
+
+/// A function that shows what another does, within a body that is a veil.
+pub(in crate::model::auto) fn with_skin(function: &TransferFunction, water: f64) -> TransferFunction {
+    let color = Palette::of(Domain::SoftTissue).at(0.0);
+    let point = |value: f64, opacity: f64| ControlPoint::new(water + value, color, opacity);
+    let skin = [point(SKIN[0], 0.0), point(SKIN[1], VEIL), point(SKIN[2], 0.0)];
+    TransferFunction {
+        points: skin.into_iter().chain(function.points.iter().copied()).collect(),
+        ..function.clone()
+    }
+}
 
 /// Shows bone; nothing where there is none.
 pub(super) fn find(volume: &Volume, water: f64) -> Option<Found> {

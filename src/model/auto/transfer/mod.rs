@@ -3,22 +3,27 @@
 mod cover;
 mod dark;
 mod hounsfield;
+mod known_part;
 mod labels;
 mod mask;
 mod scalar;
 mod signed;
 #[cfg(test)]
 mod tests;
+mod veil;
 
 use super::above;
 use super::domain::Domain;
 use super::palette::Palette;
+use super::threshold::Edge;
 use crate::data::{DataKind, Histogram, Volume};
 use crate::model::{ControlPoint, Interpolation, LabelTable, Mixing, TransferFunction};
 
 pub(super) use self::cover::thin_cover;
+pub(super) use self::hounsfield::with_skin;
 pub(super) use self::labels::{lost_labels, range as range_of_labels, table as label_table};
 pub(super) use self::scalar::beginning_at;
+pub(super) use self::veil::{inner, scale_opacity, unveiled, veiled};
 
 /// What is shown of a volume, and what it is.
 pub(super) struct Found {
@@ -26,12 +31,14 @@ pub(super) struct Found {
     /// Of label maps alone.
     pub(super) labels: LabelTable,
     pub(super) domain: Domain,
+    /// Something of it is too clear to count as shown, and is to be framed all the same.
+    pub(super) has_veil: bool,
 }
 
 impl Found {
     /// A look of values.
     fn of_values(transfer: TransferFunction, domain: Domain) -> Self {
-        Self { transfer, labels: LabelTable::default(), domain }
+        Self { transfer, labels: LabelTable::default(), domain, has_veil: false }
     }
 }
 
@@ -43,6 +50,7 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Fo
             transfer: labels::transfer(volume),
             labels: labels::table(volume),
             domain: Domain::Unknown,
+            has_veil: false,
         },
         DataKind::Signed => signed::find(volume).unwrap_or_else(|| scalar::find(volume, histogram)),
         DataKind::HounsfieldCt { water } => {
@@ -60,19 +68,25 @@ struct Stop {
     opacity: f64,
 }
 
+/// How much of the way to the bulk the first step of opacity takes, at least and at most.
+const FIRST_STEP: (f64, f64) = (0.15, 0.8);
+
 /// Where opacities rise on a scale from 0 to 1, of which `histogram` counts the values, for an object that begins at a
 /// place of it: (place on the scale, place in the palette, opacity per unit).
-fn rising(histogram: &Histogram, start: f64) -> [(f64, f64, f64); 5] {
+fn rising(histogram: &Histogram, Edge { start, slope }: Edge) -> [(f64, f64, f64); 5] {
     let object = above(histogram, start);
     // The bulk of the object lies below `bulk`; its densest part is worth a colour of its own. A twenty-fifth of the scale
     // at least for each, ten steps of 8-bit data, lest surfaces end as abruptly as voxels do.
     let bulk = object.percentile(0.6).max(start + 0.04);
     let dense = object.percentile(0.97).max(bulk + 0.04);
-    // The first step rises quickly, so that surfaces are crisp and shadows fall on something: what begins in the first
-    // third of the way to the bulk hides half of what is behind it within two units.
+    // The first step rises within a voxel of the boundary, as steep or gentle as that is in these data: surfaces are crisp,
+    // so that shadows fall on something, and not so abrupt that voxels show. What begins there hides half of what is behind
+    // it within two units. It ends well before the bulk, and begins no more abruptly than noise would show.
+    let (least, most) = FIRST_STEP;
+    let rise = slope.clamp(least * (bulk - start), most * (bulk - start));
     [
         (start, 0.0, 0.0),
-        (start + 0.35 * (bulk - start), 0.2, 0.3),
+        (start + rise, 0.2, 0.3),
         (bulk, 0.5, 0.65),
         (dense, 0.85, 0.88),
         (1.0f64.max(dense + 0.01), 1.0, 0.96),

@@ -2,8 +2,10 @@
 
 use super::super::domain::{Domain, roughness};
 use super::super::palette::Palette;
+use super::known_part::known_part;
 use super::{Found, Stop, of_points, quantile, some_values, through};
 use crate::data::Volume;
+use crate::model::ControlPoint;
 
 /// Share of all energy (squares) that strong values have: what is shown is as much of the field as what is not.
 const ENERGY: f64 = 0.5;
@@ -25,7 +27,31 @@ const LEAST_STRONG: f64 = 0.04;
 /// opacities are at most, lest surfaces end as abruptly as voxels do.
 const STEEPEST: f64 = 1.15;
 
-/// Shows both sides; nothing where all values are zero.
+/// Light that is left behind the part in which a field is known, as thick as a cube of its voxels: what is strong on its
+/// far side is still seen, and so is where it ends.
+const LEFT_BEHIND: f64 = 0.55;
+
+/// Grey glass, as light as the palest colours of the field.
+const GLASS: [f32; 3] = [0.8; 3];
+
+/// The part in which the field is known, as a veil: everything but exactly zero, up to where it is strong.
+fn glass(volume: &Volume, threshold: f64) -> Option<[ControlPoint; 6]> {
+    let thickness = (known_part(volume)? as f64).cbrt();
+    let opacity = 1.0 - LEFT_BEHIND.powf(1.0 / thickness.max(1.0));
+    let point = |share: f64, opacity: f64| ControlPoint::new(share * threshold, GLASS, opacity);
+    // As close to zero and to what is strong as tables can tell.
+    Some([
+        point(-0.98, opacity),
+        point(-0.04, opacity),
+        point(-0.02, 0.0),
+        point(0.02, 0.0),
+        point(0.04, opacity),
+        point(0.98, opacity),
+    ])
+}
+
+/// Shows both sides; nothing where all values are zero. Fields that are known in a part of their box only show that as
+/// glass: what is strong lies somewhere.
 pub(super) fn find(volume: &Volume) -> Option<Found> {
     // The energy of one outlier can be more than that of all others.
     let matters = volume.ranges().robust;
@@ -53,7 +79,9 @@ pub(super) fn find(volume: &Volume) -> Option<Found> {
         let side = stops.map(|(magnitude, place, opacity)| Stop { value: sign * magnitude, place, opacity });
         points.extend(through(side, Palette::diverging(is_negative)).points);
     }
-    Some(Found::of_values(of_points(points), Domain::Simulation))
+    let glass = glass(volume, threshold);
+    points.extend(glass.into_iter().flatten());
+    Some(Found { has_veil: glass.is_some(), ..Found::of_values(of_points(points), Domain::Simulation) })
 }
 
 /// The magnitude from which values are strong, of magnitudes in order.

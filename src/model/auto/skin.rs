@@ -1,0 +1,61 @@
+//! Skin as a veil around bones: it says what they belong to, where it does not hide them.
+
+use super::visibility::Cells;
+use super::{frame, transfer};
+use crate::data::Volume;
+use crate::model::{Rig, Settings};
+
+/// Share of what is seen of bones that must be left behind skin. Four walls of a veil, two of skin and two of the lungs,
+/// leave nine tenths; a bowel full of gas, or noise in place of air, is a fog.
+const LEAST_KEPT: f64 = 0.75;
+
+/// The settings with a body around the bones that they show, and framed with it, unless that would hide them.
+pub(super) fn added(settings: Settings, volume: &Volume, water: f64) -> Settings {
+    let Some(first_bone) = settings.transfer.points.first() else { return settings };
+    let Some(cells) = Cells::of(volume, settings.opacity_unit) else { return settings };
+    let with_skin = transfer::with_skin(&settings.transfer, water);
+    let bones = |function| -> f64 {
+        cells.seen(function, &settings.camera).iter().skip(cells.bin_of(first_bone.value)).sum()
+    };
+    if bones(&with_skin) < LEAST_KEPT * bones(&settings.transfer) {
+        return settings;
+    }
+    let mut body = Settings { transfer: transfer::unveiled(&with_skin), ..settings };
+    frame(&mut body, volume);
+    body.lights = Rig::KeyAndFill.lights(&body.camera);
+    Settings { transfer: with_skin, ..body }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use crate::data::{Histogram, KindName, Samples, Volume};
+    use crate::model::auto::{Wishes, first_settings_with};
+
+    /// Opacity of skin and of bone around a bone in flesh in what is around it.
+    fn opacities(around: impl Fn(usize) -> i16) -> [f64; 2] {
+        const N: usize = 40;
+        let value = |at: usize| {
+            let p = DVec3::from([at % N, at / N % N, at / N / N].map(|c| c as f64 - 19.5));
+            match p.length() {
+                r if r < 7.0 => 900,
+                r if r < 15.0 => 40,
+                _ => around(at),
+            }
+        };
+        let samples = Samples::I16((0..N * N * N).map(value).collect());
+        let volume = Volume::with_spacing("t", [N; 3], DVec3::ONE, samples).unwrap();
+        let wishes = Wishes { treated_as: Some(KindName::HounsfieldCt), ..Wishes::default() };
+        let first = first_settings_with(&volume, &Histogram::of(&volume), wishes);
+        [-300.0, 900.0].map(|value| first.transfer.opacity_at(value))
+    }
+
+    #[test]
+    fn skin_is_a_veil_unless_it_is_a_fog() {
+        let [skin, bone] = opacities(|_| -1000);
+        assert!((0.01..0.05).contains(&skin) && bone > 0.5, "{skin} {bone}");
+        let [skin, bone] = opacities(|at| if at % 12 == 0 { -1000 } else { -300 });
+        assert!(skin == 0.0 && bone > 0.5, "{skin} {bone}");
+    }
+}

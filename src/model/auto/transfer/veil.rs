@@ -1,0 +1,49 @@
+//! A veil around what lies within.
+
+use crate::model::{ControlPoint, Interpolation, TransferFunction};
+
+/// A function that shows what is above a value alone, in ivory.
+pub(in crate::model::auto) fn inner(function: &TransferFunction, start: f64) -> TransferFunction {
+    let end = function.points.last().map_or(start, |point| point.value).max(start);
+    let at = |share: f64| start + share * (end - start);
+    let points = vec![
+        ControlPoint::new(at(0.0), [0.72, 0.60, 0.48], 0.0),
+        ControlPoint::new(at(0.15), [0.87, 0.78, 0.64], 0.6),
+        ControlPoint::new(at(0.5), [0.96, 0.91, 0.82], 0.9),
+        ControlPoint::new(at(1.0), [1.0, 0.98, 0.95], 0.96),
+    ];
+    TransferFunction { points, interpolation: Interpolation::Opacity, ..function.clone() }
+}
+
+/// A function that shows what is above a value as [`inner`] does, and of what is below only where that begins: a skin, of
+/// which so much of the opacity is left, as clear as glass within.
+pub(in crate::model::auto) fn veiled(
+    function: &TransferFunction,
+    start: f64,
+    share: f64,
+) -> TransferFunction {
+    let begins = function.points.windows(2).find(|pair| pair[0].opacity <= 0.0 && pair[1].opacity > 0.0);
+    let skin = begins.filter(|pair| pair[1].value < start).map(|pair| {
+        let [outside, surface] = [pair[0], pair[1]];
+        // As wide within as without, as far as there is room.
+        let ends = (2.0 * surface.value - outside.value).min(f64::midpoint(surface.value, start));
+        let at = |value: f64, opacity: f64| ControlPoint { value, opacity, ..function.point_at(value) };
+        [outside, at(surface.value, share * surface.opacity), at(ends, 0.0)]
+    });
+    let points = skin.into_iter().flatten().chain(inner(function, start).points).collect();
+    TransferFunction { points, ..function.clone() }
+}
+
+/// A function of which a veil is as opaque as the rest.
+pub(in crate::model::auto) fn unveiled(function: &TransferFunction) -> TransferFunction {
+    let mut opaque = function.clone();
+    opaque.points.iter_mut().filter(|point| point.opacity > 0.0).for_each(|point| point.opacity = 1.0);
+    opaque
+}
+
+/// Makes a function so much less opaque everywhere.
+pub(in crate::model::auto) fn scale_opacity(function: &mut TransferFunction, share: f64) {
+    for point in &mut function.points {
+        point.opacity *= share;
+    }
+}

@@ -1,0 +1,107 @@
+//! How much of what an eye sees is of which density: each cell of a volume counts with the light that it keeps away, as
+//! far as light from the eye comes to it (Correa & Ma 2011). That is the light volume of a headlight, in cells.
+
+use glam::DAffine3;
+
+use crate::data::Volume;
+use crate::model::{Camera, Length, TransferFunction};
+
+/// Most cells along an axis.
+const MOST_CELLS: usize = 64;
+
+/// Densities are counted in so many bins.
+const BINS: usize = 256;
+
+/// A volume in cells of a few voxels.
+pub(super) struct Cells {
+    dims: [usize; 3],
+    /// Bin of the mean density; `None` where there is nothing. x fastest.
+    bins: Vec<Option<u8>>,
+    scene_from_index: DAffine3,
+    /// Opacity units along a step of one scene unit.
+    units_per_scene: f64,
+    /// Data units of each bin.
+    values: Vec<f64>,
+}
+
+impl Cells {
+    /// Averages a volume, in which opacities refer to a length.
+    pub(super) fn of(volume: &Volume, opacity_unit: Length) -> Option<Self> {
+        let units_per_scene = 1.0 / opacity_unit.in_scene(&volume.scene()).max(1e-9);
+        let range = volume.shown();
+        let averaged = volume.averaged(volume.dims().map(|n| n.div_ceil(MOST_CELLS))).ok()?.showing(range);
+        let dims = averaged.dims();
+        let bin = |at: usize| {
+            let place = [at % dims[0], at / dims[0] % dims[1], at / dims[0] / dims[1]];
+            averaged.density_at(place).map(|density| ((density * BINS as f64) as usize).min(BINS - 1) as u8)
+        };
+        let values = (0..BINS).map(|bin| averaged.value_of((bin as f64 + 0.5) / BINS as f64)).collect();
+        Some(Self {
+            dims,
+            bins: (0..dims.iter().product()).map(bin).collect(),
+            scene_from_index: averaged.scene().scene_from_index,
+            units_per_scene,
+            values,
+        })
+    }
+
+    /// What is seen of each bin of densities by a camera that is far away.
+    pub(super) fn seen(&self, function: &TransferFunction, camera: &Camera) -> Vec<f64> {
+        let index_from_scene = self.scene_from_index.matrix3.inverse();
+        let away = index_from_scene * -camera.scene_from_view().z_axis;
+        // Slices across the axis along which the eye looks most; what lies before a cell is beside it in the slice before.
+        let axis = (0..3).max_by(|&a, &b| away[a].abs().total_cmp(&away[b].abs())).unwrap_or(2);
+        let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+        let step = away / away[axis].abs().max(1e-9);
+        let length = (self.scene_from_index.matrix3 * step).length() * self.units_per_scene;
+        let left: Vec<f64> = self
+            .values
+            .iter()
+            .map(|&value| (1.0 - function.opacity_at(value)).max(0.0).powf(length))
+            .collect();
+        let [nu, nv] = [self.dims[u], self.dims[v]];
+        let mut light = vec![1.0; nu * nv];
+        let mut next = light.clone();
+        let mut seen = vec![0.0; BINS];
+        for slice in 0..self.dims[axis] {
+            let at = if step[axis] > 0.0 { slice } else { self.dims[axis] - 1 - slice };
+            for j in 0..nv {
+                for i in 0..nu {
+                    let arriving = if slice == 0 {
+                        1.0
+                    } else {
+                        between(&light, [nu, nv], [i as f64 - step[u], j as f64 - step[v]])
+                    };
+                    let mut place = [0; 3];
+                    (place[axis], place[u], place[v]) = (at, i, j);
+                    let cell = place[0] + self.dims[0] * (place[1] + self.dims[1] * place[2]);
+                    let passed = self.bins[cell].map_or(1.0, |bin| {
+                        let left = left[usize::from(bin)];
+                        seen[usize::from(bin)] += arriving * (1.0 - left);
+                        left
+                    });
+                    next[j * nu + i] = arriving * passed;
+                }
+            }
+            std::mem::swap(&mut light, &mut next);
+        }
+        seen
+    }
+
+    /// The bin of a value.
+    pub(super) fn bin_of(&self, value: f64) -> usize {
+        self.values.partition_point(|&of_bin| of_bin < value)
+    }
+}
+
+/// Light between the cells of a slice; all of it outside.
+fn between(light: &[f64], [nu, nv]: [usize; 2], [x, y]: [f64; 2]) -> f64 {
+    let at = |i: f64, j: f64| {
+        let is_inside = i >= 0.0 && j >= 0.0 && i < nu as f64 && j < nv as f64;
+        if is_inside { light[j as usize * nu + i as usize] } else { 1.0 }
+    };
+    let (i, j) = (x.floor(), y.floor());
+    let (s, t) = (x - i, y - j);
+    (at(i, j) * (1.0 - s) + at(i + 1.0, j) * s) * (1.0 - t)
+        + (at(i, j + 1.0) * (1.0 - s) + at(i + 1.0, j + 1.0) * s) * t
+}
