@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
+use super::choice::{Choice, Dimension, Offer, Unclear};
 use crate::data::foreign_text::plain;
 
 /// What a user reads: `WHAT: WHY (file, field); HELP`.
@@ -56,6 +57,16 @@ pub enum LoadError {
         #[source]
         source: Option<io::Error>,
     },
+    /// There are several volumes, and nobody has said which is meant.
+    #[error("{explanation}")]
+    Several {
+        /// The words for it, with a list.
+        explanation: Box<Explanation>,
+        /// In what they differ.
+        dimension: Dimension,
+        /// All of them.
+        offers: Vec<Offer>,
+    },
     /// The user cancelled.
     #[error("loading was cancelled")]
     Cancelled,
@@ -65,7 +76,7 @@ impl LoadError {
     /// Which kind of failure this is.
     pub fn kind(&self) -> LoadErrorKind {
         match self {
-            Self::BadInput(_) => LoadErrorKind::BadInput,
+            Self::BadInput(_) | Self::Several { .. } => LoadErrorKind::BadInput,
             Self::Limit(_) => LoadErrorKind::Limit,
             Self::Io { .. } => LoadErrorKind::Io,
             Self::Cancelled => LoadErrorKind::Cancelled,
@@ -75,9 +86,10 @@ impl LoadError {
     /// The parts of the message, except when cancelled.
     pub fn explanation(&self) -> Option<&Explanation> {
         match self {
-            Self::BadInput(explanation) | Self::Limit(explanation) | Self::Io { explanation, .. } => {
-                Some(explanation)
-            }
+            Self::BadInput(explanation)
+            | Self::Limit(explanation)
+            | Self::Several { explanation, .. }
+            | Self::Io { explanation, .. } => Some(explanation),
             Self::Cancelled => None,
         }
     }
@@ -109,6 +121,35 @@ impl Attempt<'_> {
         help: impl Into<String>,
     ) -> LoadError {
         LoadError::Limit(Box::new(self.explain(field, why.into(), help.into())))
+    }
+
+    /// Which of several volumes is meant, by what the user has said of it.
+    ///
+    /// # Errors
+    /// [`LoadError::Several`] where nothing was said or none of them is called so, with the list in its words.
+    pub(in crate::data) fn chosen(
+        &self,
+        choice: &Choice,
+        dimension: Dimension,
+        offers: Vec<Offer>,
+    ) -> Result<usize, LoadError> {
+        let unclear = match choice.of(dimension, &offers) {
+            Ok(at) => return Ok(at),
+            Err(unclear) => unclear,
+        };
+        // As many as a screen has lines for.
+        const MOST_LISTED: usize = 24;
+        let mut list: Vec<String> = offers.iter().take(MOST_LISTED).map(Offer::to_string).collect();
+        if offers.len() > MOST_LISTED {
+            list.push(format!("and {} more", offers.len() - MOST_LISTED));
+        }
+        let (option, plural, count) = (dimension.option(), dimension.plural(), offers.len());
+        let why = match unclear {
+            Unclear::Several => format!("it holds {count} {plural}"),
+            Unclear::Unknown(said) => format!("{} is none of its {count} {plural}", quoted(&said)),
+        };
+        let help = format!("choose one with {option}: {}", list.join(", "));
+        Err(LoadError::Several { explanation: Box::new(self.explain(option, why, help)), dimension, offers })
     }
 
     /// Something the file system is asked for is of the wrong kind.

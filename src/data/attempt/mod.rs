@@ -1,11 +1,13 @@
 //! What reading files and making built-in volumes share: memory limits, errors in words that help, and a control to
 //! watch and to cancel the work.
 
+mod choice;
 mod control;
 mod error;
 mod free_memory;
 mod limits;
 
+pub use choice::{Choice, Dimension, Offer};
 pub use control::LoadControl;
 pub(super) use error::{Attempt, quoted};
 pub use error::{Explanation, LoadError, LoadErrorKind};

@@ -60,6 +60,8 @@ pub struct Hints {
     pub is_rescaled: bool,
     /// The value of voxels that were not measured.
     pub padding: Option<f64>,
+    /// The values between which it suggests to show greys.
+    pub window: Option<[f64; 2]>,
     /// What labels are called, and their colours.
     pub labels: Labels,
     unit: Option<String>,
@@ -93,6 +95,12 @@ impl Hints {
     /// States the value of voxels that were not measured; what is no finite number says nothing.
     pub fn set_padding(&mut self, padding: f64) {
         self.padding = Some(padding).filter(|padding| padding.is_finite()).or(self.padding);
+    }
+
+    /// States between which values greys are to be shown; two that are not finite, or not in order, say nothing.
+    pub fn set_window(&mut self, low: f64, high: f64) {
+        let is_usable = low.is_finite() && high.is_finite() && low < high;
+        self.window = is_usable.then_some([low, high]).or(self.window);
     }
 
     /// Whether the file says nothing at all.

@@ -1,7 +1,7 @@
 //! Regular files, opened only after a look at what they are.
 
 use std::fs::{self, File, FileType};
-use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom};
+use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -28,7 +28,7 @@ impl Input {
         let io = |error| attempt.io(error);
         let refuse = |file_type: FileType| {
             if file_type.is_dir() {
-                attempt.not_a_file("it is a directory", "name one file: .raw, .raw.gz, .nrrd or .nhdr")
+                attempt.not_a_file("it is a directory", "name one file")
             } else {
                 attempt.not_a_file(
                     "it is a pipe, socket or device, not a regular file",
@@ -47,17 +47,6 @@ impl Input {
             return Err(refuse(metadata.file_type()));
         }
         Ok(Self { reader: BufReader::with_capacity(256 << 10, file), len: metadata.len() })
-    }
-
-    /// The first bytes, at most `N`, zeros after the end. Goes back to the beginning.
-    pub(crate) fn magic<const N: usize>(&mut self) -> io::Result<[u8; N]> {
-        let mut start = Vec::with_capacity(N);
-        self.reader.by_ref().take(N as u64).read_to_end(&mut start)?;
-        self.reader.rewind()?;
-        start.resize(N, 0);
-        let mut magic = [0; N];
-        magic.copy_from_slice(&start);
-        Ok(magic)
     }
 
     /// Goes to byte `position`.

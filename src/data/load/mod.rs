@@ -1,28 +1,37 @@
-//! Volumes from files: RAW (with its size in the name or in options) and NRRD, both also gzipped.
+//! Volumes from files, and from folders of slices: `formats` says which, docs/FORMATS.md what of them.
 //!
 //! Files are not trusted. Every size is checked against the file's length and the memory budget
 //! before anything is allocated; only regular files are opened; a header can name no file outside
 //! its own folder. Files are read in blocks into typed voxels, never mapped: the peak is the volume
 //! itself and one block.
 
+mod beside;
+mod folder;
+mod formats;
 mod input;
 mod nrrd;
+mod number;
+mod placement;
 mod raw;
 mod raw_layout;
+mod reader;
 mod samples;
 #[cfg(test)]
 mod tests;
 
 use std::path::Path;
 
+pub use formats::endings;
 pub use raw::RawFormat;
 pub use raw_layout::{RawGuess, RawLayout};
 
 use super::Volume;
 use super::attempt::Attempt;
 pub(crate) use super::attempt::memory_budget_bytes;
-pub use super::attempt::{Explanation, LoadControl, LoadError, LoadErrorKind};
+pub use super::attempt::{Choice, Dimension, Explanation, LoadControl, LoadError, LoadErrorKind, Offer};
+use formats::{READERS, reader_of};
 use input::{Input, Witness};
+use reader::{Source, Start};
 
 /// The order of the bytes of one voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -38,6 +47,8 @@ pub enum Endian {
 pub struct LoadOptions {
     /// How RAW files are stored; other formats say it themselves.
     pub raw: RawFormat,
+    /// Which volume is meant where there are several.
+    pub choice: Choice,
     /// Blocks of so many voxels along each axis are averaged into one.
     pub reduce: usize,
     /// The largest volume that is loaded, in bytes of its voxels.
@@ -48,40 +59,36 @@ impl Default for LoadOptions {
     /// Nothing said about RAW files, every voxel kept; a budget of three quarters of the memory that is free now
     /// (what the machine, its container and the user's limits leave), or 4 GiB where that is not known.
     fn default() -> Self {
-        Self { raw: RawFormat::default(), reduce: 1, memory_budget_bytes: memory_budget_bytes() }
+        let (raw, choice) = (RawFormat::default(), Choice::default());
+        Self { raw, choice, reduce: 1, memory_budget_bytes: memory_budget_bytes() }
     }
 }
 
-/// Loads a volume from a file.
+/// Loads a volume from a file, or from a folder of slices.
 ///
-/// NRRD is recognised by its first bytes or by `.nrrd` and `.nhdr`. `.raw`, `.raw.gz` and, when
-/// `options` give dimensions, any other file are read as RAW.
+/// A format is recognised by a file's first bytes, or else by its ending; when `options` give dimensions, a file that is
+/// not recognised is read as RAW.
 ///
 /// # Errors
-/// [`LoadErrorKind::BadInput`] for a file or options that make no volume, `Limit` for a volume
-/// over the budget, `Io` for what is not a readable regular file, `Cancelled` when asked to stop.
+/// [`LoadErrorKind::BadInput`] for a file or options that make no volume, or several ([`LoadError::Several`]), `Limit` for
+/// a volume over the budget, `Io` for what is not readable, or neither a file nor a folder, `Cancelled` when asked to stop.
 pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     control.check()?;
     let attempt = Attempt { what: "open the volume", path };
+    if path.is_dir() {
+        return folder::load(path, options, control);
+    }
     let mut input = Input::open(attempt)?;
     let witness = Witness::of(attempt, &input)?;
-    let magic: [u8; 8] = input.magic().map_err(|error| attempt.io(error))?;
-    let loaded = if nrrd::is_nrrd(&magic) || has_ending(path, ".nrrd") || has_ending(path, ".nhdr") {
-        nrrd::load(path, input, options, control)
-    } else if has_ending(path, ".raw") || has_ending(path, ".raw.gz") || options.raw.dims.is_some() {
-        raw::load(path, input, &magic, options, control)
-    } else {
-        Err(attempt.bad_input(
+    let start = Start::of(&mut input).map_err(|error| attempt.io(error))?;
+    let Some(reader) = reader_of(path, &start, options) else {
+        let names: Vec<&str> = READERS.iter().map(|reader| reader.name).collect();
+        return Err(attempt.bad_input(
             "format",
-            "its format is not one that is read: .nrrd, .nhdr, .raw or .raw.gz",
+            format!("its format is not one that is read: {}", names.join(", ")),
             "convert it to NRRD, or describe its voxels with --dims and --type",
-        ))
+        ));
     };
+    let loaded = (reader.load)(Source { path, input, start, options, control });
     witness.vouch(attempt, loaded)
-}
-
-/// Whether the file name ends in `ending` (lower case), in any case.
-fn has_ending(path: &Path, ending: &str) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    name.ends_with(ending)
 }

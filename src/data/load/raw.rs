@@ -2,13 +2,12 @@
 //!
 //! `NAME_XxYxZ_TYPE.raw` or `.raw.gz`, as in the `OpenSciVis` datasets: `skull_256x256x256_uint8.raw`.
 
-use std::path::Path;
-
 use glam::DVec3;
 
-use super::input::{Input, is_gzip, stem};
+use super::input::stem;
+use super::reader::{Reader, Source};
 use super::samples::{Layout, read_binary, read_gzip};
-use super::{Endian, LoadControl, LoadError, LoadOptions};
+use super::{Endian, LoadError};
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::attempt::{Extent, is_usable_spacing, unlike_spacings};
 use crate::data::plain;
@@ -40,14 +39,12 @@ struct NamedFormat {
     voxel_type: VoxelType,
 }
 
-/// Loads a RAW file of which `magic` are the first bytes.
-pub(super) fn load(
-    path: &Path,
-    mut input: Input,
-    magic: &[u8],
-    options: &LoadOptions,
-    control: &LoadControl,
-) -> Result<Volume, LoadError> {
+pub(super) const READER: Reader =
+    Reader { name: "RAW", endings: &[".raw", ".raw.gz"], recognises: |_| false, load };
+
+/// Loads a RAW file.
+fn load(source: Source<'_>) -> Result<Volume, LoadError> {
+    let Source { path, mut input, start, options, control } = source;
     let attempt = Attempt { what: "read the RAW volume", path };
     let format = options.raw;
     let file_name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -88,7 +85,7 @@ pub(super) fn load(
     // Voxels may begin with gzip's magic by chance: a file of the right size is not compressed.
     let fits_exactly = offset.checked_add(extent.bytes) == Some(input.len);
     let zipped_name = file_name.to_lowercase().ends_with(".gz");
-    let samples = if is_gzip(magic) && (zipped_name || !fits_exactly) {
+    let samples = if start.is_gzip() && (zipped_name || !fits_exactly) {
         read_gzip(input.reader, offset, &layout, control).map_err(|fault| {
             fault.into_error(attempt, &layout, "bytes", "check the dimensions, the type and --offset")
         })?

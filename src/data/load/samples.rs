@@ -14,7 +14,7 @@ use crate::data::{Samples, VoxelType};
 use crate::fault;
 
 /// Bytes that are read and decoded at a time, and between two looks at `cancel`.
-const BLOCK_BYTES: usize = 1 << 20;
+pub(super) const BLOCK_BYTES: usize = 1 << 20;
 
 /// The longest number in a text file, in bytes. A full decimal f64 needs about 25.
 const LONGEST_NUMBER: usize = 400;
@@ -100,7 +100,7 @@ impl Fault {
 }
 
 /// One voxel's number type: how it is read.
-trait Sample: Copy {
+pub(super) trait Sample: Copy {
     fn from_bytes(bytes: &[u8], endian: Endian) -> Self;
     fn from_text(text: &str) -> Option<Self>;
 }
@@ -124,7 +124,7 @@ macro_rules! sample {
         }
     )* };
 }
-sample!(u8, i8, u16, i16, u32, i32, f32, f64);
+sample!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
 
 /// Reads all voxels with one of the two generic readers below.
 macro_rules! read_as {
@@ -200,7 +200,7 @@ fn is_corruption(error: &io::Error) -> bool {
 static BLOCKS: fault::Count = fault::Count::new();
 
 /// Fills `block` as far as the reader goes; the number of bytes read.
-fn fill(reader: &mut impl Read, block: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
+pub(super) fn fill(reader: &mut impl Read, block: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
     let mut filled = 0;
     while filled < block.len() {
         control.check().map_err(Fault::Stopped)?;
@@ -293,7 +293,7 @@ fn read_numbers<T: Sample>(
 }
 
 /// An empty vector with room for `count` values, or an error where the memory is not there.
-fn reserve<T>(count: usize) -> Result<Vec<T>, Fault> {
+pub(super) fn reserve<T>(count: usize) -> Result<Vec<T>, Fault> {
     let mut values = Vec::new();
     match values.try_reserve_exact(count) {
         Ok(()) => Ok(values),

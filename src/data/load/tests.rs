@@ -114,7 +114,7 @@ fn names_and_options_describe_the_volume() {
         LoadErrorKind::BadInput,
         &["--type"],
     );
-    assert_refused(&path, RawFormat::default(), LoadErrorKind::BadInput, &[".nrrd", ".raw", "--dims"]);
+    assert_refused(&path, RawFormat::default(), LoadErrorKind::BadInput, &["NRRD", "RAW", "--dims"]);
     let path = write(&folder, "plain.raw", &[0, 1]);
     assert_refused(&path, RawFormat::default(), LoadErrorKind::BadInput, &["file name", "--dims"]);
 }
@@ -204,7 +204,7 @@ fn what_is_not_a_readable_file_is_refused() {
     let folder = TempDir::new().unwrap();
     let missing = folder.path().join("missing.nrrd");
     assert_refused(&missing, RawFormat::default(), LoadErrorKind::Io, &["no such file", "missing.nrrd"]);
-    assert_refused(folder.path(), RawFormat::default(), LoadErrorKind::Io, &["directory", "name one file"]);
+    assert_refused(folder.path(), RawFormat::default(), LoadErrorKind::BadInput, &["folder", "name one file"]);
     assert_refused(Path::new(""), RawFormat::default(), LoadErrorKind::Io, &[]);
     #[cfg(unix)]
     {

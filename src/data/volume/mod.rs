@@ -48,6 +48,8 @@ pub struct Volume {
     unit_mm: Option<f64>,
     is_anatomical: bool,
     hints: Hints,
+    has_unknown_scale: bool,
+    remarks: Vec<String>,
     /// Found when it is first asked for.
     kind: OnceLock<KindFound>,
     /// Found when they are first asked for.
@@ -106,6 +108,8 @@ impl Volume {
             unit_mm: None,
             is_anatomical: false,
             hints: Hints::default(),
+            has_unknown_scale: false,
+            remarks: Vec::new(),
             kind: OnceLock::new(),
             labels: OnceLock::new(),
             content_id,
@@ -147,6 +151,28 @@ impl Volume {
         &self.hints
     }
 
+    /// States that nobody knows how large voxels are: lengths are in voxels then, not in millimetres.
+    #[must_use]
+    pub fn with_unknown_scale(self) -> Self {
+        Self { has_unknown_scale: true, ..self }
+    }
+
+    /// Whether lengths are in voxels because nobody knows how large these are.
+    pub fn has_unknown_scale(&self) -> bool {
+        self.has_unknown_scale
+    }
+
+    /// States what a user should know of how the file was read.
+    #[must_use]
+    pub fn with_remarks(self, remarks: Vec<String>) -> Self {
+        Self { remarks, ..self }
+    }
+
+    /// What a user should know of how the file was read: what it says that cannot be, and what was taken instead.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
     /// What kind of data it holds. The first to ask waits until that is found.
     pub fn kind(&self) -> &KindFound {
         self.kind.get_or_init(|| KindFound::of(self))
@@ -160,6 +186,8 @@ impl Volume {
             unit_mm: whole.unit_mm,
             is_anatomical: whole.is_anatomical,
             hints: whole.hints.clone(),
+            has_unknown_scale: whole.has_unknown_scale,
+            remarks: whole.remarks.clone(),
             kind: whole.kind_of_parts(),
             ..self
         }

@@ -3,7 +3,7 @@
 //! After the definition at <https://teem.sourceforge.net/nrrd/format.html>, versions 1 to 5.
 //! Encodings raw, gzip and text. World space is right-anterior-superior millimetres.
 
-mod detached;
+mod files;
 mod geometry;
 mod header;
 mod hints;
@@ -12,11 +12,11 @@ mod space;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
-
+use super::beside;
 use super::input::{Input, Witness, stem};
+use super::reader::{Reader, Source};
 use super::samples::{Layout, read_binary, read_gzip, read_text};
-use super::{Endian, LoadControl, LoadError, LoadOptions};
+use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::Attempt;
 use crate::data::attempt::Extent;
 use crate::data::{Samples, ValueRange, Volume, VoxelType, plain};
@@ -29,13 +29,12 @@ pub(super) fn is_nrrd(magic: &[u8]) -> bool {
     magic.starts_with(b"NRRD000")
 }
 
-/// Loads an NRRD file that is open at its beginning.
-pub(super) fn load(
-    path: &Path,
-    mut input: Input,
-    options: &LoadOptions,
-    control: &LoadControl,
-) -> Result<Volume, LoadError> {
+pub(super) const READER: Reader =
+    Reader { name: "NRRD", endings: &[".nrrd", ".nhdr"], recognises: |start| is_nrrd(start.stored()), load };
+
+/// Loads an NRRD file.
+fn load(source: Source<'_>) -> Result<Volume, LoadError> {
+    let Source { path, mut input, options, control, .. } = source;
     let attempt = Attempt { what: "read the NRRD volume", path };
     let header = Header::read(attempt, &mut input.reader)?;
     let storage = Storage::from_header(attempt, &header)?;
@@ -53,7 +52,8 @@ pub(super) fn load(
             read_data(attempt, input, start, &storage, &layout, control)?
         }
         Some(name) => {
-            let data_path = detached::resolve(attempt, name)?;
+            files::check_single(attempt, name)?;
+            let data_path = beside::resolve(attempt, files::FIELD, name)?;
             let attempt = Attempt { what: "read the NRRD volume's data file", path: &data_path };
             let input = Input::open(attempt)?;
             let witness = Witness::of(attempt, &input)?;

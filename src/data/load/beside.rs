@@ -1,31 +1,22 @@
-//! Where the data file of a detached header is: below the header's folder, or nowhere.
+//! Where a file is that another file names: below that one's folder, or nowhere.
 //!
 //! A header comes from anywhere and names a path. Following it without a check would open private
 //! files, devices, or, on Windows, a foreign server that then learns the user's password hash.
 
 use std::path::{Path, PathBuf};
 
-use super::super::LoadError;
+use super::LoadError;
 use crate::data::attempt::{Attempt, quoted};
 
-const FIELD: &str = "data file";
-
-/// The path of the data file `name` of the header in `attempt`.
+/// The path of the file that the header in `attempt` names in a field.
 ///
 /// # Errors
-/// `BadInput` for several files and for every name that leads out of the header's folder, by its
-/// text or over symbolic links; `Io` when there is no such file.
-pub(super) fn resolve(attempt: Attempt<'_>, name: &str) -> Result<PathBuf, LoadError> {
-    if is_list(name) {
-        return Err(attempt.bad_input(
-            FIELD,
-            format!("data in several files ({}) are not supported yet", quoted(name)),
-            "join them into one file (for example: unu save -f nrrd -e gzip)",
-        ));
-    }
+/// `BadInput` for every name that leads out of the header's folder, by its text or over symbolic links; `Io` when there
+/// is no such file.
+pub(super) fn resolve(attempt: Attempt<'_>, field: &str, name: &str) -> Result<PathBuf, LoadError> {
     if let Some(why) = leaves_by_text(name) {
         return Err(attempt.bad_input(
-            FIELD,
+            field,
             format!("{} {why}", quoted(name)),
             "put the data file beside the header and write its bare name",
         ));
@@ -33,26 +24,18 @@ pub(super) fn resolve(attempt: Attempt<'_>, name: &str) -> Result<PathBuf, LoadE
     let parent = attempt.path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let folder = parent.unwrap_or(Path::new(".")).canonicalize().map_err(|error| attempt.io(error))?;
     let beside = folder.join(name);
-    let of_data = Attempt { what: "find the NRRD volume's data file", path: &beside };
+    let of_data = Attempt { what: "find the volume's data file", path: &beside };
     let path = beside.canonicalize().map_err(|error| of_data.io(error))?;
     // By component: as strings, /data would also contain /database.
     if path.starts_with(&folder) {
         Ok(path)
     } else {
         Err(attempt.bad_input(
-            FIELD,
+            field,
             format!("{} is a link that leads out of the header's folder", quoted(name)),
             "copy the data file beside the header",
         ))
     }
-}
-
-/// Whether the value stands for several files: `LIST [dims]` or `FORMAT min max step [dims]`.
-fn is_list(name: &str) -> bool {
-    let words: Vec<_> = name.split_whitespace().collect();
-    let numbers = words.iter().skip(1).filter(|word| word.parse::<i64>().is_ok()).count();
-    words.first() == Some(&"LIST")
-        || (words.len() >= 4 && words[0].contains('%') && numbers + 1 == words.len())
 }
 
 /// How a name leaves the header's folder, as far as its text shows.
@@ -105,16 +88,5 @@ mod tests {
         for name in ["x.raw", "./x.raw", "a/b/x.raw", "..x", "x..raw", "a b.raw", "50%.raw"] {
             assert!(leaves_by_text(name).is_none(), "{name:?}");
         }
-    }
-
-    #[test]
-    fn several_files_are_seen() {
-        assert!(is_list("LIST"));
-        assert!(is_list("LIST 2"));
-        assert!(is_list("slice%03d.raw 1 10 1"));
-        assert!(is_list("slice%03d.raw 10 1 -1 2"));
-        assert!(!is_list("LISTING.raw"));
-        assert!(!is_list("100% of 3 4.raw"));
-        assert!(!is_list("100%.raw"));
     }
 }
