@@ -6,7 +6,13 @@ use super::reader::{Reader, Start};
 use super::{LoadOptions, nrrd, raw};
 
 /// All formats, the surest marks first.
-pub(super) const READERS: &[Reader] = &[nrrd::READER, raw::READER];
+pub(super) const READERS: &[Reader] = &[
+    nrrd::READER,
+    raw::DAT,
+    raw::IVF,
+    raw::INI,
+    raw::READER,
+];
 
 /// The reader of a file.
 pub(super) fn reader_of(path: &Path, start: &Start, options: &LoadOptions) -> Option<&'static Reader> {

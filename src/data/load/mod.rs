@@ -13,7 +13,6 @@ mod nrrd;
 mod number;
 mod placement;
 mod raw;
-mod raw_layout;
 mod reader;
 mod samples;
 #[cfg(test)]
@@ -22,8 +21,7 @@ mod tests;
 use std::path::Path;
 
 pub use formats::endings;
-pub use raw::RawFormat;
-pub use raw_layout::{RawGuess, RawLayout};
+pub use raw::{RawFormat, RawGuess, RawLayout};
 
 use super::Volume;
 use super::attempt::Attempt;
