@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, nrrd, raw};
+use super::{LoadOptions, mrc, nrrd, raw};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
     nrrd::READER,
+    mrc::READER,
     raw::DAT,
     raw::IVF,
     raw::INI,

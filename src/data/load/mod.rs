@@ -9,6 +9,7 @@ mod beside;
 mod folder;
 mod formats;
 mod input;
+mod mrc;
 mod nrrd;
 mod number;
 mod placement;
