@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, mrc, nrrd, raw};
+use super::{LoadOptions, mrc, nrrd, numpy, raw};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
     nrrd::READER,
+    numpy::NPY,
+    numpy::NPZ,
     mrc::READER,
     raw::DAT,
     raw::IVF,

@@ -12,6 +12,7 @@ mod input;
 mod mrc;
 mod nrrd;
 mod number;
+mod numpy;
 mod placement;
 mod raw;
 mod reader;
