@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, mrc, nrrd, numpy, raw};
+use super::{LoadOptions, cube, mrc, nrrd, numpy, raw};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
@@ -11,6 +11,7 @@ pub(super) const READERS: &[Reader] = &[
     numpy::NPY,
     numpy::NPZ,
     mrc::READER,
+    cube::READER,
     raw::DAT,
     raw::IVF,
     raw::INI,
