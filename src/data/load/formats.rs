@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, cube, mrc, nrrd, numpy, raw};
+use super::{LoadOptions, cube, mrc, nrrd, numpy, pvm, raw};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
     nrrd::READER,
     numpy::NPY,
     numpy::NPZ,
+    pvm::READER,
     mrc::READER,
     cube::READER,
     raw::DAT,

@@ -15,6 +15,7 @@ mod nrrd;
 mod number;
 mod numpy;
 mod placement;
+mod pvm;
 mod raw;
 mod reader;
 mod samples;
