@@ -52,6 +52,18 @@ fn transfer(path: &Path) -> bool {
     import(path, &bytes, range()).is_ok()
 }
 
+/// Files of other programs, and descriptions of `described.raw`.
+const FILES: [(&str, &[u8]); 8] = [
+    ("density.mrc", include_bytes!("found/density.mrc/far")),
+    ("array.npy", include_bytes!("found/array.npy/far")),
+    ("arrays.npz", include_bytes!("found/arrays.npz/far")),
+    ("density.cube", include_bytes!("found/density.cube/far")),
+    ("packed.pvm", include_bytes!("found/packed.pvm/far")),
+    ("described.dat", include_bytes!("found/described.dat/far")),
+    ("described.ini", include_bytes!("found/described.ini/far")),
+    ("described.ivf", include_bytes!("found/described.ivf/far")),
+];
+
 /// One of each kind.
 pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     let mut found = Vec::new();
@@ -72,6 +84,12 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     add("zipped.nrrd", [header("gzip").into_bytes(), zipped.clone()].concat(), volume);
     add("bare_6x5x4_uint8.raw", voxels, volume);
     add("bare_6x5x4_uint8.raw.gz", zipped, volume);
+
+    for (name, bytes) in FILES {
+        add(name, bytes.to_vec(), volume);
+    }
+    // What descriptions are of.
+    std::fs::write(folder.join("described.raw"), [7; 24]).expect("room");
 
     let of = VolumeRecord::new(Path::new("builtin:chair"), 7, None);
     let record = Record::text(&Settings::default(), Some(&of), None);

@@ -3,10 +3,21 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, nrrd, raw};
+use super::{LoadOptions, cube, mrc, nrrd, numpy, pvm, raw};
 
 /// All formats, the surest marks first.
-pub(super) const READERS: &[Reader] = &[nrrd::READER, raw::READER];
+pub(super) const READERS: &[Reader] = &[
+    nrrd::READER,
+    numpy::NPY,
+    numpy::NPZ,
+    pvm::READER,
+    mrc::READER,
+    cube::READER,
+    raw::DAT,
+    raw::IVF,
+    raw::INI,
+    raw::READER,
+];
 
 /// The reader of a file.
 pub(super) fn reader_of(path: &Path, start: &Start, options: &LoadOptions) -> Option<&'static Reader> {

@@ -128,8 +128,10 @@ pub(crate) fn is_gzip(magic: &[u8]) -> bool {
     magic.starts_with(&[0x1f, 0x8b, 8])
 }
 
-/// The file name without its last extension, for a volume that has no other name.
+/// The file name without its last extension, and without `.gz` behind that, for a volume that has no other name.
 pub(crate) fn stem(path: &Path) -> String {
-    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    let is_zipped = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
+    let unzipped = path.file_stem().filter(|_| is_zipped).map_or(path, Path::new);
+    let stem = unzipped.file_stem().unwrap_or(path.as_os_str());
     plain(&stem.to_string_lossy(), 120)
 }

@@ -6,14 +6,17 @@
 //! itself and one block.
 
 mod beside;
+mod cube;
 mod folder;
 mod formats;
 mod input;
+mod mrc;
 mod nrrd;
 mod number;
+mod numpy;
 mod placement;
+mod pvm;
 mod raw;
-mod raw_layout;
 mod reader;
 mod samples;
 #[cfg(test)]
@@ -22,8 +25,7 @@ mod tests;
 use std::path::Path;
 
 pub use formats::endings;
-pub use raw::RawFormat;
-pub use raw_layout::{RawGuess, RawLayout};
+pub use raw::{RawFormat, RawGuess, RawLayout};
 
 use super::Volume;
 use super::attempt::Attempt;

@@ -25,6 +25,20 @@ pub(super) enum Number {
 }
 
 impl Number {
+    /// That of voxels as they are.
+    pub(super) const fn of(voxel_type: VoxelType) -> Self {
+        match voxel_type {
+            VoxelType::U8 => Self::U8,
+            VoxelType::I8 => Self::I8,
+            VoxelType::U16 => Self::U16,
+            VoxelType::I16 => Self::I16,
+            VoxelType::U32 => Self::U32,
+            VoxelType::I32 => Self::I32,
+            VoxelType::F32 => Self::F32,
+            VoxelType::F64 => Self::F64,
+        }
+    }
+
     /// Size of one in bytes.
     pub(super) const fn bytes(self) -> usize {
         match self {
@@ -200,6 +214,15 @@ impl Part {
             // Grey and its opacity.
             None if is_color => Some(Self::Component(0)),
             None => Some(Self::Magnitude),
+        }
+    }
+
+    /// What the user is told of it.
+    pub(super) fn remark(self) -> Option<&'static str> {
+        match self {
+            Self::Component(_) => None,
+            Self::Magnitude => Some("vectors are shown by their length"),
+            Self::Luminance => Some("colours are shown as their luminance"),
         }
     }
 

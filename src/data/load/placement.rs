@@ -65,6 +65,19 @@ impl Placement {
     pub(super) fn of_no_body(self) -> Self {
         Self { is_anatomical: false, ..self }
     }
+
+    /// The same where the file says how distances compare, and not how long they are.
+    #[must_use]
+    pub(super) fn of_unknown_scale(self) -> Self {
+        Self { is_scale_known: false, ..self }
+    }
+
+    /// The same with something that the user is told.
+    #[must_use]
+    pub(super) fn remarked(mut self, remark: Option<impl Into<String>>) -> Self {
+        self.remarks.extend(remark.map(Into::into));
+        self
+    }
 }
 
 /// Distances that can be used, in place of those that cannot: 1 where they say nothing, all 1 where they cannot be meant
@@ -101,6 +114,11 @@ impl Parts {
     /// # Errors
     /// `BadInput` where the parts make none: no value is finite, or values span more than a number can say.
     pub(super) fn volume(self, attempt: Attempt<'_>) -> Result<Volume, LoadError> {
+        self.volume_or(attempt, "check the header against the data")
+    }
+
+    /// The same with other help.
+    pub(super) fn volume_or(self, attempt: Attempt<'_>, help: &str) -> Result<Volume, LoadError> {
         let Placement { world_from_index, is_anatomical, is_scale_known, remarks } = self.placement;
         for remark in &remarks {
             attempt.warn(remark);
@@ -117,9 +135,7 @@ impl Parts {
                 }
                 _ => Ok(volume),
             })
-            .map_err(|error| {
-                attempt.bad_input("data", error.to_string(), "check the header against the data")
-            })
+            .map_err(|error| attempt.bad_input("data", error.to_string(), help))
     }
 }
 

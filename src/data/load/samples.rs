@@ -189,7 +189,7 @@ pub(crate) fn read_text(
 }
 
 /// Whether a decoder complains about the data (and not the disk about the file).
-fn is_corruption(error: &io::Error) -> bool {
+pub(super) fn is_corruption(error: &io::Error) -> bool {
     matches!(
         error.kind(),
         io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
@@ -218,7 +218,7 @@ pub(super) fn fill(reader: &mut impl Read, block: &mut [u8], control: &LoadContr
 }
 
 /// Reads and forgets up to `count` bytes; how many there were.
-fn skip_bytes(reader: &mut impl Read, count: u64, control: &LoadControl) -> Result<u64, Fault> {
+pub(super) fn skip_bytes(reader: &mut impl Read, count: u64, control: &LoadControl) -> Result<u64, Fault> {
     let mut block = vec![0; BLOCK_BYTES.min(usize::try_from(count).unwrap_or(BLOCK_BYTES))];
     let mut skipped = 0;
     while skipped < count {

@@ -92,6 +92,7 @@ fn names_and_options_describe_the_volume() {
     let volume = load_as(&path, RawFormat::default()).unwrap();
     assert_eq!((volume.name(), volume.dims(), volume.spacing_mm()), ("skull", [2, 3, 1], DVec3::ONE));
     assert_eq!(volume.value(1, 2, 0), 6.0);
+    assert!(volume.has_unknown_scale(), "nobody has said how long a voxel is");
 
     let everything = RawFormat {
         dims: Some([1, 1, 2]),
@@ -103,6 +104,7 @@ fn names_and_options_describe_the_volume() {
     let volume = load_as(&path, everything).unwrap();
     assert_eq!(*volume.samples(), Samples::U16(vec![0x0304, 0x0506]));
     assert_eq!(volume.spacing_mm(), DVec3::new(0.5, 1.0, 3.0));
+    assert!(!volume.has_unknown_scale());
 
     let dims_and_type =
         RawFormat { dims: Some([3, 2, 1]), voxel_type: Some(VoxelType::I8), ..Default::default() };
@@ -204,7 +206,12 @@ fn what_is_not_a_readable_file_is_refused() {
     let folder = TempDir::new().unwrap();
     let missing = folder.path().join("missing.nrrd");
     assert_refused(&missing, RawFormat::default(), LoadErrorKind::Io, &["no such file", "missing.nrrd"]);
-    assert_refused(folder.path(), RawFormat::default(), LoadErrorKind::BadInput, &["folder", "name one file"]);
+    assert_refused(
+        folder.path(),
+        RawFormat::default(),
+        LoadErrorKind::BadInput,
+        &["folder", "name one file"],
+    );
     assert_refused(Path::new(""), RawFormat::default(), LoadErrorKind::Io, &[]);
     #[cfg(unix)]
     {

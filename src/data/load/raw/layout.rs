@@ -3,8 +3,9 @@
 use std::io::Read as _;
 use std::path::Path;
 
-use super::input::is_gzip;
-use super::{Endian, RawFormat, nrrd};
+use super::super::input::is_gzip;
+use super::super::{Endian, nrrd};
+use super::RawFormat;
 use crate::data::VoxelType;
 
 /// Everything that must be known of a file of bare voxels.

@@ -1,0 +1,130 @@
+//! What comes before the numbers of a cube: two lines of words, the grid, the atoms, and which orbitals there are.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::super::LoadError;
+use super::super::placement::Placement;
+use super::super::samples::{Fault, is_corruption};
+use super::bad_line;
+use super::words::Words;
+use crate::data::attempt::Attempt;
+
+/// The radius of hydrogen's orbit in millimetres (CODATA 2018).
+const MM_PER_BOHR: f64 = 5.291_772_109_03e-8;
+
+const MM_PER_ANGSTROM: f64 = 1e-7;
+
+/// Most atoms that are skipped: as many as the largest structures of viruses have.
+const MOST_ATOMS: u64 = 10_000_000;
+
+/// Most orbitals of a file.
+const MOST_VALUES: u64 = 4096;
+
+pub(super) struct Header {
+    pub(super) title: String,
+    /// Voxels along x, y, z.
+    pub(super) dims: [u64; 3],
+    pub(super) placement: Placement,
+    /// What the values of each voxel are called.
+    pub(super) values: Vec<String>,
+    atoms: u64,
+    has_orbitals: bool,
+}
+
+impl Header {
+    pub(super) fn read(attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<Self, LoadError> {
+        let title = line(attempt, words)?.trim().to_owned();
+        line(attempt, words)?;
+        let third = line(attempt, words)?;
+        let numbers: Vec<f64> = third.split_whitespace().map_while(|word| word.parse().ok()).collect();
+        let count = third.split_whitespace().next().and_then(|word| word.parse::<i64>().ok());
+        let (Some(count), [_, x, y, z, more @ ..]) = (count, &numbers[..]) else {
+            return Err(bad_line(attempt, "line 3", &third, "a number of atoms and an origin"));
+        };
+        let atoms = count.unsigned_abs();
+        if atoms > MOST_ATOMS {
+            return Err(attempt.limit(
+                "line 3",
+                format!("{atoms} atoms are more than {MOST_ATOMS}"),
+                "check that the file is a Gaussian cube",
+            ));
+        }
+        let mut counts = [0i64; 3];
+        let mut axes = [DVec3::ZERO; 3];
+        for (at, field) in ["line 4", "line 5", "line 6"].into_iter().enumerate() {
+            let text = line(attempt, words)?;
+            let mut pieces = text.split_whitespace();
+            let n = pieces.next().and_then(|word| word.parse().ok());
+            let numbers: Vec<f64> = pieces.map_while(|word| word.parse().ok()).collect();
+            let (Some(n), [x, y, z, ..]) = (n, &numbers[..]) else {
+                return Err(bad_line(attempt, field, &text, "a number of voxels and a step"));
+            };
+            counts[at] = n;
+            axes[at] = DVec3::new(*x, *y, *z);
+        }
+        let has_orbitals = count < 0;
+        let values = match more.first() {
+            _ if has_orbitals => {
+                skip_lines(attempt, words, atoms)?;
+                orbitals(attempt, words)?
+            }
+            Some(&n) if n > 1.0 && n <= MOST_VALUES as f64 => vec![String::new(); n as usize],
+            _ => vec![String::new()],
+        };
+        // Numbers of voxels below zero say that lengths are in Å.
+        let unit = if counts[0] < 0 { MM_PER_ANGSTROM } else { MM_PER_BOHR };
+        let [a, b, c] = axes.map(|axis| axis * unit);
+        let translation = DVec3::new(*x, *y, *z) * unit;
+        let placement =
+            Placement::ras(DAffine3 { matrix3: DMat3::from_cols(a, b, c), translation }).of_no_body();
+        let dims = counts.map(i64::unsigned_abs);
+        Ok(Self { title, dims, placement, values, atoms, has_orbitals })
+    }
+
+    /// Goes past a header that was read before.
+    pub(super) fn skip(&self, attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<(), LoadError> {
+        skip_lines(attempt, words, 6 + self.atoms)?;
+        if self.has_orbitals {
+            orbitals(attempt, words)?;
+        }
+        Ok(())
+    }
+}
+
+/// How many orbitals there are, and the number of each.
+fn orbitals(attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<Vec<String>, LoadError> {
+    let mut word = String::new();
+    let mut next = || -> Result<String, LoadError> {
+        words.word(&mut word).map_err(|fault| error_of(attempt, fault))?;
+        Ok(word.clone())
+    };
+    let said = next()?;
+    let Some(count) = said.parse::<u64>().ok().filter(|count| (1..=MOST_VALUES).contains(count)) else {
+        return Err(bad_line(attempt, "orbitals", &said, "how many orbitals there are"));
+    };
+    (0..count).map(|_| next().map(|id| format!("orbital {id}"))).collect()
+}
+
+fn skip_lines(attempt: Attempt<'_>, words: &mut Words<'_>, count: u64) -> Result<(), LoadError> {
+    (0..count).try_for_each(|_| line(attempt, words).map(drop))
+}
+
+fn line(attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<String, LoadError> {
+    let found = words.line().map_err(|fault| error_of(attempt, fault))?;
+    found.ok_or_else(|| {
+        attempt.bad_input("header", "the file ends within its header", "copy or download the file again")
+    })
+}
+
+fn error_of(attempt: Attempt<'_>, fault: Fault) -> LoadError {
+    match fault {
+        Fault::Stopped(error) => error,
+        Fault::Io(error) if !is_corruption(&error) => attempt.io(error),
+        Fault::NotANumber { text } => bad_line(attempt, "header", &text, "a short line of numbers"),
+        _ => attempt.bad_input(
+            "header",
+            "the gzip data are broken or truncated",
+            "copy or download the file again",
+        ),
+    }
+}

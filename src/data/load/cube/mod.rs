@@ -1,0 +1,110 @@
+//! Gaussian cubes: densities and orbitals of molecules as text, z fastest.
+//!
+//! After Gaussian's description of cubegen, <https://gaussian.com/cubegen/>.
+
+mod header;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use super::input::stem;
+use super::placement::Parts;
+use super::reader::{Reader, Source};
+use super::samples::{Fault, Layout, is_corruption, reserve};
+use super::{Dimension, Endian, LoadError};
+use crate::data::attempt::{Attempt, Extent, quoted};
+use crate::data::{Hints, Samples, Volume, VoxelType};
+use header::Header;
+use words::{Words, real};
+
+pub(super) const READER: Reader = Reader {
+    name: "Gaussian cube",
+    endings: &[".cube", ".cube.gz", ".cub", ".cub.gz"],
+    recognises: |_| false,
+    load,
+};
+
+const HELP: &str = "check the header against the data, or copy the file again";
+
+/// Loads a cube.
+fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
+    let attempt = Attempt { what: "read the Gaussian cube", path: source.path };
+    let header = {
+        let control = source.control;
+        Header::read(attempt, &mut Words::new(source.content(), control))?
+    };
+    let voxel_type = VoxelType::F32;
+    let budget = source.options.memory_budget_bytes;
+    let extent = Extent::checked(attempt, "numbers of voxels", header.dims, voxel_type, budget)?;
+    let layout = Layout { extent, voxel_type, endian: Endian::Little };
+    let values = header.values.len();
+    let chosen = source
+        .numbered(attempt, Dimension::Channel, values as u64, header.dims, |at| header.values[at].clone())?;
+    // A digit each and a space between: less cannot hold the numbers, and nothing is allocated.
+    let needed = (extent.voxels as u64).saturating_mul(values as u64);
+    let room = source.input.len.div_ceil(2);
+    if !source.start.is_gzip() && room < needed {
+        return Err(attempt.bad_input(
+            "data",
+            format!("the data are truncated: {needed} numbers expected, room for {room} found"),
+            HELP,
+        ));
+    }
+    let name = stem(source.path);
+    let control = source.control;
+    control.start(extent.bytes);
+    // Once more from the beginning: what the first look has read ahead is lost.
+    source.input.seek(0).map_err(|error| attempt.io(error))?;
+    let mut words = Words::new(source.content(), control);
+    header.skip(attempt, &mut words)?;
+    let samples = read(&mut words, extent, values, chosen).map_err(|fault| match fault {
+        Fault::Io(error) if is_corruption(&error) => {
+            Fault::Corrupt(error).into_error(attempt, &layout, "numbers", HELP)
+        }
+        Fault::Short { got } => attempt.bad_input(
+            "data",
+            format!("the data are truncated: {needed} numbers expected, {got} found"),
+            HELP,
+        ),
+        fault => fault.into_error(attempt, &layout, "numbers", HELP),
+    })?;
+    let mut hints = Hints::default();
+    hints.set_acquisition(&header.title);
+    Parts { name, dims: extent.dims, placement: header.placement, samples, hints }.volume(attempt)
+}
+
+/// Reads one value of each voxel: x is slowest in the file, and fastest in memory.
+fn read(words: &mut Words<'_>, extent: Extent, values: usize, chosen: usize) -> Result<Samples, Fault> {
+    let [nx, ny, nz] = extent.dims;
+    let mut samples = reserve(extent.voxels)?;
+    samples.resize(extent.voxels, 0.0f32);
+    let mut got = 0;
+    let mut word = String::new();
+    for x in 0..nx {
+        for y in 0..ny {
+            for z in 0..nz {
+                for value in 0..values {
+                    if !words.word(&mut word)? {
+                        return Err(Fault::Short { got });
+                    }
+                    got += 1;
+                    if value == chosen {
+                        let number = real(&word).ok_or_else(|| Fault::NotANumber { text: word.clone() })?;
+                        samples[x + nx * (y + ny * z)] = number;
+                    }
+                }
+            }
+            words.advance((nz * size_of::<f32>()) as u64);
+        }
+    }
+    Ok(Samples::F32(samples))
+}
+
+/// A line of numbers that is not what it should be.
+fn bad_line(attempt: Attempt<'_>, field: &str, line: &str, expected: &str) -> LoadError {
+    attempt.bad_input(
+        field,
+        format!("{expected} was expected, {} was found", quoted(line)),
+        "check that the file is a Gaussian cube",
+    )
+}

@@ -1,0 +1,119 @@
+//! Lines and words of a long text, block by block.
+
+use std::io::Read;
+
+use super::super::LoadControl;
+use super::super::samples::{BLOCK_BYTES, Fault, fill};
+
+/// The longest line of a header, in bytes.
+const LONGEST_LINE: usize = 4096;
+
+/// The longest word, in bytes: a full decimal f64 needs about 25.
+const LONGEST_WORD: usize = 400;
+
+pub(super) struct Words<'a> {
+    reader: Box<dyn Read + 'a>,
+    control: &'a LoadControl,
+    block: Vec<u8>,
+    at: usize,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(reader: Box<dyn Read + 'a>, control: &'a LoadControl) -> Self {
+        Self { reader, control, block: Vec::new(), at: 0 }
+    }
+
+    /// Says how many bytes of voxels there are now.
+    pub(super) fn advance(&self, bytes: u64) {
+        self.control.advance(bytes);
+    }
+
+    fn byte(&mut self) -> Result<Option<u8>, Fault> {
+        if self.at == self.block.len() {
+            self.block.resize(BLOCK_BYTES, 0);
+            let got = fill(&mut self.reader, &mut self.block, self.control)?;
+            self.block.truncate(got);
+            self.at = 0;
+        }
+        let byte = self.block.get(self.at).copied();
+        self.at += usize::from(byte.is_some());
+        Ok(byte)
+    }
+
+    /// The next line without its end; nothing at the end of the text.
+    pub(super) fn line(&mut self) -> Result<Option<String>, Fault> {
+        let mut line = Vec::new();
+        loop {
+            match self.byte()? {
+                None if line.is_empty() => return Ok(None),
+                None | Some(b'\n') => break,
+                Some(_) if line.len() == LONGEST_LINE => {
+                    return Err(Fault::NotANumber { text: String::from_utf8_lossy(&line).into_owned() });
+                }
+                Some(byte) => line.push(byte),
+            }
+        }
+        Ok(Some(String::from_utf8_lossy(&line).into_owned()))
+    }
+
+    /// Puts the next word in the place of another; false at the end of the text.
+    pub(super) fn word(&mut self, word: &mut String) -> Result<bool, Fault> {
+        word.clear();
+        loop {
+            match self.byte()? {
+                Some(byte) if byte.is_ascii_whitespace() && word.is_empty() => {}
+                Some(byte) if byte.is_ascii_whitespace() => return Ok(true),
+                None => return Ok(!word.is_empty()),
+                Some(_) if word.len() >= LONGEST_WORD => {
+                    return Err(Fault::NotANumber { text: word.clone() });
+                }
+                Some(byte) => word.push(char::from(byte)),
+            }
+        }
+    }
+}
+
+/// A number as Fortran writes it: with D for E, or without the E before an exponent of three digits.
+pub(super) fn real(word: &str) -> Option<f32> {
+    word.parse().ok().or_else(|| {
+        let with_e = word.replace(['D', 'd'], "E");
+        with_e.parse().ok().or_else(|| {
+            let sign = with_e.rfind(['+', '-']).filter(|&at| at > 0)?;
+            let (digits, exponent) = with_e.split_at_checked(sign)?;
+            format!("{digits}E{exponent}").parse().ok()
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_fortran_are_read() {
+        for (word, number) in
+            [("1.5", 1.5), ("-2.5E-01", -0.25), ("1.0D+02", 100.0), ("1.25-002", 0.0125), ("0.5+001", 5.0)]
+        {
+            assert_eq!(real(word), Some(number), "{word}");
+        }
+        for word in ["", "-", "x", "1.0D", "*****", "1-", "é-5"] {
+            assert_eq!(real(word), None, "{word}");
+        }
+    }
+
+    #[test]
+    fn lines_and_words_alternate_over_blocks() {
+        let long = format!("a b\n{} c\nend", " ".repeat(BLOCK_BYTES));
+        let control = LoadControl::new();
+        let mut words = Words::new(Box::new(long.as_bytes()), &control);
+        assert_eq!(words.line().unwrap().as_deref(), Some("a b"));
+        let mut word = String::new();
+        assert!(words.word(&mut word).unwrap() && word == "c");
+        assert_eq!(words.line().unwrap().as_deref(), Some("end"));
+        assert_eq!(words.line().unwrap(), None);
+        assert!(!words.word(&mut word).unwrap());
+        let endless = "x".repeat(LONGEST_LINE + 1);
+        assert!(Words::new(Box::new(endless.as_bytes()), &control).line().is_err());
+        assert!(Words::new(Box::new(endless.as_bytes()), &control).word(&mut word).is_err());
+    }
+}

@@ -1,0 +1,72 @@
+//! Where the voxels of an MRC file lie: in a cell of a crystal, or in a box that is called so.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::super::placement::Placement;
+use super::header::Header;
+use crate::data::attempt::is_usable_spacing;
+
+/// Lengths are in Å.
+const MM_PER_ANGSTROM: f64 = 1e-7;
+
+/// The place of the voxels, by cell, order of axes and origin.
+pub(super) fn placement(header: &Header) -> Placement {
+    let (lengths, intervals) = (header.floats(11), header.ints(8));
+    let steps: [f64; 3] = std::array::from_fn(|axis| lengths[axis] / f64::from(intervals[axis]));
+    let is_usable = |step: &f64| is_usable_spacing(step * MM_PER_ANGSTROM);
+    // Where one is missing they are taken to be alike, as they nearly always are.
+    let usual = steps.into_iter().find(is_usable);
+    let taken = steps.map(|step| if is_usable(&step) { step } else { usual.unwrap_or(1.0) });
+    let unit = if usual.is_some() { MM_PER_ANGSTROM } else { 1.0 };
+
+    let cell = cell_axes(header.floats(14));
+    let (order, is_order_bad) = order(header.ints(17));
+    let columns = order.map(|axis| cell[axis] * taken[axis] * unit);
+    // Crystallographers say in steps where a map begins, microscopists in Å.
+    let starts = header.ints(5);
+    let origin = match header.origin() {
+        Some(origin) => DVec3::from(origin) * unit,
+        None => (0..3).map(|axis| columns[axis] * f64::from(starts[axis])).sum(),
+    };
+    let matrix = DMat3::from_cols(columns[0], columns[1], columns[2]);
+    let placed = Placement::ras(DAffine3 { matrix3: matrix, translation: origin }).of_no_body();
+    let [a, b, c] = steps;
+    let mended = (usual.is_some() && taken != steps).then(|| {
+        format!("distances of {a} x {b} x {c} Å between voxels cannot be: they are taken to be alike")
+    });
+    let reordered = is_order_bad.then_some("the order of its axes cannot be: it is taken for x, y, z");
+    let placed = placed.remarked(mended).remarked(reordered);
+    if usual.is_some() { placed } else { placed.of_unknown_scale() }
+}
+
+/// Which axes of the cell columns, rows and sections follow, and whether what was said of it cannot be.
+fn order(said: [i32; 3]) -> ([usize; 3], bool) {
+    let mut sorted = said;
+    sorted.sort_unstable();
+    if sorted == [1, 2, 3] {
+        (said.map(|axis| (axis - 1) as usize), false)
+    } else {
+        // Nothing is said by zeros.
+        ([0, 1, 2], said != [0; 3])
+    }
+}
+
+/// The directions of the axes of a cell from the angles between them in degrees: the first along x, the second in the
+/// plane of x and y.
+fn cell_axes(angles: [f64; 3]) -> [DVec3; 3] {
+    let right = [DVec3::X, DVec3::Y, DVec3::Z];
+    if !angles.iter().all(|angle| (1.0..=179.0).contains(angle)) {
+        return right;
+    }
+    // Right angles exactly: their cosines are not quite zero.
+    let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { angle.to_radians().cos() };
+    let [alpha, beta, gamma] = angles.map(cosine);
+    let sine = (1.0 - gamma * gamma).sqrt();
+    let y = (alpha - beta * gamma) / sine;
+    let height = 1.0 - beta * beta - y * y;
+    // Three angles need not fit together.
+    if height < 1e-6 {
+        return right;
+    }
+    [DVec3::X, DVec3::new(gamma, sine, 0.0), DVec3::new(beta, y, height.sqrt())]
+}

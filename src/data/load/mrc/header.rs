@@ -1,0 +1,172 @@
+//! The header of an MRC file: 256 words of 4 bytes, which its definition counts from 1.
+
+use super::super::{Endian, LoadError};
+use crate::data::attempt::Attempt;
+
+pub(super) const HEADER_BYTES: usize = 1024;
+
+/// Voxels along an axis above which a header is not believed: it tells the order of its bytes.
+const MOST_ALONG: i32 = 1 << 24;
+
+/// The highest mode that any program writes: packed 4 bits.
+const HIGHEST_MODE: i32 = 101;
+
+/// IMOD's mark, "IMOD" as a number.
+const IMOD_STAMP: i32 = 1_146_047_817;
+
+/// A bit of IMOD's flags: bytes have signs.
+const IMOD_SIGNED_BYTES: i32 = 1;
+
+/// A bit of IMOD's flags: the origin has the opposite sign.
+const IMOD_ORIGIN_INVERTED: i32 = 4;
+
+/// Numbers of space groups that stand for stacks of volumes.
+const VOLUME_STACKS: std::ops::RangeInclusive<i32> = 401..=630;
+
+pub(super) struct Header {
+    bytes: [u8; HEADER_BYTES],
+    pub(super) endian: Endian,
+}
+
+impl Header {
+    /// The header at the beginning of a file.
+    pub(super) fn of(attempt: Attempt<'_>, start: &[u8]) -> Result<Self, LoadError> {
+        let Some(&bytes) = start.first_chunk() else {
+            return Err(attempt.bad_input(
+                "header",
+                format!("the header is truncated: {HEADER_BYTES} bytes expected, {} found", start.len()),
+                "copy or download the file again",
+            ));
+        };
+        let as_order = |endian| Self { bytes, endian };
+        // The machine stamp; what it says is wrong in files that were converted by half.
+        let stamped = match bytes[212] {
+            0x44 => Some(Endian::Little),
+            0x11 => Some(Endian::Big),
+            _ => None,
+        };
+        let first = stamped.unwrap_or(Endian::Little);
+        let other = if first == Endian::Little { Endian::Big } else { Endian::Little };
+        match [first, other].map(as_order) {
+            [header, _] if header.is_plausible() => Ok(header),
+            [_, header] if header.is_plausible() => Ok(header),
+            [header, _] if stamped.is_some() => Ok(header),
+            _ => Err(attempt.bad_input(
+                "header",
+                "it is no header of an MRC file: in neither byte order are its dimensions and its mode possible",
+                "check the file's name and format",
+            )),
+        }
+    }
+
+    fn word(&self, word: usize) -> [u8; 4] {
+        let mut bytes = [0; 4];
+        bytes.copy_from_slice(&self.bytes[4 * (word - 1)..4 * word]);
+        bytes
+    }
+
+    /// A word as a whole number.
+    pub(super) fn int(&self, word: usize) -> i32 {
+        match self.endian {
+            Endian::Little => i32::from_le_bytes(self.word(word)),
+            Endian::Big => i32::from_be_bytes(self.word(word)),
+        }
+    }
+
+    /// A word as a real number.
+    pub(super) fn float(&self, word: usize) -> f64 {
+        f64::from(f32::from_bits(self.int(word).cast_unsigned()))
+    }
+
+    /// Three words.
+    pub(super) fn ints(&self, first: usize) -> [i32; 3] {
+        [first, first + 1, first + 2].map(|word| self.int(word))
+    }
+
+    /// Three words.
+    pub(super) fn floats(&self, first: usize) -> [f64; 3] {
+        [first, first + 1, first + 2].map(|word| self.float(word))
+    }
+
+    fn is_plausible(&self) -> bool {
+        self.ints(1).iter().all(|n| (1..=MOST_ALONG).contains(n)) && (0..=HIGHEST_MODE).contains(&self.mode())
+    }
+
+    /// NX, NY, NZ: columns, rows and sections.
+    pub(super) fn dims(&self, attempt: Attempt<'_>) -> Result<[u64; 3], LoadError> {
+        let [x, y, z] = self.ints(1);
+        let along = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
+        match (along(x), along(y), along(z)) {
+            (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
+            _ => Err(attempt.bad_input(
+                "NX, NY, NZ",
+                format!("{x} x {y} x {z} are no dimensions"),
+                "every dimension must be at least 1",
+            )),
+        }
+    }
+
+    pub(super) fn mode(&self) -> i32 {
+        self.int(4)
+    }
+
+    fn space_group(&self) -> i32 {
+        self.int(23)
+    }
+
+    /// Pictures of one thing from several sides, say.
+    pub(super) fn is_image_stack(&self) -> bool {
+        self.space_group() == 0 && self.int(10) == 1
+    }
+
+    /// Of a stack of volumes, how many sections each has; else all.
+    pub(super) fn slices_of_a_volume(&self, all: u64) -> u64 {
+        let sampled = u64::try_from(self.int(10)).unwrap_or(0);
+        let is_stack = VOLUME_STACKS.contains(&self.space_group()) && sampled > 0;
+        if is_stack && all.is_multiple_of(sampled) { sampled } else { all }
+    }
+
+    /// Bytes between the header and the voxels.
+    pub(super) fn extension_bytes(&self, attempt: Attempt<'_>) -> Result<u64, LoadError> {
+        let said = self.int(24);
+        u64::try_from(said).map_err(|_negative| {
+            attempt.bad_input(
+                "NSYMBT",
+                format!("{said} bytes cannot be the length of an extended header"),
+                "copy or download the file again",
+            )
+        })
+    }
+
+    fn imod_flags(&self) -> Option<i32> {
+        (self.int(39) == IMOD_STAMP).then(|| self.int(40))
+    }
+
+    /// Whether bytes have signs. IMOD says it; the definition of 2014 wants it so; older files show it by the range that
+    /// they state.
+    pub(super) fn bytes_are_signed(&self) -> bool {
+        let is_of_2014 = matches!(self.int(28), 20140..=20149);
+        match self.imod_flags() {
+            Some(flags) => flags & IMOD_SIGNED_BYTES != 0,
+            None => is_of_2014 || self.float(21) <= f64::from(i8::MAX),
+        }
+    }
+
+    /// Where the first voxel is, in Å; nothing where all of it is zero.
+    pub(super) fn origin(&self) -> Option<[f64; 3]> {
+        let origin = self.floats(50);
+        let sign =
+            if self.imod_flags().is_some_and(|flags| flags & IMOD_ORIGIN_INVERTED != 0) { -1.0 } else { 1.0 };
+        let is_said = origin.iter().all(|x| x.is_finite()) && origin != [0.0; 3];
+        is_said.then(|| origin.map(|x| sign * x))
+    }
+
+    /// The first of ten lines in which programs say what they have done.
+    pub(super) fn label(&self) -> String {
+        let labels = self.bytes[224..].chunks(80).map(|label| {
+            let end = label.iter().position(|&byte| byte == 0).unwrap_or(label.len());
+            String::from_utf8_lossy(&label[..end]).trim().to_owned()
+        });
+        labels.into_iter().find(|label| !label.is_empty()).unwrap_or_default()
+    }
+}

@@ -1,0 +1,168 @@
+//! The dictionary at the beginning of an array: Python's notation, of which only what NumPy writes is read.
+
+/// A value of the dictionary.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Value {
+    Text(String),
+    Bool(bool),
+    /// A tuple of whole numbers.
+    Numbers(Vec<u64>),
+    /// A list, of which nothing is kept: the fields of records.
+    List,
+}
+
+/// Most axes that NumPy's arrays can have.
+const MOST_AXES: usize = 64;
+
+/// The entries of a dictionary, or what was expected where it is none.
+pub(super) fn parse(text: &str) -> Result<Vec<(String, Value)>, &'static str> {
+    let mut text = Text(text.trim_ascii());
+    text.expect('{', "a dictionary in braces")?;
+    let mut entries = Vec::new();
+    while !text.takes('}') {
+        let key = text.quoted().ok_or("a key in quotes")?;
+        text.expect(':', "a colon behind a key")?;
+        entries.push((key, text.value()?));
+        if !text.takes(',') {
+            text.expect('}', "a comma or the closing brace")?;
+            break;
+        }
+    }
+    if text.rest().is_empty() { Ok(entries) } else { Err("nothing behind the closing brace") }
+}
+
+/// What is left to be read.
+struct Text<'a>(&'a str);
+
+impl<'a> Text<'a> {
+    fn rest(&mut self) -> &'a str {
+        self.0 = self.0.trim_ascii_start();
+        self.0
+    }
+
+    /// Goes past a sign, if it comes next.
+    fn takes(&mut self, sign: char) -> bool {
+        let after = self.0.trim_ascii_start().strip_prefix(sign);
+        self.0 = after.unwrap_or(self.0);
+        after.is_some()
+    }
+
+    fn expect(&mut self, sign: char, what: &'static str) -> Result<(), &'static str> {
+        if self.takes(sign) { Ok(()) } else { Err(what) }
+    }
+
+    /// Text in quotes of either kind, without escapes: no name of a type has any.
+    fn quoted(&mut self) -> Option<String> {
+        let quote = self.rest().chars().next().filter(|c| matches!(c, '\'' | '"'))?;
+        let (inside, after) = self.0[1..].split_once(quote)?;
+        self.0 = after;
+        (!inside.contains('\\')).then(|| inside.to_owned())
+    }
+
+    fn value(&mut self) -> Result<Value, &'static str> {
+        for (word, value) in [("True", true), ("False", false)] {
+            if let Some(after) = self.rest().strip_prefix(word) {
+                self.0 = after;
+                return Ok(Value::Bool(value));
+            }
+        }
+        if self.takes('(') {
+            return self.numbers().map(Value::Numbers);
+        }
+        if self.rest().starts_with('[') {
+            return self.list();
+        }
+        self.quoted().map(Value::Text).ok_or("a text, True, False, a tuple or a list")
+    }
+
+    /// The rest of a tuple.
+    fn numbers(&mut self) -> Result<Vec<u64>, &'static str> {
+        let mut numbers = Vec::new();
+        while !self.takes(')') {
+            let rest = self.rest();
+            let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+            // What does not fit 64 bits does not fit anything.
+            let number = rest.get(..end).filter(|digits| !digits.is_empty()).ok_or("a whole number")?;
+            let number = number.parse().unwrap_or(u64::MAX);
+            self.0 = &self.0[end..];
+            // Python 2 marks long numbers.
+            self.takes('L');
+            if numbers.len() == MOST_AXES {
+                return Err("at most 64 axes");
+            }
+            numbers.push(number);
+            if !self.takes(',') {
+                self.expect(')', "a comma or the closing parenthesis")?;
+                break;
+            }
+        }
+        Ok(numbers)
+    }
+
+    /// A list, with whatever is in it.
+    fn list(&mut self) -> Result<Value, &'static str> {
+        let mut depth = 0usize;
+        let mut quote = None;
+        for (at, c) in self.0.char_indices() {
+            match (quote, c) {
+                (Some(open), c) if c == open => quote = None,
+                (None, '\'' | '"') => quote = Some(c),
+                (None, '[') => depth += 1,
+                (None, ']') => depth -= 1,
+                _ => {}
+            }
+            if depth == 0 {
+                self.0 = &self.0[at + 1..];
+                return Ok(Value::List);
+            }
+        }
+        Err("the end of a list")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_numpy_writes_is_read() {
+        let text = "{'descr': '<f4', \"fortran_order\": False, 'shape': (3, 40L, 5), }   \n";
+        let entries = parse(text).unwrap();
+        assert_eq!(entries[0], ("descr".to_owned(), Value::Text("<f4".to_owned())));
+        assert_eq!(entries[1].1, Value::Bool(false));
+        assert_eq!(entries[2].1, Value::Numbers(vec![3, 40, 5]));
+        assert_eq!(parse("{}").unwrap(), []);
+        assert_eq!(parse("{'a':()}").unwrap()[0].1, Value::Numbers(Vec::new()));
+        assert_eq!(parse("{'a':(7,)}").unwrap()[0].1, Value::Numbers(vec![7]));
+        let records = "{'descr': [('x]', '<f4', (2,)), ('y', [('z', '|u1')])], 'b': True}";
+        assert_eq!(parse(records).unwrap()[0].1, Value::List);
+        assert_eq!(parse("{'a':(99999999999999999999999,)}").unwrap()[0].1, Value::Numbers(vec![u64::MAX]));
+    }
+
+    #[test]
+    fn anything_else_is_not() {
+        for text in [
+            "",
+            "{",
+            "[]",
+            "{'a'}",
+            "{'a': }",
+            "{'a': 1}",
+            "{'a': (1 2)}",
+            "{'a': (-1,)}",
+            "{'a': (1,",
+            "{'a': [",
+            "{'a': ']'",
+            "{'a': '\\'}",
+            "{a: True}",
+            "{'a': True 'b': True}",
+            "{'a': True} x",
+            "{'a': __import__('os')}",
+            "{'é: True}",
+        ] {
+            assert!(parse(text).is_err(), "{text}");
+        }
+        assert!(parse(&format!("{{'a': ({})}}", "1,".repeat(65))).is_err());
+        assert!(parse(&format!("{{'a': {}", "[".repeat(10_000))).is_err());
+    }
+}

@@ -1,0 +1,95 @@
+//! What the axes of an array stand for: the three fastest are a volume, those before it several.
+
+use super::super::number::Number;
+use super::super::{Dimension, Endian, LoadError};
+use super::header::Header;
+use crate::data::attempt::{Attempt, quoted};
+
+/// An array as volumes.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Grid {
+    /// How many volumes there are, the slowest first.
+    pub(super) outer: Vec<(Dimension, u64)>,
+    /// Voxels along x, y, z.
+    pub(super) dims: [u64; 3],
+    pub(super) number: Number,
+    pub(super) endian: Endian,
+    pub(super) components: usize,
+    pub(super) is_color: bool,
+}
+
+impl Grid {
+    /// Says what the axes stand for; those of one element alone stand for nothing.
+    pub(super) fn of(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
+        let (number, endian, mut components) = number_of(&header.descr).ok_or_else(|| {
+            attempt.bad_input(
+                "descr",
+                format!("elements of type {} are not read", quoted(&header.descr)),
+                "convert the array to whole or real numbers of at most 64 bits, for example with astype(numpy.float32)",
+            )
+        })?;
+        // Slowest first, as they lie in the file.
+        let mut axes = header.shape.clone();
+        if header.is_fortran {
+            axes.reverse();
+        }
+        let is_color = number == Number::U8 && axes.len() > 3 && matches!(axes.last(), Some(3 | 4));
+        if is_color {
+            components = axes.pop().unwrap_or(1) as usize;
+        }
+        while axes.len() > 3 {
+            let Some(single) = axes.iter().position(|&n| n == 1) else { break };
+            axes.remove(single);
+        }
+        let count = axes.len();
+        let (outer, dims) = match axes[..] {
+            [y, x] => (vec![], [x, y, 1]),
+            [z, y, x] => (vec![], [x, y, z]),
+            [frames, z, y, x] => (vec![(Dimension::Frame, frames)], [x, y, z]),
+            [frames, channels, z, y, x] => {
+                (vec![(Dimension::Frame, frames), (Dimension::Channel, channels)], [x, y, z])
+            }
+            _ => {
+                return Err(attempt.bad_input(
+                    "shape",
+                    format!("an array of {count} axes is no volume"),
+                    "save an array of two or three axes (z, y, x), or of four or five: time, channel, z, y, x",
+                ));
+            }
+        };
+        if let Some((dimension, _)) = outer.iter().find(|(_, count)| *count == 0) {
+            return Err(attempt.bad_input(
+                "shape",
+                format!("there are no {} in it", dimension.plural()),
+                "every axis must have at least one element",
+            ));
+        }
+        Ok(Self { outer, dims, number, endian, components, is_color })
+    }
+}
+
+/// The number type of a code, its byte order, and how many of them an element has.
+fn number_of(descr: &str) -> Option<(Number, Endian, usize)> {
+    let (endian, code) = match descr.split_at_checked(1)? {
+        (">", code) => (Endian::Big, code),
+        ("<" | "|" | "=", code) => (Endian::Little, code),
+        _ => (Endian::Little, descr),
+    };
+    let (number, components) = match code {
+        "b1" | "u1" => (Number::U8, 1),
+        "i1" => (Number::I8, 1),
+        "u2" => (Number::U16, 1),
+        "i2" => (Number::I16, 1),
+        "u4" => (Number::U32, 1),
+        "i4" => (Number::I32, 1),
+        "u8" => (Number::U64, 1),
+        "i8" => (Number::I64, 1),
+        "f2" => (Number::F16, 1),
+        "f4" => (Number::F32, 1),
+        "f8" => (Number::F64, 1),
+        "c8" => (Number::F32, 2),
+        "c16" => (Number::F64, 2),
+        _ => return None,
+    };
+    Some((number, endian, components))
+}

@@ -1,0 +1,81 @@
+//! The header of an array: its type, the order of its axes and its shape.
+
+use std::io::Read;
+
+use super::super::LoadError;
+use super::dictionary::{Value, parse};
+use crate::data::attempt::{Attempt, quoted};
+
+/// How every file of an array begins.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// The longest header that is read: NumPy itself reads no longer ones from files that are not trusted.
+const LONGEST_HEADER: u64 = 64 << 10;
+
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Header {
+    /// The type of the numbers in NumPy's code: `<f4`.
+    pub(super) descr: String,
+    /// Whether the first axis is the fastest.
+    pub(super) is_fortran: bool,
+    pub(super) shape: Vec<u64>,
+    /// Bytes before the first number.
+    pub(super) bytes: u64,
+}
+
+impl Header {
+    /// Reads it from the beginning of an array's file.
+    pub(super) fn read(attempt: Attempt<'_>, content: &mut dyn Read) -> Result<Self, LoadError> {
+        let bad = |why: String| attempt.bad_input("header", why, "save the array again with numpy.save");
+        let mut exactly = |count: u64| {
+            let mut bytes = Vec::new();
+            match Read::take(&mut *content, count).read_to_end(&mut bytes) {
+                Ok(_) if bytes.len() as u64 == count => Ok(bytes),
+                Ok(_) => Err(bad("the header is truncated".to_owned())),
+                Err(error) => Err(bad(format!("the header cannot be read: {error}"))),
+            }
+        };
+        let start = exactly(8)?;
+        if !start.starts_with(MAGIC) {
+            return Err(bad("it does not begin as an array of NumPy does".to_owned()));
+        }
+        let (width, version) = match start[6] {
+            1 => (2, 1),
+            2 | 3 => (4, start[6]),
+            other => return Err(bad(format!("version {other} is not known, 1 to 3 are"))),
+        };
+        let length = exactly(width)?.iter().rev().fold(0u64, |sum, &byte| sum << 8 | u64::from(byte));
+        if length > LONGEST_HEADER {
+            return Err(bad(format!("a header of {length} bytes is longer than any that describes numbers")));
+        }
+        let text = exactly(length)?;
+        // Versions before 3 are in Latin-1; names of types and axes are the same in both.
+        let text = if version == 3 {
+            String::from_utf8_lossy(&text).into_owned()
+        } else {
+            text.iter().map(|&byte| char::from(byte)).collect()
+        };
+        let entries = parse(&text).map_err(|expected| {
+            bad(format!("{} is no header of an array: {expected} was expected", quoted(&text)))
+        })?;
+        let find = |key: &str| entries.iter().find(|(name, _)| name == key).map(|(_, value)| value);
+        let descr = match find("descr") {
+            Some(Value::Text(descr)) => descr.clone(),
+            Some(Value::List) => {
+                return Err(attempt.bad_input(
+                    "descr",
+                    "its elements are records of several fields",
+                    "save one of the fields as an array",
+                ));
+            }
+            _ => return Err(bad("it does not say the type of its numbers (descr)".to_owned())),
+        };
+        let (Some(Value::Bool(is_fortran)), Some(Value::Numbers(shape))) =
+            (find("fortran_order"), find("shape"))
+        else {
+            return Err(bad("it does not say fortran_order or shape".to_owned()));
+        };
+        let bytes = 8 + width + length;
+        Ok(Self { descr, is_fortran: *is_fortran, shape: shape.clone(), bytes })
+    }
+}

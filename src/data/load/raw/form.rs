@@ -1,0 +1,132 @@
+//! How bare voxels are stored, whoever has said it, and reading them.
+
+use super::super::number::{Number, Stored};
+use super::super::placement::{Parts, Placement};
+use super::super::reader::{After, Source};
+use super::super::samples::Layout;
+use super::super::{Dimension, Endian, LoadError};
+use crate::data::attempt::{Attempt, Extent};
+use crate::data::{Hints, Samples, Volume, VoxelType};
+
+/// A header longer than this is not a header: the suggestion of `--offset` would mislead.
+const LONGEST_HEADER_BYTES: u64 = 1 << 20;
+
+/// How bare voxels are stored, and what else is known of them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Form {
+    /// Voxels along x, y, z.
+    pub(super) dims: [u64; 3],
+    /// Who has said that.
+    pub(super) dims_field: &'static str,
+    pub(super) number: Number,
+    pub(super) components: usize,
+    pub(super) is_color: bool,
+    pub(super) endian: Endian,
+    /// Bytes before the first voxel.
+    pub(super) offset: Option<u64>,
+    pub(super) placement: Placement,
+    /// Volumes, one behind the other.
+    pub(super) frames: u64,
+    pub(super) hints: Hints,
+}
+
+impl Form {
+    /// Of one number for each voxel, little-endian, where nothing else is known.
+    pub(super) fn new(dims: [u64; 3], dims_field: &'static str, number: Number) -> Self {
+        Self {
+            dims,
+            dims_field,
+            number,
+            components: 1,
+            is_color: false,
+            endian: Endian::Little,
+            offset: None,
+            placement: Placement::unknown(),
+            frames: 1,
+            hints: Hints::default(),
+        }
+    }
+
+    /// Reads voxels that are stored like that and fill a file.
+    pub(super) fn read(
+        self,
+        mut source: Source<'_>,
+        attempt: Attempt<'_>,
+        name: String,
+        help: &str,
+    ) -> Result<Volume, LoadError> {
+        let part = source.part(attempt, self.components, self.is_color)?;
+        let stored = Stored { number: self.number, endian: self.endian, components: self.components, part };
+        let frame = source.numbered(attempt, Dimension::Frame, self.frames, self.dims, |_| String::new())?;
+        let budget = source.options.memory_budget_bytes;
+        let extent = Extent::checked(attempt, self.dims_field, self.dims, stored.voxel_type(), budget)?;
+        let bytes = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
+        let all_bytes = bytes.saturating_mul(self.frames);
+        let offset = self.offset.unwrap_or(0);
+        let at = offset.saturating_add(bytes.saturating_mul(frame as u64));
+
+        // Voxels may begin with gzip's magic by chance: a file of the right size is not compressed.
+        let fits_exactly = offset.checked_add(all_bytes) == Some(source.input.len);
+        let zipped_name = source.path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
+        let samples = if source.start.is_gzip() && (zipped_name || !fits_exactly) {
+            let after = if self.frames == 1 { After::End } else { After::More };
+            let help = "check the dimensions, the type and --offset";
+            source.voxels(attempt, at, (&stored, extent), after, help)?
+        } else {
+            self.check_length(attempt, (&stored, extent), all_bytes, source.input.len)?;
+            read_plain(&mut source, attempt, at, &stored, extent)?
+        };
+        let placement = self.placement.remarked(part.remark());
+        let parts = Parts { name, dims: extent.dims, placement, samples, hints: self.hints };
+        parts.volume_or(attempt, help)
+    }
+
+    /// Checks that a file of `len` bytes holds the voxels and nothing but them and the offset.
+    fn check_length(
+        &self,
+        attempt: Attempt<'_>,
+        (stored, extent): (&Stored, Extent),
+        bytes: u64,
+        len: u64,
+    ) -> Result<(), LoadError> {
+        let Extent { dims: [x, y, z], voxels, .. } = extent;
+        let expected = self.offset.unwrap_or(0).checked_add(bytes);
+        if expected == Some(len) {
+            return Ok(());
+        }
+        let after = self.offset.map_or(String::new(), |offset| format!(" after an offset of {offset}"));
+        let why = format!(
+            "{} bytes were expected for {x} x {y} x {z} voxels of {}{after}, {len} were found",
+            expected.map_or("more than 2^64".to_owned(), |expected| expected.to_string()),
+            stored.voxel_type().name()
+        );
+        let excess = len.saturating_sub(bytes);
+        let fitting =
+            VoxelType::ALL.into_iter().find(|t| (voxels as u64).checked_mul(t.bytes() as u64) == Some(len));
+        let help = match (self.offset, fitting) {
+            (None, Some(fitting)) => {
+                format!("the length fits {}-byte voxels: try --type {}", fitting.bytes(), fitting.name())
+            }
+            (_, _) if excess > 0 && excess <= LONGEST_HEADER_BYTES => {
+                format!("if the file begins with a header of {excess} bytes, give --offset {excess}")
+            }
+            _ => "check the dimensions and the type, or copy the file again".to_owned(),
+        };
+        Err(attempt.bad_input("file size", why, help))
+    }
+}
+
+/// Reads voxels as they are, though they may look compressed.
+fn read_plain(
+    source: &mut Source<'_>,
+    attempt: Attempt<'_>,
+    at: u64,
+    stored: &Stored,
+    extent: Extent,
+) -> Result<Samples, LoadError> {
+    source.input.seek(at).map_err(|error| attempt.io(error))?;
+    stored.read(&mut source.input.reader, extent, source.control).map_err(|fault| {
+        let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
+        fault.into_error(attempt, &layout, "bytes", "the file has changed meanwhile: load it again")
+    })
+}

@@ -1,0 +1,154 @@
+//! RAW: voxels and nothing else, x fastest. How many and of which type say the options, a small file beside them, or their
+//! own name.
+
+mod form;
+mod layout;
+mod name;
+mod sidecar;
+
+use std::path::Path;
+
+use super::input::stem;
+use super::number::Number;
+use super::placement::Placement;
+use super::reader::{Reader, Source};
+use super::{Endian, LoadError, LoadOptions};
+use crate::data::attempt::{Attempt, is_usable_spacing, quoted, unlike_spacings};
+use crate::data::{Volume, VoxelType, plain};
+use form::Form;
+pub use layout::{RawGuess, RawLayout};
+pub(super) use sidecar::{DAT, INI, IVF};
+
+/// How a RAW file is stored. What is given overrides what the file's name, or a file beside it, says.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RawFormat {
+    /// Voxels along x, y, z (`--dims`).
+    pub dims: Option<[usize; 3]>,
+    /// The number type (`--type`).
+    pub voxel_type: Option<VoxelType>,
+    /// Distance between voxel centres along x, y, z in millimetres (`--spacing`), else nobody knows.
+    pub spacing_mm: Option<[f64; 3]>,
+    /// The byte order (`--endian`), else little.
+    pub endian: Option<Endian>,
+    /// Bytes before the first voxel, after inflating (`--offset`), else 0.
+    pub offset: Option<u64>,
+}
+
+pub(super) const READER: Reader =
+    Reader { name: "RAW", endings: &[".raw", ".raw.gz", ".dat", ".dat.gz"], recognises: |_| false, load };
+
+const HELP: &str = "check --dims, --type and --endian";
+
+/// Loads a RAW file.
+fn load(source: Source<'_>) -> Result<Volume, LoadError> {
+    let path = source.path;
+    let attempt = Attempt { what: "read the RAW volume", path };
+    let file_name = path.file_name().unwrap_or_default().to_string_lossy();
+    let named = name::parse(&file_name, unpacked_length(&source));
+    let (form, name) = match sidecar_form(attempt, &source, named.is_some())? {
+        Some(form) => (form, stem(path)),
+        None => {
+            let name = named.as_ref().map(|named| named.name.clone()).filter(|name| !name.is_empty());
+            let form = form_of(attempt, source.options, named, &file_name)?;
+            (form, name.map_or_else(|| stem(path), |name| plain(&name, 120)))
+        }
+    };
+    overridden(attempt, form, &source.options.raw)?.read(source, attempt, name, HELP)
+}
+
+/// The length of the voxels, where it says something.
+fn unpacked_length(source: &Source<'_>) -> Option<u64> {
+    let offset = source.options.raw.offset.unwrap_or(0);
+    (!source.start.is_gzip()).then(|| source.input.len.checked_sub(offset)).flatten()
+}
+
+/// What a file beside a RAW file says of it, unless the options say enough.
+fn sidecar_form(
+    attempt: Attempt<'_>,
+    source: &Source<'_>,
+    is_named: bool,
+) -> Result<Option<Form>, LoadError> {
+    if source.options.raw.dims.is_some() {
+        return Ok(None);
+    }
+    match sidecar::beside(source.path) {
+        Some(Ok(form)) => Ok(Some(form)),
+        Some(Err(error)) if is_named => {
+            attempt.warn(format_args!("the file that describes it is not read: {error}"));
+            Ok(None)
+        }
+        Some(Err(error)) => Err(error),
+        None => Ok(None),
+    }
+}
+
+/// What options and name say.
+fn form_of(
+    attempt: Attempt<'_>,
+    options: &LoadOptions,
+    named: Option<name::Named>,
+    file_name: &str,
+) -> Result<Form, LoadError> {
+    let format = &options.raw;
+    let (dims, dims_field) = match (format.dims, &named) {
+        (Some(dims), _) => (dims.map(|n| n as u64), "--dims"),
+        (None, Some(named)) => (named.dims, "file name"),
+        (None, None) => {
+            return Err(attempt.bad_input(
+                "file name",
+                format!("the name {} does not say the dimensions and the type", quoted(file_name)),
+                "give --dims and --type, or name it like skull_256x256x256_uint8.raw",
+            ));
+        }
+    };
+    let named_type = named.as_ref().and_then(|named| named.voxel_type);
+    let Some(voxel_type) = format.voxel_type.or(named_type) else {
+        return Err(attempt.bad_input(
+            "--type",
+            "neither the options nor the file name say the type of the voxels",
+            "give --type: uint8, int8, uint16, int16, uint32, int32, float32 or float64",
+        ));
+    };
+    let is_guessed = format.voxel_type.is_none() && named.as_ref().is_some_and(|named| named.is_type_guessed);
+    let remark = is_guessed.then(|| {
+        format!("its name does not say the type of its voxels: by its size they are {}", voxel_type.name())
+    });
+    let mut form = Form::new(dims, dims_field, Number::of(voxel_type));
+    form.placement = Placement::unknown().remarked(remark);
+    form.endian = named.and_then(|named| named.endian).unwrap_or(Endian::Little);
+    Ok(form)
+}
+
+/// A form with what the options say in place of what it says.
+fn overridden(attempt: Attempt<'_>, mut form: Form, format: &RawFormat) -> Result<Form, LoadError> {
+    if let Some(dims) = format.dims {
+        (form.dims, form.dims_field) = (dims.map(|n| n as u64), "--dims");
+    }
+    if let Some(voxel_type) = format.voxel_type {
+        (form.number, form.components, form.is_color) = (Number::of(voxel_type), 1, false);
+    }
+    form.endian = format.endian.unwrap_or(form.endian);
+    form.offset = format.offset.or(form.offset);
+    if let Some(spacing_mm) = format.spacing_mm {
+        if !spacing_mm.into_iter().all(is_usable_spacing) {
+            return Err(attempt.bad_input(
+                "--spacing",
+                format!("{spacing_mm:?} mm cannot be distances between voxels"),
+                "give three lengths in millimetres, each above 0",
+            ));
+        }
+        if let Some(why) = unlike_spacings(spacing_mm) {
+            let help = "give the three lengths in one unit, millimetres";
+            return Err(attempt.bad_input("--spacing", why, help));
+        }
+        let remarks = std::mem::take(&mut form.placement.remarks);
+        form.placement = Placement { remarks, ..Placement::spaced(spacing_mm) };
+    }
+    Ok(form)
+}
+
+/// Whether two paths end in the same name, which some systems write in other letters.
+fn has_name(path: &Path, name: &str) -> bool {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    path.file_name().is_some_and(|file| file.to_string_lossy().eq_ignore_ascii_case(last))
+}

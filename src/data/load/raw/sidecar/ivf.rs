@@ -1,0 +1,60 @@
+//! IVF, Inviwo's volumes: a description in XML.
+
+use roxmltree::{Document, Node};
+
+use super::super::super::LoadError;
+use super::super::super::placement::Placement;
+use super::super::form::Form;
+use super::Described;
+use super::words::{bad, missing, number, order};
+use crate::data::attempt::Attempt;
+
+/// Whether a file that begins like this is a description.
+pub(super) fn is_ivf(start: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(start);
+    text.trim_start_matches('\u{feff}').trim_start().starts_with('<') && text.contains("<RawFile")
+}
+
+pub(super) fn parse(attempt: Attempt<'_>, text: &str) -> Result<Described, LoadError> {
+    let document = Document::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
+        attempt.bad_input("XML", format!("it is not valid: {error}"), "copy the description again")
+    })?;
+    let node = |name: &str| document.descendants().find(|node| node.has_tag_name(name));
+    let content = |name: &str| node(name).and_then(|node| node.attribute("content")).map(str::trim);
+    let data = content("RawFile").ok_or_else(|| missing(attempt, "RawFile"))?;
+    let said =
+        node("Dimension").or_else(|| node("Dimensions")).ok_or_else(|| missing(attempt, "Dimension"))?;
+    let dims = three(said).ok_or_else(|| bad(attempt, "Dimension", "", "x, y and z as numbers of voxels"))?;
+    let said = content("Format").ok_or_else(|| missing(attempt, "Format"))?;
+    let (kind, components) =
+        number(said).ok_or_else(|| bad(attempt, "Format", said, "a number type like UINT8"))?;
+    let mut form = Form::new(dims, "Dimension", kind);
+    form.components = components;
+    form.is_color = components > 2;
+    if let Some(said) = content("ByteOffset") {
+        form.offset =
+            Some(said.parse().map_err(|_error| bad(attempt, "ByteOffset", said, "a number of bytes"))?);
+    }
+    if let Some(said) = content("LittleEndian").or_else(|| content("ByteOrder")) {
+        form.endian = order(said).ok_or_else(|| bad(attempt, "LittleEndian", said, "1 or 0"))?;
+    }
+    // Edges of the whole in units of Inviwo's scenes: only how they compare is known.
+    let edges = node("BasisAndOffset").map(|basis| {
+        ["col0", "col1", "col2"].map(|name| {
+            let column = basis.children().find(|node| node.has_tag_name(name));
+            column.and_then(three::<f64>).map(|edge| glam::DVec3::from(edge).length())
+        })
+    });
+    if let Some([Some(x), Some(y), Some(z)]) = edges {
+        let steps = [x / dims[0].max(1) as f64, y / dims[1].max(1) as f64, z / dims[2].max(1) as f64];
+        form.placement = Placement::spaced(steps).of_unknown_scale();
+    }
+    form.hints.set_unit(content("ValueUnit").or_else(|| content("Unit")).unwrap_or_default());
+    Ok(Described { data: Some(data.to_owned()), form })
+}
+
+/// The attributes x, y and z.
+fn three<T: std::str::FromStr>(node: Node<'_, '_>) -> Option<[T; 3]> {
+    let number = |name: &str| node.attribute(name)?.trim().parse().ok();
+    Some([number("x")?, number("y")?, number("z")?])
+}
