@@ -6,9 +6,12 @@
 //! itself and one block.
 
 mod beside;
+mod content;
 mod folder;
 mod formats;
 mod input;
+mod label_files;
+mod nifti;
 mod nrrd;
 mod number;
 mod placement;
