@@ -11,6 +11,7 @@ mod folder;
 mod formats;
 mod input;
 mod label_files;
+mod metaimage;
 mod nifti;
 mod nrrd;
 mod number;
