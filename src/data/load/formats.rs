@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, cube, mrc, nrrd, numpy, pvm, raw};
+use super::{LoadOptions, cube, metaimage, mrc, nifti, nrrd, numpy, pvm, raw};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
@@ -13,6 +13,8 @@ pub(super) const READERS: &[Reader] = &[
     pvm::READER,
     mrc::READER,
     cube::READER,
+    nifti::READER,
+    metaimage::READER,
     raw::DAT,
     raw::IVF,
     raw::INI,

@@ -128,6 +128,16 @@ pub(crate) fn is_gzip(magic: &[u8]) -> bool {
     magic.starts_with(&[0x1f, 0x8b, 8])
 }
 
+/// The file name without that of the endings (lower case, longest first) which it has, in any case.
+pub(super) fn bare_name(path: &Path, endings: &[&str]) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let lower = name.to_lowercase();
+    let ending = endings.iter().find(|ending| lower.ends_with(**ending) && lower.len() > ending.len());
+    // Lower case can have another length: then the name is kept whole.
+    let kept = ending.and_then(|ending| name.get(..name.len().saturating_sub(ending.len())));
+    kept.unwrap_or(&name).to_owned()
+}
+
 /// The file name without its last extension, and without `.gz` behind that, for a volume that has no other name.
 pub(crate) fn stem(path: &Path) -> String {
     let is_zipped = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));

@@ -6,11 +6,15 @@
 //! itself and one block.
 
 mod beside;
+mod content;
 mod cube;
 mod folder;
 mod formats;
 mod input;
+mod label_files;
+mod metaimage;
 mod mrc;
+mod nifti;
 mod nrrd;
 mod number;
 mod numpy;

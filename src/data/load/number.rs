@@ -4,8 +4,8 @@
 use std::io::Read;
 
 use super::samples::{BLOCK_BYTES, Fault, Layout, Sample, fill, read_binary, reserve};
-use super::{Endian, LoadControl};
-use crate::data::attempt::Extent;
+use super::{Choice, Endian, LoadControl, LoadError};
+use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, VoxelType};
 
 /// A number type of files.
@@ -73,7 +73,7 @@ impl Number {
     }
 
     /// The value of some bytes, as many as one has.
-    fn value(self, bytes: &[u8], endian: Endian) -> f64 {
+    pub(super) fn value(self, bytes: &[u8], endian: Endian) -> f64 {
         match self {
             Self::U8 => f64::from(u8::from_bytes(bytes, endian)),
             Self::I8 => f64::from(i8::from_bytes(bytes, endian)),
@@ -217,11 +217,27 @@ impl Part {
         }
     }
 
-    /// What the user is told of it.
+    /// As [`Self::chosen`], with the error for a component that is not there.
+    pub(super) fn asked(
+        attempt: Attempt<'_>,
+        choice: &Choice,
+        components: usize,
+        is_color: bool,
+    ) -> Result<Self, LoadError> {
+        Self::chosen(choice.component, components, is_color).ok_or_else(|| {
+            attempt.bad_input(
+                "--component",
+                format!("voxels have {components} components, and the first of them is 0"),
+                format!("give a number from 0 to {}", components.saturating_sub(1)),
+            )
+        })
+    }
+
+    /// What the user is told where not all of a voxel is seen.
     pub(super) fn remark(self) -> Option<&'static str> {
         match self {
             Self::Component(_) => None,
-            Self::Magnitude => Some("vectors are shown by their length"),
+            Self::Magnitude => Some("vectors are shown as their length"),
             Self::Luminance => Some("colours are shown as their luminance"),
         }
     }
@@ -287,7 +303,6 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::data::attempt::Attempt;
 
     fn read(stored: Stored, bytes: &[u8], voxels: u64) -> Samples {
         let attempt = Attempt { what: "test", path: Path::new("t") };

@@ -47,6 +47,14 @@ pub(crate) enum Fault {
 }
 
 impl Fault {
+    /// The fault, of which it is known that a decoder lies between the file and what was read.
+    pub(super) fn of_stream(self) -> Self {
+        match self {
+            Self::Io(error) if is_corruption(&error) => Self::Corrupt(error),
+            fault => fault,
+        }
+    }
+
     /// The error to report, with `help` for sizes that do not fit.
     pub(crate) fn into_error(
         self,
@@ -162,17 +170,13 @@ pub(crate) fn read_gzip(
     // One byte more than needed tells "too much" from "enough", and no bomb gets further.
     let most = skip.saturating_add(layout.extent.bytes).saturating_add(1);
     let mut inflated = MultiGzDecoder::new(reader).take(most);
-    let broken = |fault| match fault {
-        Fault::Io(error) if is_corruption(&error) => Fault::Corrupt(error),
-        fault => fault,
-    };
-    let skipped = skip_bytes(&mut inflated, skip, control).map_err(broken)?;
+    let skipped = skip_bytes(&mut inflated, skip, control).map_err(Fault::of_stream)?;
     if skipped < skip {
         return Err(Fault::Short { got: 0 });
     }
-    let samples = read_binary(&mut inflated, layout, control).map_err(broken)?;
+    let samples = read_binary(&mut inflated, layout, control).map_err(Fault::of_stream)?;
     // Also makes the decoder look at the checksum, which comes after the last byte.
-    match fill(&mut inflated, &mut [0], control).map_err(broken)? {
+    match fill(&mut inflated, &mut [0], control).map_err(Fault::of_stream)? {
         0 => Ok(samples),
         _ => Err(Fault::Long),
     }

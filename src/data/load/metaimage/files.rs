@@ -1,0 +1,163 @@
+//! In which files the voxels are.
+
+use super::super::LoadError;
+use super::header::{DATA_FILE, Header};
+use super::layout::Grid;
+use crate::data::attempt::{Attempt, quoted};
+
+/// Most files of a volume: eight times the slices of the longest scans.
+const MOST_FILES: u64 = 1 << 16;
+
+/// The longest number of a slice in a name; a pattern that asks for more is none.
+const MOST_DIGITS: usize = 20;
+
+/// The files, in the order of their voxels; each has as many.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Files {
+    /// Behind the header.
+    Local,
+    /// Beside it, by their names.
+    Named(Vec<String>),
+}
+
+impl Files {
+    pub(super) fn of(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> Result<Self, LoadError> {
+        let text = header.get(DATA_FILE).unwrap_or_default();
+        let words: Vec<&str> = text.split_whitespace().take(8).collect();
+        match words[..] {
+            ["LOCAL" | "Local" | "local"] => Ok(Self::Local),
+            ["LIST", ref said @ ..] => {
+                let needed = files_of(attempt, said.first().copied(), grid)?;
+                if (header.list.len() as u64) < needed {
+                    return Err(attempt.bad_input(
+                        DATA_FILE,
+                        format!(
+                            "{needed} names of files were expected after it, {} were found",
+                            header.list.len()
+                        ),
+                        "write a name for each slice, one a line",
+                    ));
+                }
+                Ok(Self::Named(header.list.iter().take(needed as usize).cloned().collect()))
+            }
+            [pattern, ref said @ ..]
+                if pattern.contains('%') && (!said.is_empty() || number_at(pattern).is_some()) =>
+            {
+                let numbers: Option<Vec<i64>> = said.iter().map(|word| word.parse().ok()).collect();
+                match (numbers, number_at(pattern)) {
+                    (Some(numbers), Some(_)) => numbered(attempt, pattern, &numbers, grid),
+                    // A name with spaces and a sign of percent in it.
+                    _ => Ok(Self::Named(vec![text.to_owned()])),
+                }
+            }
+            _ => Ok(Self::Named(vec![text.to_owned()])),
+        }
+    }
+}
+
+/// How many files there are when each has the first dimensions: as many as the list says, or all but the last.
+fn files_of(attempt: Attempt<'_>, said: Option<&str>, grid: &Grid) -> Result<u64, LoadError> {
+    let count = grid.sizes.len();
+    let dimensions = said.map(|word| word.trim_end_matches(['D', 'd']).parse::<usize>());
+    let dimensions = match dimensions {
+        None => count - 1,
+        Some(Ok(dimensions)) if (1..=count).contains(&dimensions) => dimensions,
+        Some(_) => {
+            return Err(attempt.bad_input(
+                DATA_FILE,
+                format!("a list of files of 1 to {count} dimensions was expected"),
+                "write LIST, and a file for each slice",
+            ));
+        }
+    };
+    let files = grid.sizes.iter().skip(dimensions).fold(1u64, |product, &n| product.saturating_mul(n));
+    if files <= MOST_FILES { Ok(files) } else { Err(too_many(attempt, files)) }
+}
+
+fn too_many(attempt: Attempt<'_>, files: u64) -> LoadError {
+    attempt.limit(
+        DATA_FILE,
+        format!("{files} files are too many: at most {MOST_FILES} are read"),
+        "join them into one file",
+    )
+}
+
+/// The files of a pattern with the first number, the last one and the step, of which all can be missing.
+fn numbered(attempt: Attempt<'_>, pattern: &str, numbers: &[i64], grid: &Grid) -> Result<Files, LoadError> {
+    let needed = grid.sizes.last().copied().unwrap_or(1);
+    if needed > MOST_FILES {
+        return Err(too_many(attempt, needed));
+    }
+    let number = |at: usize, default: i64| numbers.get(at).copied().unwrap_or(default);
+    let first = number(0, 1);
+    let last = number(1, first.saturating_add(needed as i64 - 1));
+    let step = number(2, 1);
+    let names: Option<Vec<String>> = (0..needed as i64)
+        .map(|index| {
+            let at = step.checked_mul(index)?.checked_add(first)?;
+            let is_within = if step < 0 { at >= last } else { at <= last };
+            is_within.then(|| named(pattern, at)).flatten()
+        })
+        .collect();
+    names.map(Files::Named).ok_or_else(|| {
+        attempt.bad_input(
+            DATA_FILE,
+            format!(
+                "{needed} files were expected, {} from {first} to {last} by {step} gives fewer",
+                quoted(pattern)
+            ),
+            "correct the numbers after the pattern",
+        )
+    })
+}
+
+/// Where the number stands in a pattern with one `%d`, and how: its bytes, how wide it is, and whether zeros fill it.
+fn number_at(pattern: &str) -> Option<(std::ops::Range<usize>, usize, bool)> {
+    let start = pattern.find('%')?;
+    let rest = pattern.get(start + 1..)?;
+    let digits = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    let width = rest.get(..digits)?;
+    let is_number = rest.get(digits..)?.starts_with(['d', 'i', 'u']);
+    let after = rest.get(digits + 1..)?;
+    let length = if width.is_empty() { 0 } else { width.parse().ok()? };
+    let is_alone = !after.contains('%');
+    (is_number && is_alone && length <= MOST_DIGITS)
+        .then(|| (start..start + digits + 2, length, width.starts_with('0')))
+}
+
+/// The name of a file by its number.
+fn named(pattern: &str, number: i64) -> Option<String> {
+    let (place, width, has_zeros) = number_at(pattern)?;
+    let (before, after) = (pattern.get(..place.start)?, pattern.get(place.end..)?);
+    Some(if has_zeros {
+        format!("{before}{number:0width$}{after}")
+    } else {
+        format!("{before}{number:width$}{after}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_are_filled_in() {
+        for (pattern, number, name) in [
+            ("a%03d.raw", 7, Some("a007.raw")),
+            ("a%03d.raw", 1234, Some("a1234.raw")),
+            ("%d", -3, Some("-3")),
+            ("a%3i.raw", 7, Some("a  7.raw")),
+            ("a%u", 7, Some("a7")),
+            ("a%x", 7, None),
+            ("a%s", 7, None),
+            ("a%d%d", 7, None),
+            ("a%999999999d", 7, None),
+            ("a%99999999999999999999999d", 7, None),
+            ("a%", 7, None),
+            ("a%0", 7, None),
+            ("a%é", 7, None),
+        ] {
+            assert_eq!(named(pattern, number).as_deref(), name, "{pattern}");
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Where voxels lie.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::super::LoadError;
+use super::super::placement::Placement;
+use super::header::Header;
+use super::layout::Grid;
+use crate::data::attempt::Attempt;
+
+/// The place of the voxels of a grid. A matrix says which way a body lies, or three letters do.
+pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> Result<Placement, LoadError> {
+    let count = grid.sizes.len();
+    let spacing = header.numbers(attempt, &["ElementSpacing", "ElementSize"], count)?;
+    let origin = header.numbers(attempt, &["Offset", "Position", "Origin"], count)?;
+    let matrix = header.numbers(attempt, &["TransformMatrix", "Rotation", "Orientation"], count * count)?;
+    let mm = header.get("DistanceUnits").and_then(mm_of).unwrap_or(1.0);
+
+    let Some(spacing) = spacing else {
+        // How large voxels are is not known, and with that not where they are.
+        return Ok(Placement::unknown());
+    };
+    let length = |axis: usize| spacing.get(axis).or(spacing.get(1)).map_or(1.0, |length| length * mm);
+    let spaced = Placement::spaced([length(0), length(1), length(2)]);
+    // A picture lies in no body.
+    let directions = if count < 3 { None } else { matrix.map(|matrix| rows(&matrix, count)) };
+    let named = || header.get("AnatomicalOrientation").filter(|_| count > 2).and_then(directions_of);
+    let Some(directions) = directions.or_else(named) else {
+        return Ok(spaced);
+    };
+    let origin = origin.map_or(DVec3::ZERO, |origin| DVec3::new(origin[0], origin[1], origin[2]) * mm);
+    // What could not be a distance is mended already.
+    let matrix3 = directions * spaced.world_from_index.matrix3;
+    let mut placed = Placement::lps(DAffine3 { matrix3, translation: origin });
+    placed.remarks.extend(spaced.remarks);
+    Ok(placed)
+}
+
+/// Millimetres of a unit of lengths, where it is known.
+fn mm_of(unit: &str) -> Option<f64> {
+    match unit.to_lowercase().as_str() {
+        "nm" => Some(1e-6),
+        "um" | "µm" => Some(1e-3),
+        "mm" => Some(1.0),
+        "cm" => Some(10.0),
+        "m" => Some(1e3),
+        _ => None,
+    }
+}
+
+/// The directions of the first three axes: a row of the header for each.
+fn rows(matrix: &[f64], count: usize) -> DMat3 {
+    let row = |axis: usize| DVec3::from_array(std::array::from_fn(|at| matrix[axis * count + at]));
+    DMat3::from_cols(row(0), row(1), row(2))
+}
+
+/// The directions of axes by the sides that they come from, as in `RAI`; `None` where letters are none, or not of three
+/// different axes.
+fn directions_of(letters: &str) -> Option<DMat3> {
+    let axis = |letter: char| match letter {
+        'R' => Some(DVec3::X),
+        'L' => Some(-DVec3::X),
+        'A' => Some(DVec3::Y),
+        'P' => Some(-DVec3::Y),
+        'I' => Some(DVec3::Z),
+        'S' => Some(-DVec3::Z),
+        _ => None,
+    };
+    let axes: Option<Vec<DVec3>> = letters.chars().take(4).map(axis).collect();
+    let [x, y, z] = axes?.try_into().ok()?;
+    let matrix = DMat3::from_cols(x, y, z);
+    (matrix.determinant() != 0.0).then_some(matrix)
+}

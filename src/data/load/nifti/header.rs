@@ -1,0 +1,239 @@
+//! The fields of the three headers, in one form.
+
+use super::super::{Endian, LoadError};
+use crate::data::attempt::Attempt;
+
+/// Which of the headers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    Analyze,
+    Nifti1,
+    Nifti2,
+}
+
+/// Bytes of the headers of Analyze and NIfTI-1, and of NIfTI-2; they say it themselves in their first field.
+const BYTES_1: usize = 348;
+const BYTES_2: usize = 540;
+
+/// What follows a header in the same file: four bytes that say whether extensions do.
+const EXTENDER_BYTES: u64 = 4;
+
+impl Form {
+    /// What the first bytes of a file are.
+    pub(super) fn of(bytes: &[u8]) -> Option<Self> {
+        let has = |at: usize, mark: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(mark));
+        if bytes.len() >= BYTES_2 && (has(4, b"n+2\0") || has(4, b"ni2\0")) {
+            return Some(Self::Nifti2);
+        }
+        if bytes.len() < BYTES_1 {
+            return None;
+        }
+        if has(344, b"n+1\0") || has(344, b"ni1\0") {
+            return Some(Self::Nifti1);
+        }
+        is_analyze(bytes).then_some(Self::Analyze)
+    }
+
+    /// The byte order of a header: that in which its number of dimensions is one, or else its size is right.
+    fn endian(self, bytes: &[u8]) -> Option<Endian> {
+        [Endian::Little, Endian::Big].into_iter().find(|&endian| {
+            let fields = Fields { bytes, endian };
+            match self {
+                Self::Nifti2 => fields.i32(0) == BYTES_2 as i32,
+                Self::Nifti1 | Self::Analyze => (1..=7).contains(&fields.i16(40)),
+            }
+        })
+    }
+}
+
+/// Whether a header of Analyze begins here. It has no mark: several fields must be what they can be.
+fn is_analyze(bytes: &[u8]) -> bool {
+    [Endian::Little, Endian::Big].into_iter().any(|endian| {
+        let fields = Fields { bytes, endian };
+        let bits = match fields.i16(70) {
+            1 => 1,
+            2 | 130 | 256 => 8,
+            4 | 132 | 512 => 16,
+            8 | 16 | 136 | 768 => 32,
+            32 | 64 => 64,
+            128 => 24,
+            _ => return false,
+        };
+        fields.i32(0) == BYTES_1 as i32
+            && (1..=7).contains(&fields.i16(40))
+            && fields.i16(42) > 0
+            && [bits, 0].contains(&fields.i16(72))
+    })
+}
+
+/// What a header says.
+#[derive(Debug, Clone)]
+pub(super) struct Header {
+    pub(super) form: Form,
+    /// The voxels follow in the same file.
+    pub(super) is_single: bool,
+    pub(super) endian: Endian,
+    /// How many dimensions, then how long they are.
+    pub(super) dim: [i64; 8],
+    /// The sign of the third axis, then the distances along all.
+    pub(super) pixdim: [f64; 8],
+    pub(super) datatype: i16,
+    /// Where the voxels begin, in the file that they are in.
+    pub(super) data_start: u64,
+    pub(super) slope: f64,
+    pub(super) intercept: f64,
+    pub(super) cal_min: f64,
+    pub(super) cal_max: f64,
+    pub(super) intent_code: i32,
+    /// Lengths in the lowest three bits, times in the next three.
+    pub(super) units: i32,
+    /// What Analyze calls the unit of lengths, and of values.
+    pub(super) words: [String; 2],
+    pub(super) qform_code: i32,
+    pub(super) sform_code: i32,
+    pub(super) quatern: [f64; 3],
+    pub(super) qoffset: [f64; 3],
+    pub(super) srow: [[f64; 4]; 3],
+    /// The time of the first step.
+    pub(super) toffset: f64,
+    pub(super) descrip: String,
+}
+
+impl Header {
+    /// Takes a header apart that is known to be of some form.
+    pub(super) fn of(attempt: Attempt<'_>, form: Form, bytes: &[u8]) -> Result<Self, LoadError> {
+        let Some(endian) = form.endian(bytes) else {
+            return Err(attempt.bad_input(
+                "dim[0]",
+                "neither byte order makes its header one: 1 to 7 dimensions were expected",
+                "copy the file again",
+            ));
+        };
+        let fields = Fields { bytes, endian };
+        let (header, offset) = match form {
+            Form::Analyze | Form::Nifti1 => (fields.first(form), f64::from(fields.f32(108))),
+            Form::Nifti2 => (fields.second(), fields.i64(168) as f64),
+        };
+        if !(0.0..=u64::MAX as f64).contains(&offset) {
+            return Err(attempt.bad_input(
+                "vox_offset",
+                format!("voxels cannot begin at byte {offset}"),
+                "correct the header",
+            ));
+        }
+        let size = if form == Form::Nifti2 { BYTES_2 } else { BYTES_1 } as u64;
+        // Some programs leave the field empty.
+        let least = if header.is_single { size } else { 0 };
+        let data_start = if offset < least as f64 { size + EXTENDER_BYTES } else { offset as u64 };
+        Ok(Self { data_start, ..header })
+    }
+
+    /// Slope and intercept of the values; a slope of 0 means that there are none.
+    pub(super) fn scale(&self) -> (f64, f64) {
+        let is_said = self.slope.is_finite() && self.intercept.is_finite() && self.slope != 0.0;
+        if is_said { (self.slope, self.intercept) } else { (1.0, 0.0) }
+    }
+}
+
+/// Numbers at places of a header; 0 behind its end.
+struct Fields<'a> {
+    bytes: &'a [u8],
+    endian: Endian,
+}
+
+macro_rules! field {
+    ($($name:ident: $type:ty),*) => { $(
+        fn $name(&self, at: usize) -> $type {
+            let bytes = self.array(at);
+            match self.endian {
+                Endian::Little => <$type>::from_le_bytes(bytes),
+                Endian::Big => <$type>::from_be_bytes(bytes),
+            }
+        }
+    )* };
+}
+
+impl Fields<'_> {
+    field!(i16: i16, i32: i32, i64: i64, f32: f32, f64: f64);
+
+    fn array<const N: usize>(&self, at: usize) -> [u8; N] {
+        let found = self.bytes.get(at..at + N).and_then(|bytes| bytes.try_into().ok());
+        found.unwrap_or([0; N])
+    }
+
+    /// Text that ends with its first zero.
+    fn text(&self, at: usize, most: usize) -> String {
+        let bytes = self.bytes.get(at..at + most).unwrap_or_default();
+        let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+        String::from_utf8_lossy(text).into_owned()
+    }
+
+    fn f32s<const N: usize>(&self, at: usize) -> [f64; N] {
+        std::array::from_fn(|index| f64::from(self.f32(at + 4 * index)))
+    }
+
+    fn f64s<const N: usize>(&self, at: usize) -> [f64; N] {
+        std::array::from_fn(|index| self.f64(at + 8 * index))
+    }
+
+    /// A header of 348 bytes. Analyze has other things in the places of what NIfTI-1 has added; of these the slope is
+    /// what SPM wrote there.
+    fn first(&self, form: Form) -> Header {
+        let is_nifti = form == Form::Nifti1;
+        let added = |value: i32| if is_nifti { value } else { 0 };
+        Header {
+            form,
+            is_single: is_nifti && self.bytes.get(344..347) == Some(b"n+1"),
+            endian: self.endian,
+            dim: std::array::from_fn(|index| i64::from(self.i16(40 + 2 * index))),
+            pixdim: self.f32s(76),
+            datatype: self.i16(70),
+            data_start: 0,
+            slope: f64::from(self.f32(112)),
+            intercept: if is_nifti { f64::from(self.f32(116)) } else { 0.0 },
+            cal_max: f64::from(self.f32(124)),
+            cal_min: f64::from(self.f32(128)),
+            intent_code: added(i32::from(self.i16(68))),
+            units: added(self.array::<1>(123).map(i32::from)[0]),
+            words: if is_nifti {
+                [String::new(), String::new()]
+            } else {
+                [self.text(56, 4), self.text(60, 8)]
+            },
+            qform_code: added(i32::from(self.i16(252))),
+            sform_code: added(i32::from(self.i16(254))),
+            quatern: self.f32s(256),
+            qoffset: self.f32s(268),
+            srow: [280, 296, 312].map(|at| self.f32s(at)),
+            toffset: if is_nifti { f64::from(self.f32(136)) } else { 0.0 },
+            descrip: self.text(148, 80),
+        }
+    }
+
+    /// A header of 540 bytes.
+    fn second(&self) -> Header {
+        Header {
+            form: Form::Nifti2,
+            is_single: self.bytes.get(4..7) == Some(b"n+2"),
+            endian: self.endian,
+            dim: std::array::from_fn(|index| self.i64(16 + 8 * index)),
+            pixdim: self.f64s(104),
+            datatype: self.i16(12),
+            data_start: 0,
+            slope: self.f64(176),
+            intercept: self.f64(184),
+            cal_max: self.f64(192),
+            cal_min: self.f64(200),
+            intent_code: self.i32(504),
+            units: self.i32(500),
+            words: [String::new(), String::new()],
+            qform_code: self.i32(344),
+            sform_code: self.i32(348),
+            quatern: self.f64s(352),
+            qoffset: self.f64s(376),
+            srow: [400, 432, 464].map(|at| self.f64s(at)),
+            toffset: self.f64(216),
+            descrip: self.text(240, 80),
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Vectors whose components are volumes of their own.
+
+use super::super::LoadControl;
+use super::super::content::Content;
+use super::super::number::Stored;
+use super::super::samples::{BLOCK_BYTES, Fault, fill, reserve};
+use crate::data::Samples;
+use crate::data::attempt::Extent;
+
+/// The lengths of vectors, from volumes of their components that begin at some places, in this order.
+pub(super) fn lengths(
+    content: &mut Content,
+    stored: &Stored,
+    places: impl ExactSizeIterator<Item = u64>,
+    (slope, intercept): (f64, f64),
+    extent: Extent,
+    control: &LoadControl,
+) -> Result<Samples, Fault> {
+    control.start(extent.bytes.saturating_mul(places.len() as u64));
+    let mut lengths: Vec<f32> = reserve(extent.voxels)?;
+    lengths.resize(extent.voxels, 0.0);
+    let size = stored.number.bytes();
+    let at_once = (BLOCK_BYTES / size).min(extent.voxels);
+    let mut block = vec![0; at_once * size];
+    for place in places {
+        content.go_to(place, control)?;
+        for (index, lengths) in lengths.chunks_mut(at_once).enumerate() {
+            let bytes = &mut block[..lengths.len() * size];
+            let got = fill(content, bytes, control).map_err(Fault::of_stream)?;
+            if got < bytes.len() {
+                return Err(Fault::Short { got: ((index * at_once + got / size) * size_of::<f32>()) as u64 });
+            }
+            for (length, number) in lengths.iter_mut().zip(bytes.chunks_exact(size)) {
+                let component = stored.number.value(number, stored.endian) * slope + intercept;
+                *length = (f64::from(*length).powi(2) + component.powi(2)).sqrt() as f32;
+            }
+            control.advance((lengths.len() * size_of::<f32>()) as u64);
+        }
+    }
+    Ok(Samples::F32(lengths))
+}
