@@ -6,6 +6,7 @@
 //! itself and one block.
 
 mod beside;
+mod dicom;
 mod folder;
 mod formats;
 mod input;
