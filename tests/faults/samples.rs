@@ -84,6 +84,20 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     add("zipped.nrrd", [header("gzip").into_bytes(), zipped.clone()].concat(), volume);
     add("bare_6x5x4_uint8.raw", voxels, volume);
     add("bare_6x5x4_uint8.raw.gz", zipped, volume);
+    // Whole files by other programs, of every kind of compression.
+    let dicom: [(&str, &[u8]); 8] = [
+        ("frames.dcm", include_bytes!("found/frames.dcm/far")),
+        ("implicit.dcm", include_bytes!("found/implicit.dcm/far")),
+        ("deflated.dcm", include_bytes!("found/deflated.dcm/far")),
+        ("runs.dcm", include_bytes!("found/runs.dcm/far")),
+        ("lossless.dcm", include_bytes!("found/lossless.dcm/far")),
+        ("jpeg.dcm", include_bytes!("found/jpeg.dcm/far")),
+        ("jpeg_ls.dcm", include_bytes!("found/jpeg_ls.dcm/far")),
+        ("jpeg_2000.dcm", include_bytes!("found/jpeg_2000.dcm/far")),
+    ];
+    for (name, bytes) in dicom {
+        add(name, bytes.to_vec(), volume);
+    }
 
     for (name, bytes) in FILES {
         add(name, bytes.to_vec(), volume);

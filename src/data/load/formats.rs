@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, cube, metaimage, mrc, nifti, nrrd, numpy, pvm, raw};
+use super::{LoadOptions, cube, dicom, metaimage, mrc, nifti, nrrd, numpy, pvm, raw};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
@@ -15,6 +15,7 @@ pub(super) const READERS: &[Reader] = &[
     cube::READER,
     nifti::READER,
     metaimage::READER,
+    dicom::READER,
     raw::DAT,
     raw::IVF,
     raw::INI,

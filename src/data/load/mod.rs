@@ -8,6 +8,7 @@
 mod beside;
 mod content;
 mod cube;
+mod dicom;
 mod folder;
 mod formats;
 mod input;

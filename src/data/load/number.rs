@@ -242,7 +242,8 @@ impl Part {
         }
     }
 
-    fn of(self, component: impl Fn(usize) -> f64, components: usize) -> f64 {
+    /// What is shown of a voxel with such components.
+    pub(super) fn of(self, component: impl Fn(usize) -> f64, components: usize) -> f64 {
         match self {
             Self::Component(at) => component(at),
             Self::Magnitude => (0..components).map(|at| component(at).powi(2)).sum::<f64>().sqrt(),

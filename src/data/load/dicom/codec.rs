@@ -1,0 +1,204 @@
+//! Pictures that are compressed, one by one, to pixels as they would be stored without compression.
+//!
+//! The decoders are made for pictures from anywhere; still nothing is decoded before the size that a picture itself says
+//! is that of the header.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use hayro_jpeg2000::{DecodeSettings, DecoderContext, Image};
+use jpeg_decoder::{CodingProcess, ColorTransform, Decoder, PixelFormat};
+
+use super::rle;
+use super::shape::{Colors, Shape};
+use super::syntax::Codec;
+use crate::data::plain;
+
+/// A picture without compression: numbers with their lowest byte first, the colours of a pixel side by side.
+#[derive(Debug)]
+pub(super) struct Unpacked {
+    pub(super) bytes: Vec<u8>,
+    /// How the pixels are stored now.
+    pub(super) shape: Shape,
+}
+
+/// Unpacks a picture.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn unpack(codec: Codec, packed: Vec<u8>, shape: Shape) -> Result<Unpacked, String> {
+    let interleaved = Shape {
+        is_planar: false,
+        colors: if shape.colors == Colors::YbrPairs { Colors::Ybr } else { shape.colors },
+        ..shape
+    };
+    // A decoder that stumbles takes the picture with it, not the program.
+    let guarded = |decode: &mut dyn FnMut() -> Result<Unpacked, String>| {
+        catch_unwind(AssertUnwindSafe(decode))
+            .unwrap_or_else(|_| Err("a picture is broken in a way that its decoder does not know".to_owned()))
+    };
+    match codec {
+        Codec::Native => Ok(Unpacked { bytes: packed, shape }),
+        Codec::Rle => rle::decode(&packed, shape.pixels(), shape.samples, shape.bytes())
+            .map(|bytes| Unpacked { bytes, shape: interleaved }),
+        Codec::Jpeg => guarded(&mut || jpeg(&packed, interleaved)),
+        Codec::JpegLs => guarded(&mut || jpeg_ls(&packed, interleaved)),
+        Codec::Jpeg2000 => guarded(&mut || jpeg_2000(&packed, interleaved)),
+    }
+}
+
+/// What a decoder says is wrong.
+fn broken(error: impl std::fmt::Display) -> String {
+    format!("a picture is broken, or of a kind that is not read: {}", plain(&error.to_string(), 120))
+}
+
+fn check_size(found: [u64; 2], shape: &Shape) -> Result<(), String> {
+    let expected = [shape.columns as u64, shape.rows as u64];
+    if found == expected {
+        return Ok(());
+    }
+    let ([x, y], [columns, rows]) = (found, expected);
+    Err(format!("a picture has {x} x {y} pixels where the header says {columns} x {rows}"))
+}
+
+/// ITU-T T.81: sequential of 8 bits, progressive, and lossless up to 16 bits.
+fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
+    let mut decoder = Decoder::new(packed);
+    decoder.read_info().map_err(|error| match error {
+        jpeg_decoder::Error::Unsupported(jpeg_decoder::UnsupportedFeature::SamplePrecision(bits)) => {
+            format!("JPEG of {bits} bits with loss is not read")
+        }
+        error => broken(error),
+    })?;
+    let Some(info) = decoder.info() else { return Err(broken("it has no size")) };
+    check_size([info.width.into(), info.height.into()], &shape)?;
+    let samples = match info.pixel_format {
+        PixelFormat::L8 | PixelFormat::L16 => 1,
+        PixelFormat::RGB24 => 3,
+        PixelFormat::CMYK32 => 4,
+    };
+    if samples != shape.samples {
+        return Err(format!(
+            "a picture has {samples} numbers a pixel where the header says {}",
+            shape.samples
+        ));
+    }
+    let is_lossless = info.coding_process == CodingProcess::Lossless;
+    if samples == 3 {
+        let is_ybr = shape.colors == Colors::Ybr;
+        decoder.set_color_transform(if is_ybr { ColorTransform::YCbCr } else { ColorTransform::RGB });
+    }
+    let numbers = shape.pixels() * samples;
+    decoder.set_max_decoding_buffer_size(numbers.saturating_mul(2));
+    let decoded = decoder.decode().map_err(broken)?;
+    // Without loss, colours stay as they are.
+    let colors = if samples == 3 && !is_lossless { Colors::Rgb } else { shape.colors };
+    let bytes = if decoded.len() == numbers {
+        contained(decoded.into_iter().map(u32::from), shape.bytes())
+    } else {
+        let words = decoded.as_chunks().0.iter();
+        contained(words.map(|&word| u32::from(u16::from_ne_bytes(word))), shape.bytes())
+    };
+    checked(bytes, Shape { colors, ..shape })
+}
+
+/// ITU-T T.87, of one number a pixel.
+fn jpeg_ls(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
+    let (columns, rows) = (shape.columns as u32, shape.rows as u32);
+    let (decoded, width, height) = jpegls::decode(packed, columns, rows).map_err(broken)?;
+    check_size([width.into(), height.into()], &shape)?;
+    checked(contained(decoded.into_iter().map(u32::from), shape.bytes()), shape)
+}
+
+/// The size of a picture of JPEG 2000 as its first segment says it (ITU-T T.800 section A.5.1).
+struct Size {
+    pixels: [u64; 2],
+    tiles: u64,
+    /// Of each number: whether it has a sign, and its bits.
+    numbers: Vec<(bool, u32)>,
+}
+
+impl Size {
+    fn of(stream: &[u8]) -> Option<Self> {
+        let word = |at: usize| Some(u64::from(u32::from_be_bytes(*stream.get(at..)?.first_chunk()?)));
+        let [x, y, x0, y0, tile_x, tile_y, tile_x0, tile_y0] =
+            [8, 12, 16, 20, 24, 28, 32, 36].map(|at| word(at).unwrap_or(0));
+        let across = |end: u64, start: u64, size: u64| Some(end.checked_sub(start)?.checked_div(size)? + 1);
+        let count = u16::from_be_bytes(*stream.get(40..)?.first_chunk()?);
+        let numbers = stream.get(42..42 + 3 * usize::from(count))?.as_chunks().0.iter();
+        let numbers = numbers.map(|&[bits, dx, dy]| {
+            let is_whole = dx == 1 && dy == 1;
+            is_whole.then_some((bits & 0x80 != 0, u32::from(bits & 0x7f) + 1))
+        });
+        Some(Self {
+            pixels: [x.checked_sub(x0)?, y.checked_sub(y0)?],
+            tiles: across(x, tile_x0, tile_x)?.checked_mul(across(y, tile_y0, tile_y)?)?,
+            numbers: numbers.collect::<Option<_>>()?,
+        })
+    }
+}
+
+/// The start of a stream, and of the segment that says its size.
+const JPEG_2000_START: [u8; 4] = [0xff, 0x4f, 0xff, 0x51];
+
+/// How far into a picture its stream is looked for: some put it into a file of its own.
+const STREAM_WITHIN: usize = 1 << 16;
+
+/// Tiles are numbered with 16 bits.
+const MOST_TILES: u64 = 1 << 16;
+
+/// The decoder computes with numbers that are exact up to so many bits.
+const MOST_BITS: u32 = 24;
+
+/// ITU-T T.800.
+fn jpeg_2000(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
+    let within = &packed[..packed.len().min(STREAM_WITHIN)];
+    let start = within.windows(4).position(|four| four == JPEG_2000_START);
+    let Some(stream) = start.and_then(|start| packed.get(start..)) else {
+        return Err(broken("it has no stream"));
+    };
+    let Some(size) = Size::of(stream) else { return Err(broken("its numbers are not all of one size")) };
+    check_size(size.pixels, &shape)?;
+    if let Some((_, bits)) = size.numbers.iter().find(|(_, bits)| *bits > MOST_BITS) {
+        return Err(format!("JPEG 2000 of {bits} bits is not read"));
+    }
+    if size.numbers.len() != shape.samples || size.tiles > MOST_TILES {
+        return Err(broken(format_args!("{} numbers a pixel, {} tiles", size.numbers.len(), size.tiles)));
+    }
+    let settings = DecodeSettings { resolve_palette_indices: false, strict: false, target_resolution: None };
+    let image = Image::new(stream, &settings).map_err(broken)?;
+    check_size([image.width().into(), image.height().into()], &shape)?;
+    let mut context = DecoderContext::default();
+    let decoded = image.decode(&mut context).map_err(broken)?;
+    let components = decoded.components();
+    let is_whole = |samples: &[f32]| samples.len() == shape.pixels();
+    if components.len() != shape.samples || !components.iter().all(|component| is_whole(component.samples()))
+    {
+        return Err(broken("it has not all of its pixels"));
+    }
+    let numbers = (0..shape.pixels()).flat_map(|pixel| {
+        components.iter().zip(&size.numbers).map(move |(component, &(is_signed, bits))| {
+            // The decoder gives all of them from 0 on: those with a sign are half a range too high.
+            let most = 2f64.powi(bits as i32) - 1.0;
+            let value = f64::from(component.samples()[pixel]).round().clamp(0.0, most) as i64;
+            (if is_signed { value - (1 << (bits - 1)) } else { value }) as u32
+        })
+    });
+    checked(contained(numbers, shape.bytes()), shape)
+}
+
+/// Numbers in so many bytes each.
+fn contained(numbers: impl Iterator<Item = u32>, size: usize) -> Vec<u8> {
+    match size {
+        1 => numbers.map(|number| number as u8).collect(),
+        2 => numbers.flat_map(|number| (number as u16).to_le_bytes()).collect(),
+        _ => numbers.flat_map(u32::to_le_bytes).collect(),
+    }
+}
+
+fn checked(bytes: Vec<u8>, shape: Shape) -> Result<Unpacked, String> {
+    if bytes.len() as u64 == shape.bytes_of_frame() {
+        Ok(Unpacked { bytes, shape })
+    } else {
+        Err(broken(format_args!("it has {} of {} bytes", bytes.len(), shape.bytes_of_frame())))
+    }
+}

@@ -1,0 +1,102 @@
+//! The headers of many files, read on all cores; pixels are left alone.
+
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::super::input::Input;
+use super::super::{LoadControl, LoadError};
+use super::header::{Header, is_dicom};
+use crate::data::attempt::Attempt;
+
+/// Most files beside one that are looked at, for others of its series.
+const MOST_BESIDE: usize = 1 << 16;
+
+/// Bytes of a file's beginning that say whether it is one.
+const START_BYTES: u64 = 1024;
+
+/// What was found in files.
+#[derive(Debug, Default)]
+pub(super) struct Scan {
+    /// Of those with pixels, in the files' order.
+    pub(super) headers: Vec<Header>,
+    /// DICOM files without pixels.
+    pub(super) without_pixels: usize,
+    /// DICOM files that cannot be read.
+    pub(super) broken: usize,
+    /// Why the first of them cannot be.
+    pub(super) why: Option<LoadError>,
+}
+
+enum Seen {
+    Header(Box<Header>),
+    WithoutPixels,
+    Broken(LoadError),
+    Other,
+}
+
+/// Reads the headers of all DICOM files among some.
+///
+/// # Errors
+/// `Cancelled` alone: what cannot be read is counted.
+pub(super) fn scan(files: &[PathBuf], control: &LoadControl) -> Result<Scan, LoadError> {
+    let lengths = files.iter().map(|path| path.metadata().map_or(0, |metadata| metadata.len()));
+    control.start(lengths.sum());
+    let seen: Result<Vec<Seen>, LoadError> = files.par_iter().map(|path| look(path, control)).collect();
+    let mut scan = Scan::default();
+    for seen in seen? {
+        match seen {
+            Seen::Header(header) => scan.headers.push(*header),
+            Seen::WithoutPixels => scan.without_pixels += 1,
+            Seen::Broken(why) => {
+                scan.broken += 1;
+                scan.why = scan.why.or(Some(why));
+            }
+            Seen::Other => {}
+        }
+    }
+    Ok(scan)
+}
+
+fn look(path: &Path, control: &LoadControl) -> Result<Seen, LoadError> {
+    control.check()?;
+    let attempt = Attempt { what: super::WHAT, path };
+    let Ok(mut input) = Input::open(attempt) else { return Ok(Seen::Other) };
+    let length = input.len;
+    // Not through the buffer, which is large: most files beside one may be something else.
+    let mut start = Vec::new();
+    let looked = input.reader.get_ref().take(START_BYTES).read_to_end(&mut start);
+    if looked.is_err() || input.seek(0).is_err() || !is_dicom(&start) {
+        control.advance(length);
+        return Ok(Seen::Other);
+    }
+    let seen = match Header::of(attempt, input, &start, control) {
+        Ok((header, _)) if header.pixels.is_some() => Seen::Header(Box::new(header)),
+        Ok(_) => Seen::WithoutPixels,
+        Err(LoadError::Cancelled) => return Err(LoadError::Cancelled),
+        Err(error) => Seen::Broken(error),
+    };
+    control.advance(length);
+    Ok(seen)
+}
+
+/// The files in the folder of one, without it; none where the folder cannot be read or has too many.
+pub(super) fn beside(path: &Path) -> Vec<PathBuf> {
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let Ok(entries) = std::fs::read_dir(parent) else { return Vec::new() };
+    let mut files = Vec::new();
+    for entry in entries.flatten() {
+        let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
+        if is_hidden || Some(entry.file_name().as_os_str()) == path.file_name() || !entry.path().is_file() {
+            continue;
+        }
+        if files.len() == MOST_BESIDE {
+            return Vec::new();
+        }
+        files.push(entry.path());
+    }
+    // The order in which a system lists files says nothing.
+    files.sort();
+    files
+}

@@ -1,0 +1,155 @@
+//! Compressed pixels. The pictures were written by other programs.
+
+use super::*;
+
+const JPEG_LOSSLESS: &str = "1.2.840.10008.1.2.4.70";
+const JPEG_BASELINE: &str = "1.2.840.10008.1.2.4.50";
+const JPEG_LS: &str = "1.2.840.10008.1.2.4.80";
+const JPEG_2000: &str = "1.2.840.10008.1.2.4.90";
+
+/// 16 bits without loss.
+const LOSSLESS: &str = "ffd8ffe000104a46494600010100000100010000ffc3000b100004000501011100ffc400160001010100000000\
+    0000000000000000000c0e0fffda0008010100010000c0019998ccc6663332ff00f33ffbd6671998cccbff00c6663331998cccbffc666333\
+    1998cccfffd9";
+
+/// The same picture, by another standard.
+const LS: &str = "ffd8fff7000b100004000501011100fff8000d01ffff0012004301140040ffda000801010000000040d02cb8165d995664c0\
+    0000007f80000000080e733ab33005987ff6000000000001e6677ff6b328ccb3ff4acc8598eb318cca00ffd9";
+
+/// 16 bits with a sign.
+const SIGNED: &str = "ff4fff5100290000000000050000000400000000000000000000000500000004000000000000000000018f0101ff52000c\
+    00000001000004040001ff5c00044080ff90000a0000000000380001ff93dff8913015f9b61e325d3295bdd032d13a0f166a9e25c9923893\
+    509fcde4e43bf6bfb53962f32b9435bfffd9";
+
+/// Red, green and blue of 8 bits.
+const COLORS: &str = "ff4fff51002f000000000005000000040000000000000000000000050000000400000000000000000003070101070101\
+    070101ff52000c00000001010004040001ff5c00044040ff90000a0000000000320001ff93cfb44c1273217ba468235268374faf010a0e67\
+    29d9dfc0f844140058efc0f8441150508fffd9";
+
+/// 8 bits with hardly any loss.
+const LOSSY: &str = "ffd8ffe000104a46494600010100000100010000ffdb004300010101010101010101010101010101010101010101010101010101\
+    01010101010101010101010101010101010101010101010101010101010101010101010101ffc0000b080004000501011100ffc4\
+    0014000100000000000000000000000000000009ffc4001f100001000b0000000000000000000000000200050708091627435253\
+    65ffda0008010100003f00401894249c82520a5fa2fabf03e4a7ffd9";
+
+fn hex(text: &str) -> Vec<u8> {
+    let digits = text.as_bytes().as_chunks::<2>().0.iter();
+    let mut bytes: Vec<u8> =
+        digits.map(|two| u8::from_str_radix(std::str::from_utf8(two).unwrap(), 16).unwrap()).collect();
+    if !bytes.len().is_multiple_of(2) {
+        bytes.push(0);
+    }
+    bytes
+}
+
+/// A file of pictures of 5 x 4 pixels.
+fn file(syntax: &'static str, is_signed: bool, fragments: &[&[u8]]) -> File {
+    File::new(syntax).size(5, 4).bits(16, 16, is_signed).fragments(fragments)
+}
+
+/// What [`LOSSLESS`] and [`LS`] show.
+fn unsigned() -> Vec<u16> {
+    let mut values: Vec<u16> = (0..20).map(|n| n * 3276 + 7).collect();
+    values[6] = 65535;
+    values
+}
+
+#[test]
+fn compression_without_loss_is_exact() {
+    for (syntax, picture) in [(JPEG_LOSSLESS, LOSSLESS), (JPEG_LS, LS)] {
+        let volume = file(syntax, false, &[&[], &hex(picture)]).load().unwrap();
+        assert_eq!(volume.samples(), &Samples::U16(unsigned()), "{syntax}");
+        let signed = file(syntax, true, &[&[], &hex(picture)]).load().unwrap();
+        let expected = unsigned().into_iter().map(|value| value as i16).collect();
+        assert_eq!(signed.samples(), &Samples::I16(expected), "the header says the sign");
+    }
+    let mut expected: Vec<i16> = (0..20).map(|n| (n * 3000 - 30000) as i16).collect();
+    (expected[6], expected[12]) = (i16::MIN, i16::MAX);
+    let volume = file(JPEG_2000, true, &[&[], &hex(SIGNED)]).load().unwrap();
+    assert_eq!(volume.samples(), &Samples::I16(expected));
+}
+
+#[test]
+fn compression_with_loss_is_near() {
+    let volume = file(JPEG_BASELINE, false, &[&[], &hex(LOSSY)]).bits(8, 8, false).load().unwrap();
+    for at in 0..20 {
+        let expected = (at * 10 + 20) as f64;
+        assert!((volume.samples().value(at) - expected).abs() <= 1.0, "{at}");
+    }
+}
+
+#[test]
+fn colours_are_unpacked() {
+    let colors = file(JPEG_2000, false, &[&[], &hex(COLORS)])
+        .bits(8, 8, false)
+        .short(tags::SAMPLES, 3)
+        .with(|set| set.text(tags::PHOTOMETRIC, *b"CS", "YBR_RCT"));
+    for (component, add) in [(0, 0), (1, 5), (2, 9)] {
+        let choice = Choice { component: Some(component), ..Choice::default() };
+        let volume = colors.load_with(choice).unwrap();
+        assert_eq!(volume.samples(), &Samples::U8((0..20).map(|n| n * 10 + 20 + add).collect()));
+    }
+}
+
+#[test]
+fn frames_are_made_of_fragments() {
+    let picture = hex(LOSSLESS);
+    let (start, end) = picture.split_at(50);
+    let second = (start.len() + end.len() + 16) as u32;
+    let table = [0u32, second].map(u32::to_le_bytes).concat();
+    let expected = [unsigned(), unsigned()].concat();
+    let two = |fragments: &[&[u8]]| file(JPEG_LOSSLESS, false, fragments).frames("2").load();
+    assert_eq!(two(&[&table, start, end, &picture]).unwrap().samples(), &Samples::U16(expected.clone()));
+    assert_eq!(two(&[&[], &picture, &picture]).unwrap().samples(), &Samples::U16(expected.clone()));
+    let starts = [0u64, second.into()].map(u64::to_le_bytes).concat();
+    let of_starts = file(JPEG_LOSSLESS, false, &[&[], start, end, &picture])
+        .frames("2")
+        .with(|set| set.value(tags::FRAME_STARTS, *b"OV", &starts));
+    assert_eq!(of_starts.load().unwrap().samples(), &Samples::U16(expected));
+    let unclear = two(&[&[], start, end, &picture]);
+    assert_refused(unclear, LoadErrorKind::BadInput, &["3 fragments make no 2 frames"]);
+}
+
+#[test]
+fn runs_are_unpacked() {
+    let mut packed = vec![2u32, 64, 66];
+    packed.resize(16, 0);
+    let mut packed: Vec<u8> = packed.into_iter().flat_map(u32::to_le_bytes).collect();
+    // High bytes all 1; low bytes 2 2 2 3 4 5.
+    packed.extend([251, 1, 254, 2, 2, 3, 4, 5]);
+    let volume = File::new(RLE).fragments(&[&[], &packed]).load().unwrap();
+    assert_eq!(volume.samples(), &Samples::U16(vec![258, 258, 258, 259, 260, 261]));
+}
+
+#[test]
+fn pictures_that_are_not_what_the_header_says_are_refused() {
+    let signed = hex(SIGNED);
+    for (file, words) in [
+        (file(JPEG_2000, true, &[&[], &signed]).size(5, 5), "5 x 4 pixels where the header says 5 x 5"),
+        (file(JPEG_2000, true, &[&[], &hex(COLORS)]), "3 numbers a pixel"),
+        (file(JPEG_2000, true, &[&[], &[0; 8]]), "no stream"),
+        (file(JPEG_LOSSLESS, true, &[&[], &hex(LOSSLESS)]).size(4, 4), "5 x 4 pixels"),
+        (file(JPEG_LOSSLESS, true, &[&[], &[0; 8]]), "broken"),
+        (file(JPEG_LS, true, &[&[], &hex(LS)]).size(4, 5), "broken"),
+        (file(RLE, true, &[&[], &[0; 8]]), "0 planes"),
+        (file(RLE, true, &[]), "0 fragments"),
+    ] {
+        assert_refused(file.load(), LoadErrorKind::BadInput, &[words]);
+    }
+    // A picture of 12 bits with loss: the first bytes of one.
+    let twelve = [0xff, 0xd8, 0xff, 0xc1, 0, 11, 12, 0, 4, 0, 5, 1, 1, 0x11, 0, 0];
+    let twelve = file(JPEG_BASELINE, false, &[&[], &twelve]);
+    assert_refused(twelve.load(), LoadErrorKind::BadInput, &["12 bits with loss", "gdcmconv --raw"]);
+}
+
+#[test]
+fn cut_pictures_never_harm() {
+    for (syntax, picture) in
+        [(JPEG_LOSSLESS, LOSSLESS), (JPEG_LS, LS), (JPEG_2000, SIGNED), (JPEG_BASELINE, LOSSLESS)]
+    {
+        let picture = hex(picture);
+        for length in (0..picture.len()).step_by(7) {
+            let _either = file(syntax, false, &[&[], &picture[..length & !1]]).load();
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The value of a data element (PS3.5 chapter 6): numbers are text, or binary, as the element's representation has it.
+
+use super::super::Endian;
+
+/// Characters of a text that are kept.
+const LONGEST_TEXT: usize = 256;
+
+/// Bytes of a number in text that are looked at: the representation has 16, files have more.
+const LONGEST_DECIMAL: usize = 64;
+
+/// The bytes of a value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Value<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) endian: Endian,
+}
+
+impl Value<'_> {
+    /// Text without what fills it up. UTF-8, or else the Latin alphabet, of which other sets share the letters of English.
+    pub(super) fn text(&self) -> String {
+        let bytes = &self.bytes[..self.bytes.len().min(4 * LONGEST_TEXT)];
+        let text = match std::str::from_utf8(bytes) {
+            Ok(text) => text.to_owned(),
+            Err(_) => bytes.iter().copied().map(char::from).collect(),
+        };
+        text.trim_matches(|c: char| c == '\0' || c.is_whitespace()).chars().take(LONGEST_TEXT).collect()
+    }
+
+    /// Numbers in text.
+    fn each_decimal(&self) -> impl Iterator<Item = Option<f64>> {
+        self.bytes.split(|&byte| byte == b'\\').map(|text| {
+            let text = std::str::from_utf8(text.get(..text.len().min(LONGEST_DECIMAL))?).ok()?;
+            let number = text.trim_matches(|c: char| c == '\0' || c.is_whitespace()).parse().ok()?;
+            Some(number).filter(|number: &f64| number.is_finite())
+        })
+    }
+
+    /// The first number in text.
+    pub(super) fn decimal(&self) -> Option<f64> {
+        self.each_decimal().next().flatten()
+    }
+
+    /// So many numbers in text; what follows them does not count.
+    pub(super) fn decimals_of<const N: usize>(&self) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        let mut found = self.each_decimal();
+        for number in &mut numbers {
+            *number = found.next()??;
+        }
+        Some(numbers)
+    }
+
+    /// All numbers in text, at most so many; none where one is broken.
+    pub(super) fn decimals(&self, most: usize) -> Vec<f64> {
+        self.each_decimal().take(most).collect::<Option<_>>().unwrap_or_default()
+    }
+
+    /// The time of a day, `HHMMSS.F`, in seconds.
+    pub(super) fn time_s(&self) -> Option<f64> {
+        let text = self.text();
+        let part = |from: usize, to: usize| text.get(from..to).and_then(|digits| digits.parse::<f64>().ok());
+        let seconds = text.get(4..).and_then(|digits| digits.parse::<f64>().ok()).unwrap_or(0.0);
+        Some(part(0, 2)? * 3600.0 + part(2, 4).unwrap_or(0.0) * 60.0 + seconds)
+    }
+
+    fn first<const N: usize>(&self) -> Option<[u8; N]> {
+        let mut bytes: [u8; N] = self.bytes.get(..N)?.try_into().ok()?;
+        if self.endian == Endian::Big {
+            bytes.reverse();
+        }
+        Some(bytes)
+    }
+
+    /// The first whole number of 16 bits.
+    pub(super) fn short(&self) -> Option<u16> {
+        self.first().map(u16::from_le_bytes)
+    }
+
+    /// The first whole number of 32 bits.
+    pub(super) fn long(&self) -> Option<u32> {
+        self.first().map(u32::from_le_bytes)
+    }
+
+    /// The first number of 64 bits.
+    pub(super) fn double(&self) -> Option<f64> {
+        self.first().map(f64::from_le_bytes).filter(|number| number.is_finite())
+    }
+
+    /// Whole numbers of 64 bits, at most so many.
+    pub(super) fn longs(&self, most: usize) -> Vec<u64> {
+        let each = self.bytes.chunks_exact(8).take(most);
+        each.filter_map(|bytes| Value { bytes, ..*self }.first().map(u64::from_le_bytes)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(bytes: &[u8]) -> Value<'_> {
+        Value { bytes, endian: Endian::Little }
+    }
+
+    #[test]
+    fn numbers_in_text_are_read_and_nothing_else() {
+        assert_eq!(value(b" -1.5e2 \\2\\+3 ").decimals_of(), Some([-150.0, 2.0, 3.0]));
+        assert_eq!(value(b"1\\2\0").decimals_of::<2>(), Some([1.0, 2.0]));
+        for bytes in [&b"1"[..], b"1\\", b"1\\x", b"1\\inf", b"1\\nan", b"", b"\xff\\1"] {
+            assert_eq!(value(bytes).decimals_of::<2>(), None, "{bytes:?}");
+        }
+        assert_eq!(value(b"1\\2\\x").decimals(9), Vec::<f64>::new());
+        assert_eq!(value(b"013015.5").time_s(), Some(5415.5));
+        assert_eq!(value(b"01").time_s(), Some(3600.0));
+        assert_eq!(value(b"\xc3\xa91:02").time_s(), None);
+    }
+
+    #[test]
+    fn text_is_cut_and_of_any_alphabet() {
+        assert_eq!(value(b" T1 \0").text(), "T1");
+        assert_eq!(value(b"Sch\xe4del").text(), "Schädel");
+        assert_eq!(value("Schädel".as_bytes()).text(), "Schädel");
+        assert_eq!(value(&[b'x'; 9999]).text().len(), LONGEST_TEXT);
+    }
+
+    #[test]
+    fn binary_numbers_have_an_order() {
+        let big = Value { bytes: &[0, 0, 1, 2], endian: Endian::Big };
+        assert_eq!((big.short(), big.long(), big.double()), (Some(0), Some(258), None));
+        assert_eq!(value(&[1, 2, 0, 0]).long(), Some(513));
+    }
+}
