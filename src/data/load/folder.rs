@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{LoadControl, LoadError, LoadOptions};
+use super::{LoadControl, LoadError, LoadOptions, slices};
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
 
@@ -10,9 +10,13 @@ use crate::data::attempt::Attempt;
 const MOST_FILES: usize = 1 << 16;
 
 /// Loads the volume whose slices lie in a folder.
-pub(super) fn load(path: &Path, _options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+pub(super) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "open the folder", path };
     let files = files(attempt, control)?;
+    // Each kind of slices looks for its own, the surest marks first.
+    if let Some(volume) = slices::load(attempt, &files, options, control)? {
+        return Ok(volume);
+    }
     Err(attempt.bad_input(
         "files",
         format!("none of its {} files is a slice that is read", files.len()),
