@@ -105,6 +105,22 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     // What descriptions are of.
     std::fs::write(folder.join("described.raw"), [7; 24]).expect("room");
 
+    // Those that need a program to be written are kept.
+    for name in [
+        "tiles.tif",
+        "lzw.tif",
+        "zstd.tif",
+        "colors.tif",
+        "imagej.tif",
+        "ome.tif",
+        "grey.jpg",
+        "grey.bmp",
+        "slice.png",
+    ] {
+        let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/found").join(name).join("far");
+        add(name, std::fs::read(kept).expect("it is kept"), volume);
+    }
+
     let of = VolumeRecord::new(Path::new("builtin:chair"), 7, None);
     let record = Record::text(&Settings::default(), Some(&of), None);
     add("session.json", record.clone().into_bytes(), session);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{LoadControl, LoadError, LoadOptions, dicom};
+use super::{LoadControl, LoadError, LoadOptions, dicom, slices};
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
 
@@ -13,7 +13,11 @@ const MOST_FILES: usize = 1 << 16;
 pub(super) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "open the folder", path };
     let files = files(attempt, control)?;
+    // Each kind of slices looks for its own, the surest marks first.
     if let Some(volume) = dicom::load_folder(path, &files, options, control)? {
+        return Ok(volume);
+    }
+    if let Some(volume) = slices::load(attempt, &files, options, control)? {
         return Ok(volume);
     }
     Err(attempt.bad_input(

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, cube, dicom, metaimage, mrc, nifti, nrrd, numpy, pvm, raw};
+use super::{LoadOptions, cube, dicom, metaimage, mrc, nifti, nrrd, numpy, pvm, raw, slices, tiff};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
@@ -16,6 +16,8 @@ pub(super) const READERS: &[Reader] = &[
     nifti::READER,
     metaimage::READER,
     dicom::READER,
+    tiff::READER,
+    slices::READER,
     raw::DAT,
     raw::IVF,
     raw::INI,

@@ -19,13 +19,16 @@ mod nifti;
 mod nrrd;
 mod number;
 mod numpy;
+mod pile;
 mod placement;
 mod pvm;
 mod raw;
 mod reader;
 mod samples;
+mod slices;
 #[cfg(test)]
 mod tests;
+mod tiff;
 
 use std::path::Path;
 

@@ -1,0 +1,71 @@
+//! The bytes of a TIFF file, by their places: numbers in its byte order.
+
+use std::fs::File;
+use std::io::{self, Read as _, Seek as _, SeekFrom};
+
+use super::super::Endian;
+
+/// Bytes that are read around a small piece: what belongs together lies together.
+const WINDOW_BYTES: u64 = 1 << 13;
+
+/// The content of a file, any part of it at a time.
+pub(super) struct Bytes {
+    file: File,
+    len: u64,
+    pub(super) endian: Endian,
+    window: Vec<u8>,
+    window_at: u64,
+}
+
+impl Bytes {
+    /// A file of so many bytes; little-endian until it is known better.
+    pub(super) fn of(file: File, len: u64) -> Self {
+        Self { file, len, endian: Endian::Little, window: Vec::new(), window_at: 0 }
+    }
+
+    pub(super) fn len(&self) -> u64 {
+        self.len
+    }
+
+    /// Fills `out` with what stands at a place.
+    ///
+    /// # Errors
+    /// `UnexpectedEof` where the file has no such bytes; nothing is read then.
+    pub(super) fn read(&mut self, at: u64, out: &mut [u8]) -> io::Result<()> {
+        let wanted = out.len() as u64;
+        if at.checked_add(wanted).is_none_or(|end| end > self.len) {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        if wanted > WINDOW_BYTES {
+            self.file.seek(SeekFrom::Start(at))?;
+            return self.file.read_exact(out);
+        }
+        if at < self.window_at || at + wanted > self.window_at + self.window.len() as u64 {
+            self.window.clear();
+            self.file.seek(SeekFrom::Start(at))?;
+            (&self.file).take(WINDOW_BYTES).read_to_end(&mut self.window)?;
+            self.window_at = at;
+        }
+        let from = (at - self.window_at) as usize;
+        let found = self.window.get(from..from + out.len()).ok_or(io::ErrorKind::UnexpectedEof)?;
+        out.copy_from_slice(found);
+        Ok(())
+    }
+
+    /// A whole number of 1, 2, 4 or 8 bytes.
+    pub(super) fn number(&mut self, at: u64, bytes: usize) -> io::Result<u64> {
+        let mut found = [0; 8];
+        let found = &mut found[..bytes.min(8)];
+        self.read(at, found)?;
+        Ok(whole(found, self.endian))
+    }
+}
+
+/// A whole number of at most eight bytes.
+pub(super) fn whole(bytes: &[u8], endian: Endian) -> u64 {
+    let join = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
+    match endian {
+        Endian::Big => bytes.iter().fold(0, join),
+        Endian::Little => bytes.iter().rev().fold(0, join),
+    }
+}

@@ -1,0 +1,182 @@
+//! The directories of a TIFF file: what is said of each page, as numbered entries.
+
+use std::collections::HashSet;
+use std::io;
+
+use super::super::{Endian, LoadControl, LoadError};
+use super::bytes::{Bytes, whole};
+use super::fault::unreadable;
+use crate::data::attempt::Attempt;
+
+/// Most pages that are looked at: a hundred times those of long recordings.
+pub(super) const MOST_PAGES: usize = 1 << 20;
+
+/// Most entries of a directory: real ones have some tens.
+const MOST_ENTRIES: u64 = 4096;
+
+/// An entry of a directory: where its values stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Entry {
+    tag: u16,
+    /// Type of the values (TIFF 6.0, section 2).
+    kind: u16,
+    pub(super) count: u64,
+    at: u64,
+}
+
+/// Bytes of a value of a type; `None` where there is no such type.
+const fn bytes_of(kind: u16) -> Option<u64> {
+    match kind {
+        // BYTE, ASCII, SBYTE, UNDEFINED
+        1 | 2 | 6 | 7 => Some(1),
+        // SHORT, SSHORT
+        3 | 8 => Some(2),
+        // LONG, SLONG, FLOAT, IFD
+        4 | 9 | 11 | 13 => Some(4),
+        // RATIONAL, SRATIONAL, DOUBLE, and of BigTIFF LONG8, SLONG8, IFD8
+        5 | 10 | 12 | 16 | 17 | 18 => Some(8),
+        _ => None,
+    }
+}
+
+impl Entry {
+    /// The bytes of its values, at most so many.
+    fn bytes(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u8>> {
+        let size = bytes_of(self.kind).and_then(|size| size.checked_mul(self.count));
+        let size = size.filter(|&size| size <= file.len()).ok_or(io::ErrorKind::UnexpectedEof)?;
+        let mut bytes = vec![0; size.min(most) as usize];
+        file.read(self.at, &mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Its values, where they are whole numbers and not below zero.
+    pub(super) fn numbers(self, file: &mut Bytes) -> io::Result<Vec<u64>> {
+        let is_whole = matches!(self.kind, 1 | 3 | 4 | 13 | 16 | 18);
+        let size = bytes_of(self.kind).filter(|_| is_whole).ok_or(io::ErrorKind::InvalidData)? as usize;
+        let endian = file.endian;
+        let bytes = self.bytes(file, u64::MAX)?;
+        Ok(bytes.chunks_exact(size).map(|number| whole(number, endian)).collect())
+    }
+
+    /// Its first value, as a number of any kind.
+    pub(super) fn first(self, file: &mut Bytes) -> Option<f64> {
+        let endian = file.endian;
+        let bytes = self.bytes(file, 8).ok()?;
+        let bytes = bytes.get(..bytes_of(self.kind)? as usize)?;
+        Some(match self.kind {
+            5 => {
+                let (over, under) = bytes.split_at(4);
+                whole(over, endian) as f64 / whole(under, endian) as f64
+            }
+            11 => f64::from(f32::from_bits(whole(bytes, endian) as u32)),
+            12 => f64::from_bits(whole(bytes, endian)),
+            1 | 3 | 4 | 16 => whole(bytes, endian) as f64,
+            _ => return None,
+        })
+    }
+
+    /// Its first value, where it is a whole number.
+    pub(super) fn whole(self, file: &mut Bytes) -> io::Result<u64> {
+        let one = Self { count: self.count.min(1), ..self };
+        one.numbers(file)?.first().copied().ok_or_else(|| io::ErrorKind::InvalidData.into())
+    }
+
+    /// Its text up to a zero byte, at most so many bytes of it. What is no UTF-8 is Latin-1, as older programs write it.
+    pub(super) fn text(self, file: &mut Bytes, most: u64) -> io::Result<String> {
+        let mut bytes = self.bytes(file, most)?;
+        bytes.truncate(bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len()));
+        Ok(String::from_utf8(bytes)
+            .unwrap_or_else(|error| error.as_bytes().iter().map(|&byte| char::from(byte)).collect()))
+    }
+
+    /// Its bytes, at most so many, as they are.
+    pub(super) fn raw(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u8>> {
+        self.bytes(file, most)
+    }
+}
+
+/// What is said of a page.
+#[derive(Debug, Default)]
+pub(super) struct Directory {
+    entries: Vec<Entry>,
+}
+
+impl Directory {
+    pub(super) fn get(&self, tag: u16) -> Option<Entry> {
+        self.entries.iter().find(|entry| entry.tag == tag).copied()
+    }
+
+    /// Reads the directory at a place, and where the next one is; 0 after the last.
+    fn read(file: &mut Bytes, is_big: bool, at: u64) -> io::Result<(Self, u64)> {
+        // Bytes of the count of entries, of an entry, of a place in the file.
+        let (counted, size, place) = if is_big { (8, 20, 8) } else { (2, 12, 4) };
+        let count = file.number(at, counted)?;
+        if count > MOST_ENTRIES {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        let mut bytes = vec![0; count as usize * size + place];
+        let start = at + counted as u64;
+        file.read(start, &mut bytes)?;
+        let endian = file.endian;
+        let (listed, next) = bytes.split_at(count as usize * size);
+        let entries = listed.chunks_exact(size).enumerate().filter_map(|(number, entry)| {
+            let (kind, count) = (whole(&entry[2..4], endian) as u16, whole(&entry[4..4 + place], endian));
+            let is_inside = bytes_of(kind)?.saturating_mul(count) <= place as u64;
+            let inside = start + (number * size + 4 + place) as u64;
+            let at = if is_inside { inside } else { whole(&entry[4 + place..], endian) };
+            Some(Entry { tag: whole(&entry[..2], endian) as u16, kind, count, at })
+        });
+        Ok((Self { entries: entries.collect() }, whole(next, endian)))
+    }
+}
+
+/// Goes through all directories of a file, in their order.
+///
+/// # Errors
+/// `BadInput` for what is no TIFF file or whose list of pages leads nowhere, `Limit` for more pages than any recording has;
+/// what `each` says.
+pub(super) fn walk(
+    attempt: Attempt<'_>,
+    file: &mut Bytes,
+    control: &LoadControl,
+    mut each: impl FnMut(&mut Bytes, Directory) -> Result<(), LoadError>,
+) -> Result<(), LoadError> {
+    let fault = |error| unreadable(attempt, "header", error);
+    let mut magic = [0; 2];
+    file.read(0, &mut magic).map_err(fault)?;
+    file.endian = if magic == *b"MM" { Endian::Big } else { Endian::Little };
+    let version = file.number(2, 2).map_err(fault)?;
+    // BigTIFF: version 43, places of 8 bytes, and a zero.
+    let is_big = version == 43;
+    if is_big && file.number(4, 4).map_err(fault)? != if magic == *b"MM" { 8 << 16 } else { 8 } {
+        return Err(unreadable(attempt, "header", io::ErrorKind::InvalidData.into()));
+    }
+    let mut next = if is_big { file.number(8, 8) } else { file.number(4, 4) }.map_err(fault)?;
+    let mut seen = HashSet::new();
+    while next != 0 {
+        control.check()?;
+        let field = format!("directory of page {}", seen.len());
+        if seen.len() == MOST_PAGES {
+            return Err(attempt.limit(
+                &field,
+                format!("there are more than {MOST_PAGES} pages"),
+                "split the file into several",
+            ));
+        }
+        if !seen.insert(next) {
+            return Err(attempt.bad_input(
+                &field,
+                "the list of pages leads back to a page before",
+                "copy the file again, or save it anew",
+            ));
+        }
+        let (directory, after) =
+            Directory::read(file, is_big, next).map_err(|error| unreadable(attempt, &field, error))?;
+        each(file, directory)?;
+        next = after;
+    }
+    if seen.is_empty() {
+        return Err(attempt.bad_input("header", "the file has no pages", "copy the file again"));
+    }
+    Ok(())
+}

@@ -1,0 +1,35 @@
+//! What can be wrong with a TIFF file, in words.
+
+use std::io;
+
+use super::super::LoadError;
+use crate::data::attempt::Attempt;
+
+/// What helps where a file is broken.
+pub(super) const HELP: &str = "copy the file again, or save it anew with the program that wrote it";
+
+/// A part of the file cannot be read.
+pub(super) fn unreadable(attempt: Attempt<'_>, field: &str, error: io::Error) -> LoadError {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => {
+            attempt.bad_input(field, "the file is truncated: it points to bytes beyond its end", HELP)
+        }
+        io::ErrorKind::InvalidData => attempt.bad_input(field, "it holds what cannot be there", HELP),
+        _ => attempt.io(error),
+    }
+}
+
+/// A way of compressing that is not read, in words.
+pub(super) fn compression_name(compression: u64) -> &'static str {
+    match compression {
+        2..=4 => "for fax machines (CCITT)",
+        6 | 7 | 34892 | 65000 => "as JPEG",
+        33003 | 33004 | 33005 | 34712 => "as JPEG 2000",
+        34925 => "as LZMA",
+        34887 => "as LERC",
+        34934 | 22610 => "as JPEG XR",
+        50001 => "as WebP",
+        50002 | 52546 => "as JPEG XL",
+        _ => "in a way that is not known",
+    }
+}

@@ -1,0 +1,131 @@
+//! Numbers of a strip or tile as they were before they were made easier to compress: in little-endian order, whole bytes
+//! each.
+
+use super::super::Endian;
+use super::page::Page;
+
+/// Undoes what was done to the rows of a part. `samples` are the numbers of each pixel in it.
+pub(super) fn restore(page: &Page, endian: Endian, samples: usize, row_bytes: usize, part: &mut [u8]) {
+    let size = (page.bits / 8) as usize;
+    let mut scratch = Vec::new();
+    for row in part.chunks_exact_mut(row_bytes) {
+        match page.predictor {
+            2 => {
+                to_little(row, size, endian);
+                add_up(row, size, samples);
+            }
+            // Its bytes are in the order of their weight, whatever that of the file is.
+            3 => join_floats(row, size, samples, &mut scratch),
+            _ => to_little(row, size, endian),
+        }
+    }
+}
+
+fn to_little(row: &mut [u8], size: usize, endian: Endian) {
+    if endian == Endian::Big && size > 1 {
+        row.chunks_exact_mut(size).for_each(<[u8]>::reverse);
+    }
+}
+
+/// Each number is the difference to the one before (TIFF 6.0, section 14), also those that are not whole: of their bits.
+fn add_up(row: &mut [u8], size: usize, samples: usize) {
+    macro_rules! add {
+        ($type:ty) => {{
+            const SIZE: usize = size_of::<$type>();
+            let number = |bytes: &[u8]| {
+                let mut array = [0; SIZE];
+                array.copy_from_slice(bytes);
+                <$type>::from_le_bytes(array)
+            };
+            let step = SIZE * samples;
+            for at in (step..(row.len() / SIZE) * SIZE).step_by(SIZE) {
+                let sum = number(&row[at..at + SIZE]).wrapping_add(number(&row[at - step..at - step + SIZE]));
+                row[at..at + SIZE].copy_from_slice(&sum.to_le_bytes());
+            }
+        }};
+    }
+    match size {
+        1 => add!(u8),
+        2 => add!(u16),
+        4 => add!(u32),
+        8 => add!(u64),
+        _ => {}
+    }
+}
+
+/// Bytes of the highest weight first, then the next ones; all of them differences (TIFF Technical Note 3).
+fn join_floats(row: &mut [u8], size: usize, samples: usize, scratch: &mut Vec<u8>) {
+    for at in samples..row.len() {
+        row[at] = row[at].wrapping_add(row[at - samples]);
+    }
+    scratch.clear();
+    scratch.extend_from_slice(row);
+    let count = row.len() / size.max(1);
+    for (at, number) in row.chunks_exact_mut(size.max(1)).enumerate() {
+        for (weight, byte) in number.iter_mut().rev().enumerate() {
+            *byte = scratch[weight * count + at];
+        }
+    }
+}
+
+/// Numbers of less than a byte, or of less than two, each in one or two bytes. They lie one after the other from the
+/// highest bit; rows begin with whole bytes.
+pub(super) fn widen(packed: &[u8], bits: u64, count: usize, wide: &mut Vec<u8>) {
+    let (mut held, mut held_bits) = (0u32, 0u64);
+    let mut bytes = packed.iter();
+    for _ in 0..count {
+        while held_bits < bits {
+            held = held << 8 | u32::from(bytes.next().copied().unwrap_or(0));
+            held_bits += 8;
+        }
+        held_bits -= bits;
+        let number = (held >> held_bits) & ((1 << bits) - 1);
+        held &= (1 << held_bits) - 1;
+        wide.extend_from_slice(&number.to_le_bytes()[..if bits > 8 { 2 } else { 1 }]);
+    }
+}
+
+/// Makes the lowest of whole numbers the highest.
+pub(super) fn invert(numbers: &mut [u8], bits: u64) {
+    match bits {
+        8 | 16 | 32 | 64 => numbers.iter_mut().for_each(|byte| *byte = !*byte),
+        1..8 => numbers.iter_mut().for_each(|byte| *byte = ((1 << bits) - 1) - (*byte & ((1 << bits) - 1))),
+        _ => {
+            for number in numbers.as_chunks_mut::<2>().0 {
+                let most = (1u16 << bits.min(15)) - 1;
+                *number = (most - (u16::from_le_bytes(*number) & most)).to_le_bytes();
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_few_bits_are_widened() {
+        let widened = |packed: &[u8], bits, count| {
+            let mut wide = Vec::new();
+            widen(packed, bits, count, &mut wide);
+            wide
+        };
+        assert_eq!(widened(&[0b1010_0000], 1, 3), [1, 0, 1]);
+        assert_eq!(widened(&[0x1F, 0x30], 4, 3), [1, 15, 3]);
+        assert_eq!(widened(&[0xAB, 0xC1, 0x23], 12, 2), [0xBC, 0x0A, 0x23, 0x01]);
+        assert_eq!(widened(&[], 12, 1), [0, 0], "what is not there is 0");
+    }
+
+    #[test]
+    fn white_becomes_the_highest() {
+        for (bits, numbers, inverted) in [
+            (1, vec![0, 1], vec![1, 0]),
+            (8, vec![0, 200], vec![255, 55]),
+            (12, vec![0, 0], vec![0xFF, 0x0F]),
+        ] {
+            let mut numbers = numbers;
+            invert(&mut numbers, bits);
+            assert_eq!(numbers, inverted, "{bits}");
+        }
+    }
+}
