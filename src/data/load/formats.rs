@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, nrrd, raw};
+use super::{LoadOptions, nrrd, raw, vtk};
 
 /// All formats, the surest marks first.
-pub(super) const READERS: &[Reader] = &[nrrd::READER, raw::READER];
+pub(super) const READERS: &[Reader] = &[nrrd::READER, vtk::XML, vtk::LEGACY, raw::READER];
 
 /// The reader of a file.
 pub(super) fn reader_of(path: &Path, start: &Start, options: &LoadOptions) -> Option<&'static Reader> {

@@ -18,6 +18,8 @@ mod reader;
 mod samples;
 #[cfg(test)]
 mod tests;
+mod text_numbers;
+mod vtk;
 
 use std::path::Path;
 

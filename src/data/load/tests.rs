@@ -204,7 +204,12 @@ fn what_is_not_a_readable_file_is_refused() {
     let folder = TempDir::new().unwrap();
     let missing = folder.path().join("missing.nrrd");
     assert_refused(&missing, RawFormat::default(), LoadErrorKind::Io, &["no such file", "missing.nrrd"]);
-    assert_refused(folder.path(), RawFormat::default(), LoadErrorKind::BadInput, &["folder", "name one file"]);
+    assert_refused(
+        folder.path(),
+        RawFormat::default(),
+        LoadErrorKind::BadInput,
+        &["folder", "name one file"],
+    );
     assert_refused(Path::new(""), RawFormat::default(), LoadErrorKind::Io, &[]);
     #[cfg(unix)]
     {
