@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::reader::{Reader, Start};
-use super::{LoadOptions, cube, dicom, metaimage, mrc, nifti, nrrd, numpy, pvm, raw, slices, tiff};
+use super::{LoadOptions, cube, dicom, metaimage, mrc, nifti, nrrd, numpy, pvm, raw, slices, tiff, vtk};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[
@@ -11,13 +11,15 @@ pub(super) const READERS: &[Reader] = &[
     numpy::NPY,
     numpy::NPZ,
     pvm::READER,
-    mrc::READER,
-    cube::READER,
     nifti::READER,
     metaimage::READER,
     dicom::READER,
     tiff::READER,
     slices::READER,
+    vtk::XML,
+    vtk::LEGACY,
+    mrc::READER,
+    cube::READER,
     raw::DAT,
     raw::IVF,
     raw::INI,

@@ -28,7 +28,9 @@ mod samples;
 mod slices;
 #[cfg(test)]
 mod tests;
+mod text_numbers;
 mod tiff;
+mod vtk;
 
 use std::path::Path;
 

@@ -1,0 +1,256 @@
+//! What both forms describe: a grid, arrays of values at its points or in its cells, and which of them is read.
+
+use std::io::{self, BufRead, BufReader, Read, Seek as _};
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::super::input::stem;
+use super::super::number::{Number, Part, Stored};
+use super::super::placement::{Parts, Placement};
+use super::super::reader::Source;
+use super::super::samples::{Fault, Layout};
+use super::super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
+use crate::data::attempt::{Attempt, Extent};
+use crate::data::{Hints, Modality, Samples, Volume};
+
+/// Arrays that are offered at most: more than simulations have.
+pub(super) const MOST_ARRAYS: usize = 4096;
+
+/// Numbers for each voxel that an array has at most: tensors have nine.
+pub(super) const MOST_COMPONENTS: usize = 1 << 10;
+
+/// A regular grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Grid {
+    /// Points along the axes, none of them 0.
+    pub(super) points: [u64; 3],
+    /// The index of the first point: that with index 0 is at the origin.
+    pub(super) first: [f64; 3],
+    pub(super) origin: DVec3,
+    pub(super) spacing: DVec3,
+    pub(super) direction: DMat3,
+    /// Whether the file says how far apart points are.
+    pub(super) has_spacing: bool,
+}
+
+impl Grid {
+    /// A grid from the first to the last index along each axis; `None` where one comes before the other.
+    pub(super) fn of_extent(extent: [i64; 6]) -> Option<Self> {
+        let [x, xx, y, yy, z, zz] = extent;
+        let points = |first: i64, last: i64| {
+            u64::try_from(i128::from(last) - i128::from(first) + 1).ok().filter(|&points| points > 0)
+        };
+        Some(Self {
+            points: [points(x, xx)?, points(y, yy)?, points(z, zz)?],
+            first: [x, y, z].map(|first| first as f64),
+            origin: DVec3::ZERO,
+            spacing: DVec3::ONE,
+            direction: DMat3::IDENTITY,
+            has_spacing: false,
+        })
+    }
+
+    /// Voxels of an array. An axis of one point has cells that are flat.
+    pub(super) fn dims(&self, of_cells: bool) -> [u64; 3] {
+        self.points.map(|points| if of_cells { (points - 1).max(1) } else { points })
+    }
+
+    /// All of them; as many as 64 bits can say.
+    pub(super) fn count(&self, of_cells: bool) -> u64 {
+        self.dims(of_cells).iter().fold(1u64, |product, &dim| product.saturating_mul(dim))
+    }
+
+    /// Where the voxels of an array lie: cells have their values in their middle.
+    fn placement(&self, of_cells: bool) -> Placement {
+        if !self.has_spacing {
+            return Placement::unknown();
+        }
+        let shift = |axis: usize| if of_cells && self.points[axis] > 1 { 0.5 } else { 0.0 };
+        let first = DVec3::from_array([0, 1, 2].map(|axis| self.first[axis] + shift(axis)));
+        let axes = self.direction * DMat3::from_diagonal(self.spacing);
+        Placement::ras(DAffine3 { matrix3: axes, translation: self.origin + axes * first }).of_no_body()
+    }
+}
+
+/// An array of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Array<P> {
+    pub(super) name: String,
+    pub(super) number: Number,
+    pub(super) components: usize,
+    /// Whether its values lie in cells, and not at points.
+    pub(super) of_cells: bool,
+    pub(super) is_color: bool,
+    /// Where its values are.
+    pub(super) place: P,
+}
+
+/// The array that is read, and as what.
+pub(super) struct Chosen<P> {
+    pub(super) array: Array<P>,
+    pub(super) stored: Stored,
+    pub(super) extent: Extent,
+    /// Whether there are others.
+    is_one_of_several: bool,
+}
+
+impl<P> Chosen<P> {
+    /// Bytes of all its values as they are written in binary.
+    pub(super) fn stored_bytes(&self) -> u64 {
+        (self.extent.voxels as u64).saturating_mul(self.stored.bytes_of_voxel())
+    }
+
+    /// Numbers of all its voxels.
+    pub(super) fn numbers(&self) -> u64 {
+        (self.extent.voxels as u64).saturating_mul(self.array.components as u64)
+    }
+
+    /// Reads the values from where they begin.
+    ///
+    /// # Errors
+    /// `BadInput` also for what the reader calls invalid or too short: it decodes what a file holds.
+    pub(super) fn read(
+        &self,
+        attempt: Attempt<'_>,
+        reader: &mut impl Read,
+        endian: Endian,
+        control: &LoadControl,
+    ) -> Result<Samples, LoadError> {
+        const HELP: &str = "copy the file again, or write it again with another program";
+        let stored = Stored { endian, ..self.stored };
+        let layout = Layout { extent: self.extent, voxel_type: stored.voxel_type(), endian };
+        stored.read(reader, self.extent, control).map_err(|fault| match fault {
+            Fault::Io(error) if is_of_content(&error) => {
+                attempt.bad_input(&self.array.name, error.to_string(), HELP)
+            }
+            fault => fault.into_error(attempt, &layout, "bytes", HELP),
+        })
+    }
+
+    /// The volume of the values.
+    pub(super) fn volume(
+        self,
+        attempt: Attempt<'_>,
+        grid: &Grid,
+        samples: Samples,
+        title: &str,
+    ) -> Result<Volume, LoadError> {
+        let mut placement = grid.placement(self.array.of_cells);
+        if self.stored.part == Part::Luminance {
+            placement.remarks.push("colours are shown as their luminance".to_owned());
+        } else if self.stored.part == Part::Magnitude {
+            placement.remarks.push("vectors are shown as their length".to_owned());
+        }
+        let file = stem(attempt.path);
+        let name = if self.is_one_of_several { format!("{file} {}", self.array.name) } else { file };
+        let mut hints = Hints::default();
+        hints.modality = Modality::of_description(title);
+        Parts { name, dims: self.extent.dims, placement, samples, hints }.volume(attempt)
+    }
+}
+
+/// Which of the arrays is read: the one that is meant, and of its components the one that is meant.
+pub(super) fn choose<P>(
+    attempt: Attempt<'_>,
+    grid: &Grid,
+    mut arrays: Vec<Array<P>>,
+    options: &LoadOptions,
+) -> Result<Chosen<P>, LoadError> {
+    if arrays.is_empty() {
+        return Err(attempt.bad_input(
+            "arrays",
+            "it holds no array of numbers with a value for each point or cell",
+            "write it again with the values as point data",
+        ));
+    }
+    let is_one_of_several = arrays.len() > 1;
+    let offers = arrays
+        .iter()
+        .enumerate()
+        .map(|(at, array)| Offer::numbered(at, &array.name, grid.dims(array.of_cells)))
+        .collect();
+    let array = arrays.swap_remove(attempt.chosen(&options.choice, Dimension::Array, offers)?);
+    let components = array.components;
+    let part = Part::chosen(options.choice.component, components, array.is_color).ok_or_else(|| {
+        attempt.bad_input(
+            "--component",
+            format!("the array has {components} components"),
+            format!("give a number from 0 to {}", components - 1),
+        )
+    })?;
+    // The byte order is said when they are read.
+    let stored = Stored { number: array.number, endian: Endian::Little, components, part };
+    let dims = grid.dims(array.of_cells);
+    let extent =
+        Extent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.memory_budget_bytes)?;
+    Ok(Chosen { array, stored, extent, is_one_of_several })
+}
+
+/// Refuses data of which less is there than they need, before memory is taken for them.
+pub(super) fn check_room(
+    attempt: Attempt<'_>,
+    field: &str,
+    needed: u64,
+    found: u64,
+    unit: &str,
+) -> Result<(), LoadError> {
+    if needed <= found {
+        return Ok(());
+    }
+    Err(attempt.bad_input(
+        field,
+        format!("the data are truncated: {needed} {unit} expected, room for {found} found"),
+        "copy the file again",
+    ))
+}
+
+/// Whether an error is about what a file holds, and not about the disk that holds it.
+pub(super) fn is_of_content(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
+    )
+}
+
+/// An error about what the file holds.
+pub(super) fn invalid(why: impl Into<String>) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, why.into())
+}
+
+/// The content of a file from one of its bytes on.
+pub(super) fn content_from<'a>(
+    attempt: Attempt<'_>,
+    source: &'a mut Source<'_>,
+    at: u64,
+) -> Result<Box<dyn BufRead + 'a>, LoadError> {
+    if !source.start.is_gzip() {
+        source.input.seek(at).map_err(|error| attempt.io(error))?;
+        return Ok(Box::new(&mut source.input.reader));
+    }
+    source.input.reader.rewind().map_err(|error| attempt.io(error))?;
+    let control = source.control;
+    let mut content = source.content();
+    let mut left = at;
+    // As much as the look at `cancel` may wait for.
+    const BLOCK_BYTES: u64 = 1 << 20;
+    while left > 0 {
+        control.check()?;
+        let want = left.min(BLOCK_BYTES);
+        let got = io::copy(&mut content.by_ref().take(want), &mut io::sink())
+            .map_err(|error| broken(attempt, error))?;
+        if got == 0 {
+            break;
+        }
+        left -= got;
+    }
+    Ok(Box::new(BufReader::new(content)))
+}
+
+/// An error of a reader, in words for what the file holds where it is about that.
+pub(super) fn broken(attempt: Attempt<'_>, error: io::Error) -> LoadError {
+    if is_of_content(&error) {
+        attempt.bad_input("content", format!("the file is broken: {error}"), "copy the file again")
+    } else {
+        attempt.io(error)
+    }
+}

@@ -1,0 +1,329 @@
+//! What a file holds: its grid, and where the values of its arrays begin.
+
+use std::str::FromStr;
+
+use glam::DVec3;
+
+use super::super::super::LoadError;
+use super::super::super::number::Number;
+use super::super::RESAMPLE;
+use super::super::image::{Array, Grid, MOST_ARRAYS, MOST_COMPONENTS};
+use super::lines::Lines;
+use crate::data::attempt::{Attempt, quoted};
+use crate::data::plain;
+
+/// Where the values of an array are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) start: u64,
+    /// Whether bytes are written as numbers from 0 to 1.
+    pub(super) are_shares: bool,
+}
+
+/// What a file holds.
+pub(super) struct Scan<'a> {
+    attempt: Attempt<'a>,
+    pub(super) title: String,
+    /// Whether values are text.
+    pub(super) is_text: bool,
+    pub(super) grid: Grid,
+    /// The arrays, by where their values begin.
+    pub(super) arrays: Vec<Array<Place>>,
+    /// How many values arrays have now, and whether they are those of cells.
+    section: Option<(u64, bool)>,
+    /// Whether the grid's size was said.
+    has_dims: bool,
+}
+
+/// How an array is announced.
+struct Announced {
+    name: String,
+    /// `None` where such values are not read.
+    number: Option<Number>,
+    components: u64,
+    /// Values with so many numbers each.
+    tuples: u64,
+    bytes: u64,
+    is_color: bool,
+    are_shares: bool,
+}
+
+impl<'a> Scan<'a> {
+    pub(super) fn of(attempt: Attempt<'a>, mut lines: Lines<'_>) -> Result<Self, LoadError> {
+        lines.next()?;
+        let title = lines.next()?.unwrap_or_default();
+        let coding = lines.next_filled()?.unwrap_or_default();
+        let is_text = match coding.to_uppercase().as_str() {
+            "ASCII" => true,
+            "BINARY" => false,
+            _ => {
+                let why = format!("ASCII or BINARY was expected, {} was found", quoted(&coding));
+                return Err(attempt.bad_input("line 3", why, "write the file again"));
+            }
+        };
+        let dataset = lines.next_filled()?.unwrap_or_default();
+        match dataset.to_uppercase().split_whitespace().collect::<Vec<_>>()[..] {
+            ["DATASET", "STRUCTURED_POINTS"] => {}
+            ["DATASET", kind] => {
+                let why = format!("a data set of the kind {} is no regular grid", quoted(kind));
+                return Err(attempt.bad_input("DATASET", why, RESAMPLE));
+            }
+            _ => {
+                let why = format!("DATASET STRUCTURED_POINTS was expected, {} was found", quoted(&dataset));
+                return Err(attempt.bad_input("DATASET", why, RESAMPLE));
+            }
+        }
+        let point = Grid {
+            points: [1; 3],
+            first: [0.0; 3],
+            origin: DVec3::ZERO,
+            spacing: DVec3::ONE,
+            direction: glam::DMat3::IDENTITY,
+            has_spacing: false,
+        };
+        let arrays = Vec::new();
+        let mut scan = Scan { attempt, title, is_text, grid: point, arrays, section: None, has_dims: false };
+        while let Some(line) = lines.next_filled()? {
+            if scan.arrays.len() > MOST_ARRAYS || !scan.add(&line, &mut lines)? {
+                break;
+            }
+        }
+        Ok(scan)
+    }
+
+    /// Adds what a line says, and skips the values after it; false where nothing after it can be found.
+    fn add(&mut self, line: &str, lines: &mut Lines<'_>) -> Result<bool, LoadError> {
+        let words: Vec<_> = line.split_whitespace().collect();
+        let keyword = words[0].to_uppercase();
+        let word = |at: usize| words.get(at).copied().unwrap_or_default();
+        let attempt = self.attempt;
+        let tuples = self.section.map_or(0, |(count, _)| count);
+        let announced = |kind: &str, components: u64| {
+            let (number, bits) = number(kind)?;
+            Some(Announced {
+                name: name(word(1)),
+                number,
+                components,
+                tuples,
+                bytes: bits.checked_mul(tuples.checked_mul(components)?)?.div_ceil(8),
+                is_color: number == Some(Number::U8) && (3..=4).contains(&components),
+                are_shares: false,
+            })
+        };
+        let attribute = match keyword.as_str() {
+            "DIMENSIONS" => {
+                let [x, y, z]: [i64; 3] = numbers(attempt, &keyword, &words)?;
+                return self.set_extent(
+                    &keyword,
+                    [0, x.saturating_sub(1), 0, y.saturating_sub(1), 0, z.saturating_sub(1)],
+                );
+            }
+            "EXTENT" => return self.set_extent(&keyword, numbers(attempt, &keyword, &words)?),
+            "ORIGIN" => {
+                self.grid.origin = DVec3::from_array(numbers(attempt, &keyword, &words)?);
+                return Ok(true);
+            }
+            "SPACING" | "ASPECT_RATIO" => {
+                self.grid.spacing = DVec3::from_array(numbers(attempt, &keyword, &words)?);
+                self.grid.has_spacing = true;
+                return Ok(true);
+            }
+            "POINT_DATA" | "CELL_DATA" => {
+                let [count] = numbers(attempt, &keyword, &words)?;
+                return self.begin(&keyword, count);
+            }
+            "METADATA" => return skip_metadata(lines),
+            "FIELD" => {
+                let count: Option<u64> = word(2).parse().ok();
+                return count.map_or(Ok(false), |count| self.add_fields(count, lines));
+            }
+            "SCALARS" => {
+                let components = words.get(3).map_or(Some(1), |text| text.parse().ok());
+                let found = components.and_then(|components| announced(word(2), components));
+                // Programs other than VTK leave it out.
+                if lines.begins_with("LOOKUP_TABLE")? {
+                    lines.next()?;
+                }
+                found
+            }
+            // VTK writes all bytes so, colours or not: as they are, or as numbers from 0 to 1.
+            "COLOR_SCALARS" => {
+                let found =
+                    word(2).parse().ok().and_then(|components| announced("unsigned_char", components));
+                found.map(|found| Announced { is_color: true, are_shares: self.is_text, ..found })
+            }
+            "LOOKUP_TABLE" => {
+                let colors: Option<u64> = word(2).parse().ok().and_then(|count: u64| count.checked_mul(4));
+                return colors.map_or(Ok(false), |count| {
+                    if self.is_text { lines.skip_words(count) } else { lines.skip_bytes(count) }
+                });
+            }
+            "VECTORS" | "NORMALS" => announced(word(2), 3),
+            "TENSORS" => announced(word(2), 9),
+            "TENSORS6" => announced(word(2), 6),
+            "GLOBAL_IDS" | "PEDIGREE_IDS" | "EDGE_FLAGS" => announced(word(2), 1),
+            "TEXTURE_COORDINATES" => word(2).parse().ok().and_then(|count| announced(word(3), count)),
+            _ => None,
+        };
+        match attribute {
+            Some(found) if self.section.is_some() => self.add_array(found, lines),
+            _ => self.stop(line),
+        }
+    }
+
+    fn set_extent(&mut self, keyword: &str, extent: [i64; 6]) -> Result<bool, LoadError> {
+        let Grid { origin, spacing, has_spacing, .. } = self.grid;
+        let grid = Grid::of_extent(extent).ok_or_else(|| {
+            self.attempt.bad_input(
+                keyword,
+                "it has no points along an axis",
+                "every dimension must be at least 1",
+            )
+        })?;
+        self.grid = Grid { origin, spacing, has_spacing, ..grid };
+        self.has_dims = true;
+        Ok(true)
+    }
+
+    /// Begins the arrays of points or of cells.
+    fn begin(&mut self, keyword: &str, count: u64) -> Result<bool, LoadError> {
+        let of_cells = keyword == "CELL_DATA";
+        let expected = self.grid.count(of_cells);
+        if !self.has_dims || count != expected {
+            let [x, y, z] = self.grid.dims(of_cells);
+            let why = if self.has_dims {
+                format!("{expected} values were expected for {x} x {y} x {z} voxels, {count} are announced")
+            } else {
+                "the dimensions of the grid are missing before it".to_owned()
+            };
+            return Err(self.attempt.bad_input(keyword, why, "write the file again"));
+        }
+        self.section = Some((count, of_cells));
+        Ok(true)
+    }
+
+    /// Adds the arrays of a field: each with a line `name components tuples type`.
+    fn add_fields(&mut self, count: u64, lines: &mut Lines<'_>) -> Result<bool, LoadError> {
+        let mut left = count;
+        while left > 0 {
+            let Some(line) = lines.next_filled()? else { return Ok(false) };
+            let words: Vec<_> = line.split_whitespace().collect();
+            if words[0].eq_ignore_ascii_case("METADATA") {
+                if !skip_metadata(lines)? {
+                    return Ok(false);
+                }
+                continue;
+            }
+            left -= 1;
+            if words[..] == ["NULL_ARRAY"] {
+                continue;
+            }
+            let announced = || {
+                let [array, components, tuples, kind] = words[..] else { return None };
+                let (number, bits) = number(kind)?;
+                let (components, tuples): (u64, u64) = (components.parse().ok()?, tuples.parse().ok()?);
+                Some(Announced {
+                    name: name(array),
+                    number,
+                    components,
+                    tuples,
+                    bytes: bits.checked_mul(tuples.checked_mul(components)?)?.div_ceil(8),
+                    is_color: number == Some(Number::U8) && (3..=4).contains(&components),
+                    are_shares: false,
+                })
+            };
+            let Some(found) = announced() else { return self.stop(&line) };
+            if !self.add_array(found, lines)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Adds an array, and skips its values; whether they are all there.
+    fn add_array(&mut self, found: Announced, lines: &mut Lines<'_>) -> Result<bool, LoadError> {
+        let Announced { name, number, components, tuples, bytes, is_color, are_shares } = found;
+        let of_cells = self.section.filter(|&(count, _)| count == tuples).map(|(_, of_cells)| of_cells);
+        let place = Place { start: lines.position(), are_shares };
+        match (number, of_cells, usize::try_from(components)) {
+            (Some(number), Some(of_cells), Ok(components)) if (1..=MOST_COMPONENTS).contains(&components) => {
+                self.arrays.push(Array { name, number, components, of_cells, is_color, place });
+            }
+            _ => self.attempt.warn(format_args!("the array {} is not read", quoted(&name))),
+        }
+        if self.is_text {
+            lines.skip_words(tuples.saturating_mul(components))
+        } else {
+            lines.skip_bytes(bytes)
+        }
+    }
+
+    /// Stops at a line that is not understood, where there is something to show already.
+    fn stop(&self, line: &str) -> Result<bool, LoadError> {
+        if self.arrays.is_empty() {
+            let why = format!("the line {} is not understood", quoted(line));
+            return Err(self.attempt.bad_input("lines", why, "open it in ParaView and save it as .vti"));
+        }
+        self.attempt.warn(format_args!("nothing behind the line {} is read", quoted(line)));
+        Ok(false)
+    }
+}
+
+/// The numbers after a keyword.
+fn numbers<T: FromStr, const N: usize>(
+    attempt: Attempt<'_>,
+    keyword: &str,
+    words: &[&str],
+) -> Result<[T; N], LoadError> {
+    let found: Option<Vec<T>> = words.iter().skip(1).map(|word| word.parse().ok()).collect();
+    found.and_then(|found| found.try_into().ok()).ok_or_else(|| {
+        let why = format!("{N} numbers were expected, {} was found", quoted(&words.join(" ")));
+        attempt.bad_input(keyword, why, "correct the file")
+    })
+}
+
+/// Skips what is said of an array, up to an empty line.
+fn skip_metadata(lines: &mut Lines<'_>) -> Result<bool, LoadError> {
+    while let Some(line) = lines.next()? {
+        if line.is_empty() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The number type that a word stands for, where such values are read, and the bits of one in the file.
+fn number(word: &str) -> Option<(Option<Number>, u64)> {
+    let number = match word.to_lowercase().as_str() {
+        "bit" => return Some((None, 1)),
+        "unsigned_char" => Number::U8,
+        "char" | "signed_char" => Number::I8,
+        "unsigned_short" => Number::U16,
+        "short" => Number::I16,
+        "unsigned_int" => Number::U32,
+        // Numbers of points and cells have 64 bits in VTK, and 32 in its files.
+        "int" | "vtkidtype" => Number::I32,
+        // As everywhere but on Windows.
+        "unsigned_long" | "unsigned_long_long" | "vtktypeuint64" => Number::U64,
+        "long" | "long_long" | "vtktypeint64" => Number::I64,
+        "float" => Number::F32,
+        "double" => Number::F64,
+        _ => return None,
+    };
+    Some((Some(number), number.bytes() as u64 * 8))
+}
+
+/// A name, in which other bytes than letters and digits are written like `%20`.
+fn name(text: &str) -> String {
+    let mut bytes = Vec::new();
+    let mut rest = text.as_bytes();
+    while let [first, after @ ..] = rest {
+        let coded = after
+            .get(..2)
+            .filter(|_| *first == b'%')
+            .and_then(|digits| u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok());
+        bytes.push(coded.unwrap_or(*first));
+        rest = if coded.is_some() { &after[2..] } else { after };
+    }
+    plain(String::from_utf8_lossy(&bytes).trim(), 80)
+}

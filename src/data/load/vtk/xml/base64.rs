@@ -1,0 +1,140 @@
+//! Bytes from base64 (RFC 4648, section 4), strictly: nothing but its characters, white space between them, and whole
+//! groups of four.
+//!
+//! Pieces may follow each other: VTK writes a header of its own before the data, each with its padding.
+
+use std::io::{self, BufRead, Read};
+
+use super::super::image::invalid;
+
+/// Reads what base64 text stands for.
+pub(super) struct Base64<R> {
+    reader: R,
+    ready: Vec<u8>,
+    at: usize,
+    /// The bits of the group so far, …
+    bits: u32,
+    /// … of how many characters they are, …
+    characters: u32,
+    /// … and how many of those were padding.
+    padding: u32,
+    /// What is wrong behind the bytes that are ready.
+    wrong: Option<String>,
+}
+
+impl<R: BufRead> Base64<R> {
+    pub(super) fn new(reader: R) -> Self {
+        Self { reader, ready: Vec::new(), at: 0, bits: 0, characters: 0, padding: 0, wrong: None }
+    }
+
+    fn refill(&mut self) -> io::Result<()> {
+        self.ready.clear();
+        self.at = 0;
+        while self.ready.is_empty() {
+            if let Some(why) = self.wrong.take() {
+                return Err(invalid(why));
+            }
+            let block = self.reader.fill_buf()?.to_vec();
+            if block.is_empty() {
+                let is_whole = self.characters == 0;
+                return if is_whole { Ok(()) } else { Err(invalid("the base64 text ends within a group")) };
+            }
+            for &byte in &block {
+                if let Err(why) = self.add(byte) {
+                    // The bytes before it are good, and may be all that is wanted.
+                    self.wrong = Some(why);
+                    break;
+                }
+            }
+            self.reader.consume(block.len());
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, byte: u8) -> Result<(), String> {
+        let value = match byte {
+            b'A'..=b'Z' => byte - b'A',
+            b'a'..=b'z' => byte - b'a' + 26,
+            b'0'..=b'9' => byte - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            b'=' if self.characters >= 2 => {
+                self.padding += 1;
+                0
+            }
+            byte if byte.is_ascii_whitespace() => return Ok(()),
+            byte => return Err(format!("{:?} is no character of base64 here", char::from(byte))),
+        };
+        if self.padding > 0 && byte != b'=' {
+            return Err("the padding of base64 ends too early".to_owned());
+        }
+        self.bits = self.bits << 6 | u32::from(value);
+        self.characters += 1;
+        if self.characters == 4 {
+            let [_, bytes @ ..] = self.bits.to_be_bytes();
+            let (bytes, rest) = bytes.split_at(3 - self.padding as usize);
+            if rest.iter().any(|&byte| byte != 0) {
+                return Err("the padding of base64 hides bits".to_owned());
+            }
+            self.ready.extend(bytes);
+            (self.bits, self.characters, self.padding) = (0, 0, 0);
+        }
+        Ok(())
+    }
+}
+
+impl<R: BufRead> Read for Base64<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.at == self.ready.len() {
+            self.refill()?;
+        }
+        let count = into.len().min(self.ready.len() - self.at);
+        into[..count].copy_from_slice(&self.ready[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
+    }
+}
+
+/// The most bytes that so much text stands for.
+pub(super) fn most_bytes(characters: u64) -> u64 {
+    characters.div_ceil(4).saturating_mul(3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decoded(text: &str) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let reader = io::BufReader::with_capacity(3, text.as_bytes());
+        Base64::new(reader).read_to_end(&mut bytes).map(|_count| bytes)
+    }
+
+    #[test]
+    fn the_vectors_of_the_standard_are_decoded() {
+        // RFC 4648, section 10.
+        for (text, bytes) in [
+            ("", ""),
+            ("Zg==", "f"),
+            ("Zm8=", "fo"),
+            ("Zm9v", "foo"),
+            ("Zm9vYg==", "foob"),
+            ("Zm9vYmE=", "fooba"),
+            ("Zm9v\n YmFy\t", "foobar"),
+            ("Zg==Zm8=Zm9v", "ffofoo"),
+        ] {
+            assert_eq!(decoded(text).unwrap(), bytes.as_bytes(), "{text}");
+        }
+        assert_eq!(decoded("+/+/").unwrap(), [0xfb, 0xff, 0xbf]);
+    }
+
+    #[test]
+    fn what_is_no_base64_is_refused() {
+        for text in ["Z", "Zm9", "Z===", "=", "Zg=a", "Zm9v-", "Zh==", "Zm9=", "Zm\u{e9}v"] {
+            assert_eq!(decoded(text).unwrap_err().kind(), io::ErrorKind::InvalidData, "{text}");
+        }
+        let mut bytes = [0; 3];
+        Base64::new(&b"Zm9v</DataArray>"[..]).read_exact(&mut bytes).unwrap();
+        assert_eq!(&bytes, b"foo", "what comes behind the wanted bytes does not matter");
+    }
+}

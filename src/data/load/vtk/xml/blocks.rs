@@ -1,0 +1,170 @@
+//! Binary values: their length and then they, or a table of blocks and then those, each compressed by itself.
+
+use std::io::{self, Read};
+
+use flate2::read::ZlibDecoder;
+
+use super::super::super::Endian;
+use super::super::image::invalid;
+
+/// Blocks over this size are refused, since each is in memory three times, counting the volume: VTK's have 32 KiB unless
+/// told otherwise, but a file may have but one.
+const LARGEST_BLOCK_BYTES: u64 = 1 << 30;
+
+/// How blocks are compressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Compressor {
+    Zlib,
+    Lz4,
+}
+
+/// The numbers before the data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Words {
+    /// Whether they have 64 bits, and not 32.
+    pub(super) are_long: bool,
+    pub(super) endian: Endian,
+}
+
+impl Words {
+    fn read(self, reader: &mut impl Read) -> io::Result<u64> {
+        let mut bytes = [0; 8];
+        let bytes = if self.are_long { &mut bytes[..] } else { &mut bytes[..4] };
+        reader.read_exact(bytes).map_err(|error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => invalid("the data end within their header"),
+            _ => error,
+        })?;
+        // The highest byte first.
+        if self.endian == Endian::Little {
+            bytes.reverse();
+        }
+        Ok(bytes.iter().fold(0, |word, &byte| word << 8 | u64::from(byte)))
+    }
+}
+
+/// Reads the length of uncompressed values that must be of `expected` bytes.
+pub(super) fn check_length(reader: &mut impl Read, words: Words, expected: u64) -> io::Result<()> {
+    let length = words.read(reader)?;
+    // 32 bits cannot say more, and what is larger was written nevertheless.
+    let is_cut =
+        !words.are_long && expected > u64::from(u32::MAX) && length == expected & u64::from(u32::MAX);
+    if length == expected || is_cut {
+        return Ok(());
+    }
+    Err(invalid(format!("{expected} bytes were expected, the file announces {length}")))
+}
+
+/// Values in compressed blocks.
+pub(super) struct Blocks<R> {
+    reader: R,
+    compressor: Compressor,
+    /// Sizes of the blocks that are still to come, the next one last.
+    compressed: Vec<u64>,
+    block_bytes: u64,
+    last_bytes: u64,
+    packed: Vec<u8>,
+    ready: Vec<u8>,
+    at: usize,
+}
+
+impl<R: Read> Blocks<R> {
+    /// Reads the table of blocks that must make `expected` bytes, of which the file has room for `room`, where that is known.
+    pub(super) fn open(
+        mut reader: R,
+        words: Words,
+        compressor: Compressor,
+        expected: u64,
+        room: Option<u64>,
+    ) -> io::Result<Self> {
+        let count = words.read(&mut reader)?;
+        let block_bytes = words.read(&mut reader)?;
+        let partial = words.read(&mut reader)?;
+        // Nothing left over means that the last block is whole.
+        let last_bytes = if partial == 0 { block_bytes } else { partial };
+        let total = count
+            .checked_sub(1)
+            .and_then(|whole| whole.checked_mul(block_bytes))
+            .and_then(|bytes| bytes.checked_add(last_bytes));
+        if total != Some(expected) || last_bytes > block_bytes {
+            return Err(invalid(format!(
+                "{expected} bytes were expected, the file announces {count} blocks of {block_bytes} bytes, the last \
+                 of {last_bytes}"
+            )));
+        }
+        if block_bytes > LARGEST_BLOCK_BYTES {
+            return Err(invalid(format!(
+                "its blocks of {block_bytes} bytes are larger than the {LARGEST_BLOCK_BYTES} that are read"
+            )));
+        }
+        // A table larger than the data is none that a program would write, unless there is next to nothing.
+        if count.saturating_mul(8) > expected.max(1 << 16) {
+            return Err(invalid(format!("its {count} blocks of {block_bytes} bytes are too small")));
+        }
+        let mut compressed = Vec::new();
+        for _ in 0..count {
+            let bytes = words.read(&mut reader)?;
+            // Neither method makes so much more of anything.
+            if bytes > block_bytes.saturating_add(block_bytes / 8).saturating_add(1024) {
+                return Err(invalid(format!(
+                    "a block of {block_bytes} bytes cannot have {bytes} when it is compressed"
+                )));
+            }
+            compressed.push(bytes);
+        }
+        let sum = compressed.iter().fold(0u64, |sum, &bytes| sum.saturating_add(bytes));
+        if room.is_some_and(|room| room < sum) {
+            return Err(invalid(format!(
+                "the data are truncated: {sum} bytes of blocks expected, room for {} found",
+                room.unwrap_or_default()
+            )));
+        }
+        compressed.reverse();
+        let (packed, ready) = (Vec::new(), Vec::new());
+        Ok(Self { reader, compressor, compressed, block_bytes, last_bytes, packed, ready, at: 0 })
+    }
+
+    /// Unpacks the next block.
+    fn refill(&mut self) -> io::Result<()> {
+        self.at = 0;
+        self.ready.clear();
+        let Some(bytes) = self.compressed.pop() else { return Ok(()) };
+        let wanted = if self.compressed.is_empty() { self.last_bytes } else { self.block_bytes };
+        let wanted = usize::try_from(wanted).map_err(|_too_large| invalid("a block is too large"))?;
+        self.packed.clear();
+        let found = self.reader.by_ref().take(bytes).read_to_end(&mut self.packed)?;
+        if (found as u64) < bytes {
+            return Err(invalid("the data are truncated: they end within a block"));
+        }
+        let room = self.ready.try_reserve_exact(wanted + 1);
+        room.map_err(|_no_memory| io::Error::from(io::ErrorKind::OutOfMemory))?;
+        let unpacked = match self.compressor {
+            Compressor::Zlib => {
+                // A byte more than wanted tells too much from enough.
+                let mut decoder = ZlibDecoder::new(&self.packed[..]).take(wanted as u64 + 1);
+                decoder.read_to_end(&mut self.ready).map_err(|error| error.to_string())
+            }
+            Compressor::Lz4 => {
+                self.ready.resize(wanted, 0);
+                lz4_flex::block::decompress_into(&self.packed, &mut self.ready)
+                    .map_err(|error| error.to_string())
+            }
+        };
+        match unpacked {
+            Ok(found) if found == wanted => Ok(()),
+            Ok(found) => Err(invalid(format!("a block of {wanted} bytes has {found}"))),
+            Err(why) => Err(invalid(format!("a compressed block is broken: {why}"))),
+        }
+    }
+}
+
+impl<R: Read> Read for Blocks<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.at == self.ready.len() {
+            self.refill()?;
+        }
+        let count = into.len().min(self.ready.len() - self.at);
+        into[..count].copy_from_slice(&self.ready[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
+    }
+}

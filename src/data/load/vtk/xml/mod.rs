@@ -1,0 +1,333 @@
+//! The XML form: `<VTKFile type="ImageData">`.
+//!
+//! Values are numbers in text, or bytes in base64 or as they are; those lie in their elements, or together at the end of
+//! the file. Several pieces, as programs that run on many machines write them, are not put together.
+
+mod base64;
+mod blocks;
+mod skeleton;
+#[cfg(test)]
+mod tests;
+
+use std::io::Read;
+
+use glam::{DMat3, DVec3};
+use roxmltree::{Document, Node, ParsingOptions};
+
+use super::super::number::Number;
+use super::super::reader::{Source, Start};
+use super::super::text_numbers::TextNumbers;
+use super::super::{Endian, LoadControl, LoadError};
+use super::RESAMPLE;
+use super::image::{
+    Array, Chosen, Grid, MOST_ARRAYS, MOST_COMPONENTS, broken, check_room, choose, content_from,
+};
+use crate::data::attempt::{Attempt, quoted};
+use crate::data::{Samples, Volume, plain};
+use base64::{Base64, most_bytes};
+use blocks::{Blocks, Compressor, Words, check_length};
+use skeleton::Skeleton;
+
+/// Elements, attributes aside: far more than arrays that are read.
+const MOST_NODES: u32 = 1 << 17;
+
+/// Arrays with which VTK marks what is missing or doubled; nobody wants to see them.
+const MARKS: [&str; 2] = ["vtkGhostType", "vtkValidPointMask"];
+
+/// Whether a file that begins like this is one of VTK's in XML.
+pub(super) fn is_xml(start: &Start) -> bool {
+    const MARK: &[u8] = b"<VTKFile";
+    let bytes = start.bytes();
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes).trim_ascii_start();
+    bytes.starts_with(b"<") && bytes.windows(MARK.len()).any(|window| window == MARK)
+}
+
+/// How a file writes its values.
+#[derive(Debug, Clone, Copy)]
+struct Style {
+    words: Words,
+    compressor: Option<Compressor>,
+    /// Whether what is appended is base64.
+    appends_text: bool,
+}
+
+/// Where the values of an array are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// Numbers in text, at a byte of the file and so many.
+    Ascii(u64, u64),
+    /// Base64, likewise.
+    Base64(u64, u64),
+    /// From a byte of what is appended on.
+    Appended(u64),
+}
+
+pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
+    let attempt = Attempt { what: "read the VTK image", path: source.path };
+    let control = source.control;
+    let skeleton = Skeleton::read(attempt, &mut content_from(attempt, &mut source, 0)?, control)?;
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(&skeleton.markup, options).map_err(|error| {
+        attempt.bad_input("markup", format!("it is no XML: {error}"), "copy the file again")
+    })?;
+    let root = document.root_element();
+    let piece = image(attempt, root)?;
+    let grid = grid(attempt, piece)?;
+    let style = style(attempt, root)?;
+    let arrays = arrays(attempt, piece, &grid)?;
+    let chosen = choose(attempt, &grid, arrays, source.options)?;
+    let samples = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
+    chosen.volume(attempt, &grid, samples, "")
+}
+
+/// The piece of the image.
+fn image<'a, 'input>(attempt: Attempt<'_>, root: Node<'a, 'input>) -> Result<Node<'a, 'input>, LoadError> {
+    let kind = root.attribute("type").unwrap_or_default();
+    if root.tag_name().name() != "VTKFile" {
+        return Err(attempt.bad_input("VTKFile", "its root is another element", "check the file's format"));
+    }
+    if kind == "PImageData" {
+        return Err(attempt.bad_input(
+            "type",
+            "it only names the files of its pieces",
+            "open one of those, or open it in ParaView and save it as .vti",
+        ));
+    }
+    if kind != "ImageData" {
+        return Err(attempt.bad_input("type", format!("{} is no regular grid", quoted(kind)), RESAMPLE));
+    }
+    let pieces: Vec<_> = root
+        .children()
+        .filter(|node| node.has_tag_name("ImageData"))
+        .flat_map(|image| image.children())
+        .filter(|node| node.has_tag_name("Piece"))
+        .collect();
+    match pieces[..] {
+        [piece] => Ok(piece),
+        [] => Err(attempt.bad_input("Piece", "it has no piece with values", "write the file again")),
+        [..] => Err(attempt.bad_input(
+            "Piece",
+            format!("it is in {} pieces, and one is read", pieces.len()),
+            "open it in ParaView and save it as one .vti",
+        )),
+    }
+}
+
+/// The grid of a piece: what it has of the whole image.
+fn grid(attempt: Attempt<'_>, piece: Node<'_, '_>) -> Result<Grid, LoadError> {
+    let image = piece.parent().unwrap_or(piece);
+    let whole = image.attribute("WholeExtent");
+    let wrong = |field: &str, text: &str, what: &str| {
+        attempt.bad_input(
+            field,
+            format!("{what} were expected, {} was found", quoted(text)),
+            "correct the file",
+        )
+    };
+    let text = piece.attribute("Extent").or(whole).unwrap_or_default();
+    let extent: Option<Vec<i64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+    let mut grid = extent
+        .and_then(|extent| Grid::of_extent(extent.try_into().ok()?))
+        .ok_or_else(|| wrong("Extent", text, "the first and last index along x, y and z"))?;
+    if whole.is_some_and(|whole| !whole.split_whitespace().eq(text.split_whitespace())) {
+        attempt.warn("its piece is not the whole image");
+    }
+    let numbers = |field: &str, count: usize| match image.attribute(field) {
+        None => Ok(None),
+        Some(text) => {
+            let found: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+            let found = found.filter(|found| found.len() == count);
+            found.map(Some).ok_or_else(|| wrong(field, text, &format!("{count} numbers")))
+        }
+    };
+    if let Some(origin) = numbers("Origin", 3)? {
+        grid.origin = DVec3::from_slice(&origin);
+    }
+    if let Some(spacing) = numbers("Spacing", 3)? {
+        grid.spacing = DVec3::from_slice(&spacing);
+        grid.has_spacing = true;
+    }
+    if let Some(direction) = numbers("Direction", 9)? {
+        // Row by row.
+        grid.direction = DMat3::from_cols_slice(&direction).transpose();
+    }
+    Ok(grid)
+}
+
+/// How the file writes its values, by the attributes of its root.
+fn style(attempt: Attempt<'_>, root: Node<'_, '_>) -> Result<Style, LoadError> {
+    let refused = |field: &str, text: &str, known: &str, help: &str| {
+        Err(attempt.bad_input(field, format!("{known} is read, {} is not", quoted(text)), help))
+    };
+    let endian = match root.attribute("byte_order") {
+        None | Some("LittleEndian") => Endian::Little,
+        Some("BigEndian") => Endian::Big,
+        Some(other) => return refused("byte_order", other, "LittleEndian or BigEndian", "correct the file"),
+    };
+    let are_long = match root.attribute("header_type") {
+        None | Some("UInt32") => false,
+        Some("UInt64") => true,
+        Some(other) => {
+            return refused("header_type", other, "UInt32 or UInt64", "write it again with UInt64");
+        }
+    };
+    let compressor = match root.attribute("compressor") {
+        None | Some("") => None,
+        Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
+        Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
+        Some(other) => {
+            let known = "vtkZLibDataCompressor or vtkLZ4DataCompressor";
+            return refused("compressor", other, known, "write it again with one of those, or uncompressed");
+        }
+    };
+    let appended = root.children().find(|node| node.has_tag_name("AppendedData"));
+    let appends_text = match appended.and_then(|node| node.attribute("encoding")) {
+        None | Some("raw") => false,
+        Some("base64") => true,
+        Some(other) => return refused("AppendedData", other, "raw or base64", "write it again as raw"),
+    };
+    Ok(Style { words: Words { are_long, endian }, compressor, appends_text })
+}
+
+/// The arrays of numbers that have a value for each point or cell.
+fn arrays(attempt: Attempt<'_>, piece: Node<'_, '_>, grid: &Grid) -> Result<Vec<Array<Place>>, LoadError> {
+    let mut found = Vec::new();
+    for (group, of_cells) in [("PointData", false), ("CellData", true)] {
+        let groups = piece.children().filter(|node| node.has_tag_name(group));
+        let nodes = groups.flat_map(|node| node.children()).filter(|node| node.has_tag_name("DataArray"));
+        for node in nodes.take(MOST_ARRAYS) {
+            let name = plain(node.attribute("Name").unwrap_or_default().trim(), 80);
+            let Some(number) = node.attribute("type").and_then(number) else {
+                let kind = quoted(node.attribute("type").unwrap_or_default());
+                attempt.warn(format_args!("the array {} of type {kind} is not read", quoted(&name)));
+                continue;
+            };
+            let text = node.attribute("NumberOfComponents").unwrap_or("1");
+            let components = text.parse().ok().filter(|count| (1..=MOST_COMPONENTS).contains(count));
+            let components = components.ok_or_else(|| {
+                let why =
+                    format!("a number from 1 to {MOST_COMPONENTS} was expected, {} was found", quoted(text));
+                attempt.bad_input("NumberOfComponents", why, "correct the file")
+            })?;
+            let tuples = node.attribute("NumberOfTuples").and_then(|text| text.parse::<u64>().ok());
+            if tuples.is_some_and(|tuples| tuples != grid.count(of_cells)) {
+                attempt.warn(format_args!("the array {} is not one of the grid's", quoted(&name)));
+                continue;
+            }
+            let place = place(attempt, node)?;
+            // As VTK shows them when nothing else is said.
+            let is_color = number == Number::U8 && (3..=4).contains(&components);
+            found.push(Array { name, number, components, of_cells, is_color, place });
+        }
+    }
+    if found.iter().any(|array| !MARKS.contains(&array.name.as_str())) {
+        found.retain(|array| !MARKS.contains(&array.name.as_str()));
+    }
+    Ok(found)
+}
+
+/// The number type that a word stands for.
+fn number(word: &str) -> Option<Number> {
+    Some(match word {
+        "Int8" => Number::I8,
+        "UInt8" => Number::U8,
+        "Int16" => Number::I16,
+        "UInt16" => Number::U16,
+        "Int32" => Number::I32,
+        "UInt32" => Number::U32,
+        "Int64" => Number::I64,
+        "UInt64" => Number::U64,
+        "Float32" => Number::F32,
+        "Float64" => Number::F64,
+        _ => return None,
+    })
+}
+
+/// Where the values of an element are.
+fn place(attempt: Attempt<'_>, node: Node<'_, '_>) -> Result<Place, LoadError> {
+    // Skeleton has left two numbers in place of text; there is none where the element is empty.
+    let inline = || {
+        let texts = node.children().filter_map(|child| child.text().filter(|_| child.is_text()));
+        let mut places = texts.filter_map(|text| {
+            let (start, length) = text.split_once(' ')?;
+            Some((start.parse::<u64>().ok()?, length.parse::<u64>().ok()?))
+        });
+        places.next().unwrap_or((0, 0))
+    };
+    match node.attribute("format").unwrap_or("ascii") {
+        "ascii" => Ok(inline()).map(|(start, length)| Place::Ascii(start, length)),
+        "binary" => Ok(inline()).map(|(start, length)| Place::Base64(start, length)),
+        "appended" => {
+            let text = node.attribute("offset").unwrap_or_default();
+            text.parse().map(Place::Appended).map_err(|_no_number| {
+                let why = format!("a number of bytes was expected, {} was found", quoted(text));
+                attempt.bad_input("offset", why, "write the file again")
+            })
+        }
+        other => Err(attempt.bad_input(
+            "format",
+            format!("ascii, binary or appended was expected, {} was found", quoted(other)),
+            "write the file again",
+        )),
+    }
+}
+
+/// Reads the values of the array that was chosen.
+fn read(
+    attempt: Attempt<'_>,
+    source: &mut Source<'_>,
+    chosen: &Chosen<Place>,
+    style: Style,
+    appended: Option<u64>,
+) -> Result<Samples, LoadError> {
+    let control = source.control;
+    let name = chosen.array.name.as_str();
+    match chosen.array.place {
+        Place::Ascii(start, length) => {
+            // A digit each and a space between.
+            check_room(attempt, name, chosen.numbers(), length.div_ceil(2), "numbers")?;
+            let text = content_from(attempt, source, start)?.take(length);
+            let mut numbers = TextNumbers::new(text, chosen.array.number, chosen.numbers());
+            // Text has no byte order: the numbers were made little-endian.
+            chosen.read(attempt, &mut numbers, Endian::Little, control)
+        }
+        Place::Base64(start, length) => {
+            let text = content_from(attempt, source, start)?.take(length);
+            let room = most_bytes(length);
+            read_binary(attempt, Base64::new(text), chosen, style, Some(room), control)
+        }
+        Place::Appended(offset) => {
+            let start = appended.and_then(|appended| appended.checked_add(offset)).ok_or_else(|| {
+                attempt.bad_input("AppendedData", "the appended data are missing", "copy the file again")
+            })?;
+            let room = (!source.start.is_gzip()).then(|| source.input.len.saturating_sub(start));
+            let content = content_from(attempt, source, start)?;
+            if style.appends_text {
+                read_binary(attempt, Base64::new(content), chosen, style, room.map(most_bytes), control)
+            } else {
+                read_binary(attempt, content, chosen, style, room, control)
+            }
+        }
+    }
+}
+
+/// Reads values in binary, where the file has room for so many bytes of them.
+fn read_binary(
+    attempt: Attempt<'_>,
+    mut reader: impl Read,
+    chosen: &Chosen<Place>,
+    style: Style,
+    room: Option<u64>,
+    control: &LoadControl,
+) -> Result<Samples, LoadError> {
+    let Style { words, compressor, .. } = style;
+    let expected = chosen.stored_bytes();
+    let Some(compressor) = compressor else {
+        check_length(&mut reader, words, expected).map_err(|error| broken(attempt, error))?;
+        check_room(attempt, &chosen.array.name, expected, room.unwrap_or(expected), "bytes")?;
+        return chosen.read(attempt, &mut reader, words.endian, control);
+    };
+    let blocks = Blocks::open(reader, words, compressor, expected, room);
+    let mut blocks = blocks.map_err(|error| broken(attempt, error))?;
+    chosen.read(attempt, &mut blocks, words.endian, control)
+}

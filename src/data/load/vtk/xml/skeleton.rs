@@ -1,0 +1,223 @@
+//! The markup of a file without what lies between the marks: that may be large, or raw bytes.
+//!
+//! Each stretch of text is left out, and the two numbers that say where it was take its place. With raw bytes appended a
+//! file is no XML any more: nothing behind `<AppendedData>` and its `_` is looked at.
+
+use std::io::{self, BufRead};
+
+use super::super::super::{LoadControl, LoadError};
+use super::super::image::broken;
+use crate::data::attempt::Attempt;
+
+/// Longer markup is refused: an array needs some 200 bytes of it.
+const LONGEST_MARKUP_BYTES: usize = 1 << 20;
+
+/// Deeper markup is refused: arrays lie five deep.
+const DEEPEST: usize = 64;
+
+/// The markup of a file.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Skeleton {
+    /// Well-formed where the file is.
+    pub(super) markup: String,
+    /// Where the appended data begin, behind the `_`.
+    pub(super) appended: Option<u64>,
+}
+
+/// What is being read.
+enum State {
+    /// Text, and where it began to be more than white space.
+    Text(Option<u64>),
+    /// A tag, and the quote that ends the value of an attribute.
+    Tag(Option<u8>),
+    /// A comment with its last two bytes.
+    Comment([u8; 2]),
+    /// What comes between the tag of the appended data and their `_`.
+    Appended,
+}
+
+impl Skeleton {
+    pub(super) fn read(
+        attempt: Attempt<'_>,
+        reader: &mut dyn BufRead,
+        control: &LoadControl,
+    ) -> Result<Self, LoadError> {
+        let mut scan =
+            Scan { markup: Vec::new(), tag: Vec::new(), depth: 0, state: State::Text(None), appended: None };
+        let mut position = 0;
+        while scan.appended.is_none() {
+            control.check()?;
+            let block = match reader.fill_buf() {
+                Ok([]) => break,
+                Ok(block) => block,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(broken(attempt, error)),
+            };
+            scan.add(attempt, block, position)?;
+            let length = block.len();
+            position += length as u64;
+            reader.consume(length);
+        }
+        if scan.appended.is_some() {
+            scan.markup.extend(b"</AppendedData></VTKFile>");
+        }
+        let markup = String::from_utf8_lossy(&scan.markup).into_owned();
+        Ok(Self { markup, appended: scan.appended })
+    }
+}
+
+struct Scan {
+    markup: Vec<u8>,
+    tag: Vec<u8>,
+    depth: usize,
+    state: State,
+    appended: Option<u64>,
+}
+
+impl Scan {
+    /// Adds a block that begins at a position of the content.
+    fn add(&mut self, attempt: Attempt<'_>, block: &[u8], position: u64) -> Result<(), LoadError> {
+        let mut at = 0;
+        while let Some(&byte) = block.get(at) {
+            let here = position + at as u64;
+            at += 1;
+            match &mut self.state {
+                State::Text(start) => {
+                    if byte == b'<' {
+                        if let Some(start) = *start {
+                            self.markup.extend(format!("{start} {}", here - start).bytes());
+                        }
+                        self.tag.clear();
+                        self.tag.push(byte);
+                        self.state = State::Tag(None);
+                    } else if start.is_some() || !byte.is_ascii_whitespace() {
+                        start.get_or_insert(here);
+                        // The rest of a long stretch at once.
+                        let rest = &block[at..];
+                        at += rest.iter().position(|&byte| byte == b'<').unwrap_or(rest.len());
+                    }
+                }
+                State::Tag(quote) => {
+                    self.tag.push(byte);
+                    match (*quote, byte) {
+                        (Some(open), byte) if open == byte => *quote = None,
+                        (None, b'"' | b'\'') => *quote = Some(byte),
+                        (None, b'>') => self.end_tag(attempt)?,
+                        (None, b'-') if self.tag == b"<!--" => self.state = State::Comment([0; 2]),
+                        _ => {}
+                    }
+                    if self.markup.len() + self.tag.len() > LONGEST_MARKUP_BYTES {
+                        return Err(attempt.limit(
+                            "markup",
+                            "its marks take more than 1 MiB",
+                            "write it again with fewer arrays",
+                        ));
+                    }
+                }
+                State::Comment(last) => {
+                    if *last == *b"--" && byte == b'>' {
+                        self.state = State::Text(None);
+                    } else {
+                        *last = [last[1], byte];
+                    }
+                }
+                State::Appended => {
+                    if byte == b'_' {
+                        self.appended = Some(here + 1);
+                        return Ok(());
+                    }
+                    if !byte.is_ascii_whitespace() {
+                        return Err(attempt.bad_input(
+                            "AppendedData",
+                            "the underscore before the appended data is missing",
+                            "write the file again",
+                        ));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn end_tag(&mut self, attempt: Attempt<'_>) -> Result<(), LoadError> {
+        let is_opening = !self.tag.starts_with(b"</")
+            && !self.tag.starts_with(b"<?")
+            && !self.tag.starts_with(b"<!")
+            && !self.tag.ends_with(b"/>");
+        if is_opening {
+            self.depth += 1;
+        } else if self.tag.starts_with(b"</") {
+            self.depth = self.depth.saturating_sub(1);
+        }
+        if self.depth > DEEPEST {
+            return Err(attempt.bad_input(
+                "markup",
+                format!("its elements lie in each other more than {DEEPEST} deep"),
+                "check that it is a VTK file",
+            ));
+        }
+        self.add_tag();
+        let is_appended = is_opening && self.tag.starts_with(b"<AppendedData");
+        self.state = if is_appended { State::Appended } else { State::Text(None) };
+        Ok(())
+    }
+
+    /// Adds the tag, and escapes what VTK forgets to escape in names: an `&` that begins no reference.
+    fn add_tag(&mut self) {
+        // Longer names of characters do not occur.
+        const LONGEST_REFERENCE: usize = 10;
+        for (at, &byte) in self.tag.iter().enumerate() {
+            self.markup.push(byte);
+            if byte != b'&' {
+                continue;
+            }
+            let mut rest = self.tag[at + 1..].iter().take(LONGEST_REFERENCE);
+            let length = rest.position(|&c| !c.is_ascii_alphanumeric() && c != b'#');
+            let is_reference = length.is_some_and(|length| length > 0 && self.tag[at + 1 + length] == b';');
+            if !is_reference {
+                self.markup.extend(b"amp;");
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn read(text: &[u8]) -> Result<Skeleton, LoadError> {
+        let attempt = Attempt { what: "test", path: Path::new("t") };
+        // A small buffer, so that everything is cut somewhere.
+        let mut reader = io::BufReader::with_capacity(5, text);
+        Skeleton::read(attempt, &mut reader, &LoadControl::new())
+    }
+
+    #[test]
+    fn text_gives_way_to_its_place() {
+        let text = br#"<?xml version="1.0"?> <a b=">" c='"<'> 1 2 3 <!-- <x> -- --> <d/></a>"#;
+        let found = read(text).unwrap();
+        assert_eq!(found.markup, r#"<?xml version="1.0"?><a b=">" c='"<'>39 6<d/></a>"#);
+        assert_eq!((&text[39..45], found.appended), (&b"1 2 3 "[..], None));
+        assert_eq!(read(b"<a b='x & y&#32;&lt; &;'/>").unwrap().markup, "<a b='x &amp; y&#32;&lt; &amp;;'/>");
+    }
+
+    #[test]
+    fn nothing_behind_the_underscore_is_looked_at() {
+        let text = b"<VTKFile><AppendedData encoding=\"raw\">\n  _<<\xff</VTKFile>";
+        let found = read(text).unwrap();
+        let markup = "<VTKFile><AppendedData encoding=\"raw\"></AppendedData></VTKFile>";
+        assert_eq!(found.markup, markup);
+        assert_eq!(found.appended.map(|at| &text[at as usize..][..3]), Some(&b"<<\xff"[..]));
+        assert!(read(b"<AppendedData> x_").is_err());
+        assert_eq!(read(b"<VTKFile><AppendedData/></VTKFile>").unwrap().appended, None);
+    }
+
+    #[test]
+    fn markup_is_bounded() {
+        assert!(read("<a>".repeat(100).as_bytes()).unwrap_err().to_string().contains("deep"));
+        let long = format!("<a b=\"{}\"/>", "x".repeat(2 << 20));
+        assert!(read(long.as_bytes()).unwrap_err().to_string().contains("1 MiB"));
+    }
+}
