@@ -24,7 +24,9 @@ fn loaded(text: &str) -> Result<Volume, LoadError> {
 }
 
 fn numbers(count: usize) -> String {
-    (0..count).map(|n| format!(" {n}.5E+00{}", if n % 6 == 5 { "\n" } else { "" })).collect()
+    let lines: Vec<String> =
+        (0..count).map(|n| format!(" {n}.5E+00{}", if n % 6 == 5 { "\n" } else { "" })).collect();
+    lines.concat()
 }
 
 #[test]

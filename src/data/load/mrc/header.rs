@@ -47,15 +47,17 @@ impl Header {
         };
         let first = stamped.unwrap_or(Endian::Little);
         let other = if first == Endian::Little { Endian::Big } else { Endian::Little };
-        match [first, other].map(as_order) {
-            [header, _] if header.is_plausible() => Ok(header),
-            [_, header] if header.is_plausible() => Ok(header),
-            [header, _] if stamped.is_some() => Ok(header),
-            _ => Err(attempt.bad_input(
+        let [stated, swapped] = [first, other].map(as_order);
+        if stated.is_plausible() || (stamped.is_some() && !swapped.is_plausible()) {
+            Ok(stated)
+        } else if swapped.is_plausible() {
+            Ok(swapped)
+        } else {
+            Err(attempt.bad_input(
                 "header",
                 "it is no header of an MRC file: in neither byte order are its dimensions and its mode possible",
                 "check the file's name and format",
-            )),
+            ))
         }
     }
 

@@ -21,7 +21,7 @@ use header::{HEADER_BYTES, Header};
 pub(super) const READER: Reader = Reader {
     name: "MRC/CCP4",
     endings: &[".mrc", ".mrc.gz", ".map", ".map.gz", ".ccp4", ".ccp4.gz", ".rec", ".rec.gz", ".st", ".st.gz"],
-    recognises: |start| is_mrc(start),
+    recognises: is_mrc,
     load,
 };
 

@@ -35,9 +35,12 @@ pub(super) const NPY: Reader = Reader {
 pub(super) const NPZ: Reader = Reader {
     name: "NumPy archive",
     endings: &[".npz"],
-    recognises: |start| zip::begins_with_entry(start.stored(), ".npy"),
+    recognises: |start| zip::begins_with_entry(start.stored(), ENDING),
     load: load_archive,
 };
+
+/// How the names of arrays end in an archive.
+const ENDING: &str = ".npy";
 
 const HELP: &str = "save the array again, or copy the file again";
 
@@ -95,7 +98,9 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let entries = zip::entries(attempt, &mut source.input)?;
     let mut arrays: Vec<(Entry, Header, Grid)> = Vec::new();
     let mut refused = Vec::new();
-    for entry in entries.into_iter().filter(|entry| entry.name.ends_with(".npy")).take(MOST_ARRAYS) {
+    for entry in
+        entries.into_iter().filter(|entry| entry.name.strip_suffix(ENDING).is_some()).take(MOST_ARRAYS)
+    {
         source.control.check()?;
         let header = zip::open(attempt, &mut source.input, &entry)
             .and_then(|mut content| Header::read(attempt, &mut content));
@@ -118,7 +123,7 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
         });
     }
     let offers = arrays.iter().map(|(entry, _, grid)| {
-        let key = plain(entry.name.trim_end_matches(".npy"), 80);
+        let key = plain(entry.name.trim_end_matches(ENDING), 80);
         Offer { name: key.clone(), key, dims: Some(grid.dims) }
     });
     let chosen = attempt.chosen(&source.options.choice, Dimension::Array, offers.collect())?;
@@ -126,7 +131,7 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let wanted = wanted(&source, attempt, &header, &grid)?;
     let samples = inflated(&mut source, attempt, &entry, &wanted)?;
     let Wanted { extent, placement, .. } = wanted;
-    let name = plain(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(".npy")), 120);
+    let name = plain(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(ENDING)), 120);
     Parts { name, dims: extent.dims, placement, samples, hints: Hints::default() }.volume(attempt)
 }
 

@@ -159,7 +159,7 @@ fn headers_that_lie_are_refused() {
 
 /// An archive: names and contents, deflated or not; with sizes behind the entries, as streams are written, or not; with
 /// sizes of 64 bits or not.
-fn archive(files: &[(&str, &[u8])], is_deflated: bool, is_stream: bool, is_large: bool) -> Vec<u8> {
+fn archive(files: &[(&str, &[u8])], [is_deflated, is_stream, is_large]: [bool; 3]) -> Vec<u8> {
     let (mut bytes, mut lines) = (Vec::new(), Vec::new());
     let number = |value: usize| (value as u32).to_le_bytes();
     for (name, content) in files {
@@ -219,7 +219,7 @@ fn archives_are_read_however_they_are_written() {
     let table = array("<f8", "False", "(3,)", &[0; 24]);
     for at in 0..8 {
         let (is_deflated, is_stream, is_large) = (at & 1 > 0, at & 2 > 0, at & 4 > 0);
-        let write = |files: &[(&str, &[u8])]| archive(files, is_deflated, is_stream, is_large);
+        let write = |files: &[(&str, &[u8])]| archive(files, [is_deflated, is_stream, is_large]);
         let one = write(&[("table.npy", &table), ("readme.txt", b"hello"), ("ct.npy", &volume)]);
         let found = loaded_as("scan.npz", &one, Choice::default()).unwrap();
         assert_eq!((found.dims(), found.samples()), ([8, 5, 6], &Samples::U8(data.clone())), "{at}");
@@ -237,8 +237,8 @@ fn archives_are_read_however_they_are_written() {
 fn archives_that_lie_are_refused() {
     let volume = array("|u1", "False", "(6, 5, 8)", &[7; 240]);
     let table = array("<f8", "False", "(3,)", &[0; 24]);
-    let stored = archive(&[("ct.npy", &volume)], false, false, false);
-    let deflated = archive(&[("ct.npy", &volume)], true, false, false);
+    let stored = archive(&[("ct.npy", &volume)], [false; 3]);
+    let deflated = archive(&[("ct.npy", &volume)], [true, false, false]);
     let changed = |bytes: &[u8], mark: &[u8], at: usize, to: &[u8]| {
         let mut bytes = bytes.to_vec();
         let start = bytes.windows(4).rposition(|window| window == mark).unwrap() + at;
@@ -260,10 +260,10 @@ fn archives_that_lie_are_refused() {
         (changed(&stored, end, 12, &[0xff, 0xff]), "longer than"),
         (changed(&stored, line, 8, &[1]), "none of its 0 arrays"),
         (changed(&stored, line, 10, &[12]), "none of its 0 arrays"),
-        (archive(&[("ct.npy", &short)], true, false, false), "truncated"),
-        (archive(&[("a.npy", &table)], true, false, false), "1 axes"),
-        (archive(&[("a.npy", &table), ("b.npy", &table)], true, false, false), "none of its 2 arrays"),
-        (archive(&[], true, false, false), "none of its 0 arrays"),
+        (archive(&[("ct.npy", &short)], [true, false, false]), "truncated"),
+        (archive(&[("a.npy", &table)], [true, false, false]), "1 axes"),
+        (archive(&[("a.npy", &table), ("b.npy", &table)], [true, false, false]), "none of its 2 arrays"),
+        (archive(&[], [true, false, false]), "none of its 0 arrays"),
         (b"PK".to_vec(), "no directory"),
     ] {
         let error = loaded_as("a.npz", &bytes, Choice::default()).unwrap_err();

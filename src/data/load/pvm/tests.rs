@@ -63,7 +63,9 @@ fn packed(content: &[u8], interleaved: usize, line: usize, block: usize) -> Vec<
         bits.put(run.len() as u32, 7);
         bits.put(width.saturating_sub(1), 3);
         let half = (1i32 << width) / 2;
-        run.iter().for_each(|&d| bits.put((i32::from(d) + half) as u32, width));
+        for &d in run {
+            bits.put((i32::from(d) + half) as u32, width);
+        }
     }
     bits.put(0, 7);
     [mark, &bits.bytes()].concat()

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::super::input::is_gzip;
 use super::super::{Endian, nrrd};
-use super::RawFormat;
+use super::{RawFormat, sidecar};
 use crate::data::VoxelType;
 
 /// Everything that must be known of a file of bare voxels.
@@ -73,7 +73,7 @@ impl RawLayout {
         )
     }
 
-    /// What the name and the length of a file suggest; `None` for NRRD, which needs no guess.
+    /// What the name and the length of a file suggest; `None` for NRRD and for descriptions, which need no guess.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -81,8 +81,8 @@ impl RawLayout {
         let file = std::fs::File::open(path)?;
         let file_bytes = file.metadata()?.len();
         let mut magic = Vec::new();
-        file.take(8).read_to_end(&mut magic)?;
-        if nrrd::is_nrrd(&magic) {
+        file.take(1024).read_to_end(&mut magic)?;
+        if nrrd::is_nrrd(&magic) || sidecar::is_description(&magic) {
             return Ok(None);
         }
         let is_gzip = is_gzip(&magic);
@@ -193,6 +193,9 @@ mod tests {
         assert_eq!(by_header.samples(), by_options.samples());
         assert_eq!(by_header.spacing_mm(), by_options.spacing_mm());
         assert_eq!(RawLayout::guess(&header).unwrap(), None, "it needs no guess");
+        let description = folder.path().join("foot.dat");
+        std::fs::write(&description, "ObjectFileName: foot.raw\n").unwrap();
+        assert_eq!(RawLayout::guess(&description).unwrap(), None, "it holds no voxels");
         assert!(RawLayout::guess(&folder.path().join("none")).is_err());
         let endless = RawLayout { dims: [usize::MAX; 3], ..layout };
         assert_eq!(endless.file_bytes(), None);

@@ -45,13 +45,12 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the RAW volume", path };
     let file_name = path.file_name().unwrap_or_default().to_string_lossy();
     let named = name::parse(&file_name, unpacked_length(&source));
-    let (form, name) = match sidecar_form(attempt, &source, named.is_some())? {
-        Some(form) => (form, stem(path)),
-        None => {
-            let name = named.as_ref().map(|named| named.name.clone()).filter(|name| !name.is_empty());
-            let form = form_of(attempt, source.options, named, &file_name)?;
-            (form, name.map_or_else(|| stem(path), |name| plain(&name, 120)))
-        }
+    let (form, name) = if let Some(form) = sidecar_form(attempt, &source, named.is_some())? {
+        (form, stem(path))
+    } else {
+        let name = named.as_ref().map(|named| named.name.clone()).filter(|name| !name.is_empty());
+        let form = form_of(attempt, source.options, named, &file_name)?;
+        (form, name.map_or_else(|| stem(path), |name| plain(&name, 120)))
     };
     overridden(attempt, form, &source.options.raw)?.read(source, attempt, name, HELP)
 }

@@ -39,6 +39,11 @@ pub(in crate::data::load) const INI: Reader = Reader {
     load: |source| load(source, ini::parse),
 };
 
+/// Whether a file that begins like this is a description of any kind.
+pub(super) fn is_description(start: &[u8]) -> bool {
+    dat::is_dat(start) || ivf::is_ivf(start) || ini::is_ini(start)
+}
+
 /// The longest description that is read.
 const MOST_BYTES: u64 = 64 << 10;
 
