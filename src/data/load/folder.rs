@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{LoadControl, LoadError, LoadOptions, slices};
+use super::pictures::slices;
+use super::{LoadControl, LoadError, LoadOptions};
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
 

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::pictures::{slices, tiff};
 use super::reader::{Reader, Start};
-use super::{LoadOptions, nrrd, raw, slices, tiff};
+use super::{LoadOptions, nrrd, raw};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[nrrd::READER, tiff::READER, slices::READER, raw::READER];

@@ -11,16 +11,14 @@ mod formats;
 mod input;
 mod nrrd;
 mod number;
-mod pile;
+mod pictures;
 mod placement;
 mod raw;
 mod raw_layout;
 mod reader;
 mod samples;
-mod slices;
 #[cfg(test)]
 mod tests;
-mod tiff;
 
 use std::path::Path;
 
