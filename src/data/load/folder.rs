@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{LoadControl, LoadError, LoadOptions, dicom, slices};
+use super::pictures::slices;
+use super::{LoadControl, LoadError, LoadOptions, dicom};
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
 

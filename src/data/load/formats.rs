@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::pictures::{slices, tiff};
 use super::reader::{Reader, Start};
-use super::{LoadOptions, cube, dicom, metaimage, mrc, nifti, nrrd, numpy, pvm, raw, slices, tiff, vtk};
+use super::{LoadOptions, cube, dicom, metaimage, mrc, nifti, nrrd, numpy, pvm, raw, vtk};
 
 /// All formats, the surest marks first.
 pub(super) const READERS: &[Reader] = &[

@@ -19,17 +19,15 @@ mod nifti;
 mod nrrd;
 mod number;
 mod numpy;
-mod pile;
+mod pictures;
 mod placement;
 mod pvm;
 mod raw;
 mod reader;
 mod samples;
-mod slices;
 #[cfg(test)]
 mod tests;
 mod text_numbers;
-mod tiff;
 mod vtk;
 
 use std::path::Path;

@@ -6,8 +6,8 @@ use flate2::read::ZlibDecoder;
 use ruzstd::decoding::StreamingDecoder;
 use weezl::{BitOrder, LzwStatus, decode};
 
-use super::super::LoadControl;
-use super::super::samples::{BLOCK_BYTES, Fault, fill};
+use crate::data::load::LoadControl;
+use crate::data::load::samples::{BLOCK_BYTES, Fault, fill};
 
 /// The largest window of Zstandard that every decoder is to allow (RFC 8878, 3.1.1.1.2).
 const ZSTD_WINDOW_BYTES: u64 = 8 << 20;

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use roxmltree::Node;
 
-use super::super::LoadError;
-use super::directory::MOST_PAGES;
-use super::fault::HELP;
-use super::ome::{Sizes, beside_of, children, number};
-use super::stack::Slice;
+use super::super::super::fault::HELP;
+use super::super::super::file::directory::MOST_PAGES;
+use super::super::super::stack::Slice;
+use super::{Sizes, beside_of, children, number};
 use crate::data::attempt::Attempt;
+use crate::data::load::LoadError;
 
 /// The page of every slice, channel and time that there is one for.
 pub(super) struct Pages<'a> {

@@ -5,11 +5,11 @@
 use std::io::{self, Read};
 use std::ops::Range;
 
-use super::number::Stored;
-use super::samples::{Fault, Layout};
-use super::{LoadControl, LoadError};
 use crate::data::Samples;
 use crate::data::attempt::{Attempt, Extent};
+use crate::data::load::number::Stored;
+use crate::data::load::samples::{Fault, Layout};
+use crate::data::load::{LoadControl, LoadError};
 
 /// Bytes of slices that are decoded at a time: enough for all cores, little beside a volume.
 const AT_ONCE_BYTES: u64 = 32 << 20;
@@ -88,9 +88,9 @@ impl<F: FnMut(Range<usize>) -> Result<Vec<Vec<u8>>, LoadError>> Read for Pile<F>
 mod tests {
     use std::path::Path;
 
-    use super::super::Endian;
-    use super::super::number::Number;
     use super::*;
+    use crate::data::load::Endian;
+    use crate::data::load::number::Number;
 
     #[test]
     fn slices_follow_each_other_and_one_that_fails_ends_it() {

@@ -5,12 +5,12 @@ use std::io::{self, BufReader, Read as _};
 use image::error::{ImageError, LimitErrorKind};
 use image::{ColorType, ImageDecoder as _, ImageFormat, ImageReader, Limits};
 
-use super::super::input::{Input, Witness};
-use super::super::number::{Number, Part, Stored};
-use super::super::samples::reserve;
 use super::super::tiff;
-use super::super::{Endian, LoadControl, LoadError, LoadOptions};
 use crate::data::attempt::{Attempt, human_bytes};
+use crate::data::load::input::{Input, Witness};
+use crate::data::load::number::{Number, Part, Stored};
+use crate::data::load::samples::reserve;
+use crate::data::load::{Endian, LoadControl, LoadError, LoadOptions};
 use crate::data::plain;
 
 /// Bytes by which pictures are told.

@@ -1,13 +1,13 @@
 //! Pages of which nothing more is said: all of the first one's kind are slices, in their order.
 
-use super::super::input::stem;
-use super::super::placement::Placement;
-use super::super::{Choice, LoadError};
 use super::file::Tiff;
-use super::page::Meaning;
+use super::file::page::Meaning;
 use super::stack::{Slice, Stack, Steps};
 use crate::data::Hints;
 use crate::data::attempt::Attempt;
+use crate::data::load::input::stem;
+use crate::data::load::placement::Placement;
+use crate::data::load::{Choice, LoadError};
 
 /// The pages that are slices: those like the first that is no thumbnail. What is left out is said in remarks.
 pub(super) fn usable(tiff: &Tiff, remarks: &mut Vec<String>) -> Vec<usize> {

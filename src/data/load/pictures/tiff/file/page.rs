@@ -2,42 +2,42 @@
 
 use std::io;
 
-use super::super::number::Number;
 use super::bytes::Bytes;
 use super::directory::{Directory, Entry};
+use crate::data::load::number::Number;
 
 /// Tags of entries (TIFF 6.0, sections 8 to 22).
-pub(super) mod tag {
-    pub(in super::super) const NEW_SUBFILE_TYPE: u16 = 254;
-    pub(in super::super) const SUBFILE_TYPE: u16 = 255;
-    pub(in super::super) const WIDTH: u16 = 256;
-    pub(in super::super) const HEIGHT: u16 = 257;
-    pub(in super::super) const BITS: u16 = 258;
-    pub(in super::super) const COMPRESSION: u16 = 259;
-    pub(in super::super) const PHOTOMETRIC: u16 = 262;
-    pub(in super::super) const FILL_ORDER: u16 = 266;
-    pub(in super::super) const DESCRIPTION: u16 = 270;
-    pub(in super::super) const STRIP_OFFSETS: u16 = 273;
-    pub(in super::super) const SAMPLES: u16 = 277;
-    pub(in super::super) const ROWS_PER_STRIP: u16 = 278;
-    pub(in super::super) const STRIP_COUNTS: u16 = 279;
-    pub(in super::super) const X_RESOLUTION: u16 = 282;
-    pub(in super::super) const Y_RESOLUTION: u16 = 283;
-    pub(in super::super) const PLANAR: u16 = 284;
-    pub(in super::super) const PREDICTOR: u16 = 317;
-    pub(in super::super) const TILE_WIDTH: u16 = 322;
-    pub(in super::super) const TILE_HEIGHT: u16 = 323;
-    pub(in super::super) const TILE_OFFSETS: u16 = 324;
-    pub(in super::super) const TILE_COUNTS: u16 = 325;
-    pub(in super::super) const EXTRA_SAMPLES: u16 = 338;
-    pub(in super::super) const SAMPLE_FORMAT: u16 = 339;
+pub(in super::super) mod tag {
+    pub(in super::super::super) const NEW_SUBFILE_TYPE: u16 = 254;
+    pub(in super::super::super) const SUBFILE_TYPE: u16 = 255;
+    pub(in super::super::super) const WIDTH: u16 = 256;
+    pub(in super::super::super) const HEIGHT: u16 = 257;
+    pub(in super::super::super) const BITS: u16 = 258;
+    pub(in super::super::super) const COMPRESSION: u16 = 259;
+    pub(in super::super::super) const PHOTOMETRIC: u16 = 262;
+    pub(in super::super::super) const FILL_ORDER: u16 = 266;
+    pub(in super::super::super) const DESCRIPTION: u16 = 270;
+    pub(in super::super::super) const STRIP_OFFSETS: u16 = 273;
+    pub(in super::super::super) const SAMPLES: u16 = 277;
+    pub(in super::super::super) const ROWS_PER_STRIP: u16 = 278;
+    pub(in super::super::super) const STRIP_COUNTS: u16 = 279;
+    pub(in super::super::super) const X_RESOLUTION: u16 = 282;
+    pub(in super::super::super) const Y_RESOLUTION: u16 = 283;
+    pub(in super::super::super) const PLANAR: u16 = 284;
+    pub(in super::super::super) const PREDICTOR: u16 = 317;
+    pub(in super::super::super) const TILE_WIDTH: u16 = 322;
+    pub(in super::super::super) const TILE_HEIGHT: u16 = 323;
+    pub(in super::super::super) const TILE_OFFSETS: u16 = 324;
+    pub(in super::super::super) const TILE_COUNTS: u16 = 325;
+    pub(in super::super::super) const EXTRA_SAMPLES: u16 = 338;
+    pub(in super::super::super) const SAMPLE_FORMAT: u16 = 339;
     /// Of Zeiss' laser scanning microscopes.
-    pub(in super::super) const LSM_INFO: u16 = 34412;
+    pub(in super::super::super) const LSM_INFO: u16 = 34412;
 }
 
 /// What the samples of a pixel are together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Meaning {
+pub(in super::super) enum Meaning {
     /// One, or grey and its opacity.
     Grey,
     /// Red, green, blue, and maybe opacity.
@@ -50,7 +50,7 @@ pub(super) enum Meaning {
 
 /// Where the parts of a page are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Offsets {
+pub(in super::super) enum Offsets {
     /// In an entry.
     Listed(Entry),
     /// There is one part, and it is here.
@@ -59,29 +59,29 @@ pub(super) enum Offsets {
 
 /// A page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Page {
-    pub(super) width: u64,
-    pub(super) height: u64,
-    pub(super) bits: u64,
-    pub(super) format: u64,
+pub(in super::super) struct Page {
+    pub(in super::super) width: u64,
+    pub(in super::super) height: u64,
+    pub(in super::super) bits: u64,
+    pub(in super::super) format: u64,
     /// Numbers of each pixel.
-    pub(super) samples: usize,
-    pub(super) meaning: Meaning,
+    pub(in super::super) samples: usize,
+    pub(in super::super) meaning: Meaning,
     /// 0 stands for white.
-    pub(super) is_inverted: bool,
+    pub(in super::super) is_inverted: bool,
     /// Each sample has its own parts.
-    pub(super) is_planar: bool,
-    pub(super) compression: u64,
-    pub(super) predictor: u64,
+    pub(in super::super) is_planar: bool,
+    pub(in super::super) compression: u64,
+    pub(in super::super) predictor: u64,
     /// Bits of a byte from the lowest.
-    pub(super) is_reversed: bool,
-    pub(super) is_tiled: bool,
+    pub(in super::super) is_reversed: bool,
+    pub(in super::super) is_tiled: bool,
     /// Pixels of a strip or tile.
-    pub(super) part: [u64; 2],
-    pub(super) offsets: Offsets,
-    pub(super) counts: Option<Entry>,
+    pub(in super::super) part: [u64; 2],
+    pub(in super::super) offsets: Offsets,
+    pub(in super::super) counts: Option<Entry>,
     /// Not what was recorded itself: smaller, or a mask.
-    pub(super) is_aside: bool,
+    pub(in super::super) is_aside: bool,
 }
 
 impl Page {
@@ -89,7 +89,7 @@ impl Page {
     ///
     /// # Errors
     /// `UnexpectedEof` where it points beyond the file, `InvalidData` for what cannot be.
-    pub(super) fn of(file: &mut Bytes, directory: &Directory) -> io::Result<Self> {
+    pub(in super::super) fn of(file: &mut Bytes, directory: &Directory) -> io::Result<Self> {
         let mut say = |tag, default: Option<u64>| match (directory.get(tag), default) {
             (Some(entry), _) => entry.whole(file),
             (None, Some(default)) => Ok(default),
@@ -151,7 +151,7 @@ impl Page {
     }
 
     /// The type of its numbers, once they are unpacked; `None` where there is none.
-    pub(super) fn number(&self) -> Option<Number> {
+    pub(in super::super) fn number(&self) -> Option<Number> {
         // 1 is unsigned, 2 signed, 3 floating point; 4 is "unknown", which is mostly unsigned.
         match (self.format, self.bits) {
             (1 | 4, 1..=8) => Some(Number::U8),
@@ -170,7 +170,7 @@ impl Page {
     }
 
     /// Whether another page can be a slice beside this one.
-    pub(super) fn is_like(&self, other: &Self) -> bool {
+    pub(in super::super) fn is_like(&self, other: &Self) -> bool {
         let kind = |page: &Self| {
             let (size, number) = ([page.width, page.height], (page.bits, page.format));
             (size, number, page.samples, page.is_planar, page.meaning, page.is_inverted)
@@ -179,13 +179,13 @@ impl Page {
     }
 
     /// Bytes of its numbers once they are unpacked; `None` where that is more than can be counted.
-    pub(super) fn bytes(&self) -> Option<u64> {
+    pub(in super::super) fn bytes(&self) -> Option<u64> {
         let of_pixel = (self.number()?.bytes() as u64).checked_mul(self.samples as u64)?;
         self.width.checked_mul(self.height)?.checked_mul(of_pixel)
     }
 
     /// Whether all its numbers lie in the file as they are, row by row.
-    pub(super) fn is_bare(&self) -> bool {
+    pub(in super::super) fn is_bare(&self) -> bool {
         self.compression == 1
             && self.predictor == 1
             && !self.is_tiled

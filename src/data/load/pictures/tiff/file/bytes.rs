@@ -3,27 +3,27 @@
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 
-use super::super::Endian;
+use crate::data::load::Endian;
 
 /// Bytes that are read around a small piece: what belongs together lies together.
 const WINDOW_BYTES: u64 = 1 << 13;
 
 /// The content of a file, any part of it at a time.
-pub(super) struct Bytes {
+pub(in super::super) struct Bytes {
     file: File,
     len: u64,
-    pub(super) endian: Endian,
+    pub(in super::super) endian: Endian,
     window: Vec<u8>,
     window_at: u64,
 }
 
 impl Bytes {
     /// A file of so many bytes; little-endian until it is known better.
-    pub(super) fn of(file: File, len: u64) -> Self {
+    pub(in super::super) fn of(file: File, len: u64) -> Self {
         Self { file, len, endian: Endian::Little, window: Vec::new(), window_at: 0 }
     }
 
-    pub(super) fn len(&self) -> u64 {
+    pub(in super::super) fn len(&self) -> u64 {
         self.len
     }
 
@@ -31,7 +31,7 @@ impl Bytes {
     ///
     /// # Errors
     /// `UnexpectedEof` where the file has no such bytes; nothing is read then.
-    pub(super) fn read(&mut self, at: u64, out: &mut [u8]) -> io::Result<()> {
+    pub(in super::super) fn read(&mut self, at: u64, out: &mut [u8]) -> io::Result<()> {
         let wanted = out.len() as u64;
         if at.checked_add(wanted).is_none_or(|end| end > self.len) {
             return Err(io::ErrorKind::UnexpectedEof.into());
@@ -53,7 +53,7 @@ impl Bytes {
     }
 
     /// A whole number of 1, 2, 4 or 8 bytes.
-    pub(super) fn number(&mut self, at: u64, bytes: usize) -> io::Result<u64> {
+    pub(in super::super) fn number(&mut self, at: u64, bytes: usize) -> io::Result<u64> {
         let mut found = [0; 8];
         let found = &mut found[..bytes.min(8)];
         self.read(at, found)?;
@@ -62,7 +62,7 @@ impl Bytes {
 }
 
 /// A whole number of at most eight bytes.
-pub(super) fn whole(bytes: &[u8], endian: Endian) -> u64 {
+pub(in super::super) fn whole(bytes: &[u8], endian: Endian) -> u64 {
     let join = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
     match endian {
         Endian::Big => bytes.iter().fold(0, join),

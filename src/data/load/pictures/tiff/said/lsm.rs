@@ -1,17 +1,17 @@
 //! What Zeiss' laser scanning microscopes say in an entry of their own: how many slices and times there are, and how large
 //! voxels are. Pages go through the slices of a time first; channels are the samples of a page.
 
-use super::super::Endian;
-use super::super::input::stem;
-use super::super::placement::Placement;
-use super::super::{Choice, LoadError};
-use super::bytes::whole;
-use super::fault::HELP;
-use super::file::Tiff;
-use super::page::{Meaning, tag};
-use super::plain::usable;
-use super::stack::{Slice, Stack, Steps};
+use super::super::fault::HELP;
+use super::super::file::Tiff;
+use super::super::file::bytes::whole;
+use super::super::file::page::{Meaning, tag};
+use super::super::plain::usable;
+use super::super::stack::{Slice, Stack, Steps};
 use crate::data::attempt::Attempt;
+use crate::data::load::Endian;
+use crate::data::load::input::stem;
+use crate::data::load::placement::Placement;
+use crate::data::load::{Choice, LoadError};
 use crate::data::{Hints, Modality};
 
 /// How the entry begins, of versions 1.3 and later.
@@ -21,7 +21,7 @@ const MAGIC: [u64; 2] = [0x0030_0494, 0x0040_0494];
 const INFO_BYTES: u64 = 64;
 
 /// What is said.
-pub(super) struct Info {
+pub(in super::super) struct Info {
     slices: usize,
     frames: usize,
     /// In metres.
@@ -30,7 +30,7 @@ pub(super) struct Info {
 
 impl Info {
     /// Of a file that has such an entry.
-    pub(super) fn of(tiff: &mut Tiff) -> Option<Self> {
+    pub(in super::super) fn of(tiff: &mut Tiff) -> Option<Self> {
         let bytes = tiff.first.get(tag::LSM_INFO)?.raw(&mut tiff.bytes, INFO_BYTES).ok()?;
         let number = |at: usize, size: usize| Some(whole(bytes.get(at..at + size)?, Endian::Little));
         let is_one = number(0, 4).is_some_and(|magic| MAGIC.contains(&magic));
@@ -43,7 +43,7 @@ impl Info {
     }
 
     /// The stack of such a file.
-    pub(super) fn stack(
+    pub(in super::super) fn stack(
         &self,
         attempt: Attempt<'_>,
         tiff: &Tiff,

@@ -3,18 +3,18 @@
 //! After what `ImageJ` itself writes (its class `FileSaver`). Stacks over 4 GiB have one page for all slices, which
 //! follow each other in the file. Of channels, slices and time steps the channels follow each other first.
 
-use super::super::input::stem;
-use super::super::placement::Placement;
-use super::super::{Choice, LoadError};
-use super::directory::MOST_PAGES;
-use super::fault::HELP;
-use super::file::Tiff;
+use super::super::fault::HELP;
+use super::super::file::Tiff;
+use super::super::file::directory::MOST_PAGES;
+use super::super::file::page::{Offsets, Page, tag};
+use super::super::plain::usable;
+use super::super::stack::{Slice, Stack, Steps};
 use super::length::millimetres;
-use super::page::{Offsets, Page, tag};
-use super::plain::usable;
-use super::stack::{Slice, Stack, Steps};
 use crate::data::Hints;
 use crate::data::attempt::Attempt;
+use crate::data::load::input::stem;
+use crate::data::load::placement::Placement;
+use crate::data::load::{Choice, LoadError};
 
 /// Most channels that `ImageJ` shows together.
 const MOST_CHANNELS: usize = 7;
@@ -37,12 +37,12 @@ impl<'a> Said<'a> {
 }
 
 /// Whether a description is one of `ImageJ`'s.
-pub(super) fn is_imagej(description: &str) -> bool {
+pub(in super::super) fn is_imagej(description: &str) -> bool {
     description.starts_with("ImageJ=")
 }
 
 /// The stack of a file with such a description.
-pub(super) fn stack(
+pub(in super::super) fn stack(
     attempt: Attempt<'_>,
     tiff: &mut Tiff,
     description: &str,
@@ -115,7 +115,7 @@ fn contiguous(
         Offsets::At(at) => at,
         Offsets::Listed(entry) => entry
             .whole(&mut tiff.bytes)
-            .map_err(|error| super::fault::unreadable(attempt, "first page", error))?,
+            .map_err(|error| super::super::fault::unreadable(attempt, "first page", error))?,
     };
     let slice = page.bytes().ok_or_else(|| broken("its slices cannot be so large".to_owned()))?;
     let end = slice.checked_mul(images as u64).and_then(|bytes| bytes.checked_add(offset));

@@ -2,7 +2,7 @@
 
 use super::writer::{LITTLE, LONG, Leaf, SHORT};
 use super::{assert_refused, load_bytes, load_chosen};
-use crate::data::load::tiff::page::tag;
+use crate::data::load::pictures::tiff::file::page::tag;
 use crate::data::load::{Choice, LoadErrorKind};
 use crate::data::{Modality, Samples, Volume};
 

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use super::writer::{LITTLE, Leaf, SHORT, Writer};
 use super::{assert_refused, load_bytes, load_chosen, samples_of};
 use crate::data::Samples;
-use crate::data::load::tiff::page::tag;
+use crate::data::load::pictures::tiff::file::page::tag;
 use crate::data::load::{Choice, Endian, LoadErrorKind};
 
 const WRITERS: [Writer; 4] = [
@@ -32,32 +32,24 @@ macro_rules! pixels {
 fn all_types_in_both_orders_and_sizes_of_places() {
     for writer in WRITERS {
         macro_rules! check {
-            ($type:ty, $format:expr, $variant:ident, $wide:ty) => {
-                let values: Vec<$type> = (0..12i8).map(|at| (at * 10) as $type - (3 as $type)).collect();
+            ($type:ty, $format:expr, $value:expr, $variant:ident, $expected:expr) => {
+                let values: Vec<$type> = (0..12).map($value).collect();
                 let leaf = writer.leaf([4, 3], 8 * size_of::<$type>() as u64, &pixels!(writer, values));
                 let leaf = leaf.with(tag::SAMPLE_FORMAT, SHORT, &[$format]);
-                let expected = values.iter().map(|&value| value as $wide).collect();
+                let expected = values.iter().map($expected).collect();
                 assert_eq!(samples_of(&writer.file(&[leaf])), Samples::$variant(expected));
             };
         }
-        check!(i8, 2, I8, i8);
-        check!(i16, 2, I16, i16);
-        check!(i32, 2, I32, i32);
-        check!(i64, 2, I32, i32);
-        check!(f32, 3, F32, f32);
-        check!(f64, 3, F64, f64);
-        macro_rules! check_unsigned {
-            ($type:ty, $variant:ident, $first:expr, $wide:ty) => {
-                let values: Vec<$type> = (0..12u8).map(|at| $first + <$type>::from(at)).collect();
-                let leaf = writer.leaf([4, 3], 8 * size_of::<$type>() as u64, &pixels!(writer, values));
-                let expected = values.iter().map(|&value| value as $wide).collect();
-                assert_eq!(samples_of(&writer.file(&[leaf])), Samples::$variant(expected));
-            };
-        }
-        check_unsigned!(u8, U8, 200, u8);
-        check_unsigned!(u16, U16, 60_000, u16);
-        check_unsigned!(u32, U32, 4_000_000_000, u32);
-        check_unsigned!(u64, F64, 1 << 40, f64);
+        check!(i8, 2, |at| at * 10 - 3, I8, |&value| value);
+        check!(i16, 2, |at| at * 1000 - 3, I16, |&value| value);
+        check!(i32, 2, |at| at * 100_000 - 3, I32, |&value| value);
+        check!(i64, 2, |at| at * 100_000 - 3, I32, |&value| i32::try_from(value).unwrap());
+        check!(f32, 3, |at: u8| f32::from(at) * 0.3 - 1.0, F32, |&value| value);
+        check!(f64, 3, |at: u8| f64::from(at) * 0.3 - 1.0, F64, |&value| value);
+        check!(u8, 1, |at| 200 + at, U8, |&value| value);
+        check!(u16, 1, |at| 60_000 + at, U16, |&value| value);
+        check!(u32, 1, |at| 4_000_000_000 + at, U32, |&value| value);
+        check!(u64, 1, |at| (1 << 40) + at, F64, |&value| value as f64);
         let halves: Vec<half::f16> = (0..12u8).map(|at| half::f16::from_f32(f32::from(at) / 4.0)).collect();
         let leaf = writer.leaf([4, 3], 16, &pixels!(writer, halves)).with(tag::SAMPLE_FORMAT, SHORT, &[3]);
         let expected = halves.iter().map(|half| half.to_f32()).collect();

@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::super::input::{Input, Witness};
-use super::super::number::{Part, Stored};
-use super::super::pile::read_pile;
-use super::super::placement::{Parts, Placement};
-use super::super::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use super::fault::HELP;
 use super::file::Tiff;
-use super::page::{Meaning, Page};
+use super::file::page::{Meaning, Page};
 use crate::data::attempt::{Attempt, Extent};
+use crate::data::load::input::{Input, Witness};
+use crate::data::load::number::{Part, Stored};
+use crate::data::load::pictures::pile::read_pile;
+use crate::data::load::placement::{Parts, Placement};
+use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume};
 
 /// A page of one of several files.
@@ -182,7 +182,7 @@ impl Stack {
             let slices = slices[range].par_iter().zip(packed.par_iter());
             slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect()
         })?;
-        let samples = super::super::number::rescaled(samples, slope, intercept);
+        let samples = crate::data::load::number::rescaled(samples, slope, intercept);
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }

@@ -2,8 +2,8 @@
 
 use std::io;
 
-use super::super::LoadError;
 use crate::data::attempt::Attempt;
+use crate::data::load::LoadError;
 
 /// What helps where a file is broken.
 pub(super) const HELP: &str = "copy the file again, or save it anew with the program that wrote it";

@@ -1,7 +1,7 @@
 //! TIFF files of a few pixels, byte by byte.
 
 use crate::data::load::Endian;
-use crate::data::load::tiff::page::tag;
+use crate::data::load::pictures::tiff::file::page::tag;
 
 /// Types of values.
 pub(super) const ASCII: u16 = 2;

@@ -1,14 +1,14 @@
 //! A TIFF file that holds one slice, beside others that do.
 
-use super::super::input::Input;
-use super::super::number::Stored;
-use super::super::{LoadControl, LoadError, LoadOptions};
 use super::file::Tiff;
-use super::ome;
-use super::page::{Page, tag};
+use super::file::page::{Page, tag};
 use super::plain::usable;
+use super::said::ome;
 use super::stack::{check_page_bytes, stored};
 use crate::data::attempt::Attempt;
+use crate::data::load::input::Input;
+use crate::data::load::number::Stored;
+use crate::data::load::{LoadControl, LoadError, LoadOptions};
 
 /// The one page of a file.
 pub(in crate::data::load) struct Picture {

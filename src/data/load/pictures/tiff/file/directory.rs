@@ -3,24 +3,24 @@
 use std::collections::HashSet;
 use std::io;
 
-use super::super::{Endian, LoadControl, LoadError};
+use super::super::fault::unreadable;
 use super::bytes::{Bytes, whole};
-use super::fault::unreadable;
 use crate::data::attempt::Attempt;
+use crate::data::load::{Endian, LoadControl, LoadError};
 
 /// Most pages that are looked at: a hundred times those of long recordings.
-pub(super) const MOST_PAGES: usize = 1 << 20;
+pub(in super::super) const MOST_PAGES: usize = 1 << 20;
 
 /// Most entries of a directory: real ones have some tens.
 const MOST_ENTRIES: u64 = 4096;
 
 /// An entry of a directory: where its values stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Entry {
+pub(in super::super) struct Entry {
     tag: u16,
     /// Type of the values (TIFF 6.0, section 2).
     kind: u16,
-    pub(super) count: u64,
+    pub(in super::super) count: u64,
     at: u64,
 }
 
@@ -50,7 +50,7 @@ impl Entry {
     }
 
     /// Its values, where they are whole numbers and not below zero.
-    pub(super) fn numbers(self, file: &mut Bytes) -> io::Result<Vec<u64>> {
+    pub(in super::super) fn numbers(self, file: &mut Bytes) -> io::Result<Vec<u64>> {
         let is_whole = matches!(self.kind, 1 | 3 | 4 | 13 | 16 | 18);
         let size = bytes_of(self.kind).filter(|_| is_whole).ok_or(io::ErrorKind::InvalidData)? as usize;
         let endian = file.endian;
@@ -59,7 +59,7 @@ impl Entry {
     }
 
     /// Its first value, as a number of any kind.
-    pub(super) fn first(self, file: &mut Bytes) -> Option<f64> {
+    pub(in super::super) fn first(self, file: &mut Bytes) -> Option<f64> {
         let endian = file.endian;
         let bytes = self.bytes(file, 8).ok()?;
         let bytes = bytes.get(..bytes_of(self.kind)? as usize)?;
@@ -76,13 +76,13 @@ impl Entry {
     }
 
     /// Its first value, where it is a whole number.
-    pub(super) fn whole(self, file: &mut Bytes) -> io::Result<u64> {
+    pub(in super::super) fn whole(self, file: &mut Bytes) -> io::Result<u64> {
         let one = Self { count: self.count.min(1), ..self };
         one.numbers(file)?.first().copied().ok_or_else(|| io::ErrorKind::InvalidData.into())
     }
 
     /// Its text up to a zero byte, at most so many bytes of it. What is no UTF-8 is Latin-1, as older programs write it.
-    pub(super) fn text(self, file: &mut Bytes, most: u64) -> io::Result<String> {
+    pub(in super::super) fn text(self, file: &mut Bytes, most: u64) -> io::Result<String> {
         let mut bytes = self.bytes(file, most)?;
         bytes.truncate(bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len()));
         Ok(String::from_utf8(bytes)
@@ -90,19 +90,19 @@ impl Entry {
     }
 
     /// Its bytes, at most so many, as they are.
-    pub(super) fn raw(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u8>> {
+    pub(in super::super) fn raw(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u8>> {
         self.bytes(file, most)
     }
 }
 
 /// What is said of a page.
 #[derive(Debug, Default)]
-pub(super) struct Directory {
+pub(in super::super) struct Directory {
     entries: Vec<Entry>,
 }
 
 impl Directory {
-    pub(super) fn get(&self, tag: u16) -> Option<Entry> {
+    pub(in super::super) fn get(&self, tag: u16) -> Option<Entry> {
         self.entries.iter().find(|entry| entry.tag == tag).copied()
     }
 
@@ -135,7 +135,7 @@ impl Directory {
 /// # Errors
 /// `BadInput` for what is no TIFF file or whose list of pages leads nowhere, `Limit` for more pages than any recording has;
 /// what `each` says.
-pub(super) fn walk(
+pub(in super::super) fn walk(
     attempt: Attempt<'_>,
     file: &mut Bytes,
     control: &LoadControl,

@@ -145,6 +145,6 @@ fn broken_and_huge_pictures_are_refused() {
     std::fs::write(&path, &huge).unwrap();
     let error = load_path(&path).unwrap_err();
     assert!(matches!(error.kind(), LoadErrorKind::Limit | LoadErrorKind::BadInput), "{error}");
-    let large = folder(&[("a.png", grey(300, &[0; 300 * 300]))]);
+    let large = folder(&[("a.png", grey(300, &vec![0; 300 * 300]))]);
     assert_refused(load_path(&large.path().join("a.png")), LoadErrorKind::Limit, &["allowed"]);
 }

@@ -11,13 +11,14 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::input::{Input, stem};
-use super::number::Part;
 use super::pile::read_pile;
-use super::placement::{Parts, Placement};
-use super::reader::{Reader, Source, Start};
-use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer, tiff};
+use super::tiff;
 use crate::data::attempt::{Attempt, Extent, quoted};
+use crate::data::load::input::{Input, stem};
+use crate::data::load::number::Part;
+use crate::data::load::placement::{Parts, Placement};
+use crate::data::load::reader::{Reader, Source, Start};
+use crate::data::load::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume, plain};
 use groups::{Group, groups};
 use picture::{Header, Kind, look};
@@ -26,7 +27,7 @@ use picture::{Header, Kind, look};
 const MOST_LOOKED_UP: usize = 24;
 
 /// A picture as a volume of one slice.
-pub(super) const READER: Reader = Reader {
+pub(in crate::data::load) const READER: Reader = Reader {
     name: "PNG, JPEG, BMP",
     endings: &[".png", ".jpg", ".jpeg", ".bmp"],
     recognises: |start| Kind::of(start.stored()).is_some_and(|kind| kind != Kind::Tiff),
@@ -46,7 +47,7 @@ fn load_one(source: Source<'_>) -> Result<Volume, LoadError> {
 ///
 /// # Errors
 /// [`LoadError::Several`] where there are several volumes, `BadInput` for slices that do not go together or are broken.
-pub(super) fn load(
+pub(in crate::data::load) fn load(
     attempt: Attempt<'_>,
     files: &[PathBuf],
     options: &LoadOptions,

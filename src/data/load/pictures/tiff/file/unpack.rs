@@ -1,8 +1,8 @@
 //! Numbers of a strip or tile as they were before they were made easier to compress: in little-endian order, whole bytes
 //! each.
 
-use super::super::Endian;
 use super::page::Page;
+use crate::data::load::Endian;
 
 /// Undoes what was done to the rows of a part. `samples` are the numbers of each pixel in it.
 pub(super) fn restore(page: &Page, endian: Endian, samples: usize, row_bytes: usize, part: &mut [u8]) {

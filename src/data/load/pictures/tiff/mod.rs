@@ -4,39 +4,31 @@
 //! (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>). What programs for microscopes say of their pages is
 //! understood: OME-TIFF, `ImageJ`, LSM. World space is as the voxels lie: the file does not say which way a body does.
 
-mod bytes;
-mod codec;
-mod directory;
 mod fault;
 mod file;
-mod imagej;
-mod length;
-mod lsm;
-mod ome;
-mod ome_pages;
-mod page;
 mod plain;
+mod said;
 mod single;
 mod stack;
 #[cfg(test)]
 mod tests;
-mod unpack;
 
-use super::LoadError;
-use super::reader::{Reader, Source};
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
+use crate::data::load::LoadError;
+use crate::data::load::reader::{Reader, Source};
 use file::Tiff;
-use page::tag;
+use file::page::tag;
+use said::{imagej, lsm, ome};
 
-pub(super) use single::Picture;
+pub(in crate::data::load) use single::Picture;
 
 /// How a file begins: byte order, and 42 or, of `BigTIFF`, 43.
 pub(super) fn is_tiff(magic: &[u8]) -> bool {
     [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|mark| magic.starts_with(*mark))
 }
 
-pub(super) const READER: Reader = Reader {
+pub(in crate::data::load) const READER: Reader = Reader {
     name: "TIFF",
     endings: &[".tif", ".tiff", ".btf", ".tf8", ".lsm"],
     recognises: |start| is_tiff(start.stored()),

@@ -3,30 +3,32 @@
 //! After the definition at <https://docs.openmicroscopy.org/ome-model/latest/ome-tiff/specification.html>. Pages may lie in
 //! several files beside each other; all of them, or one file of XML, say which.
 
+mod pages;
+
 use std::path::PathBuf;
 
 use roxmltree::{Document, Node};
 
-use super::super::beside;
-use super::super::placement::Placement;
-use super::super::{Choice, Dimension, LoadError, Offer};
-use super::fault::HELP;
-use super::file::Tiff;
+use super::super::fault::HELP;
+use super::super::file::Tiff;
+use super::super::file::page::Meaning;
+use super::super::stack::{Slice, Stack, Steps};
 use super::length::millimetres;
-use super::ome_pages::Pages;
-use super::page::Meaning;
-use super::stack::{Slice, Stack, Steps};
 use crate::data::attempt::{Attempt, quoted};
+use crate::data::load::beside;
+use crate::data::load::placement::Placement;
+use crate::data::load::{Choice, Dimension, LoadError, Offer};
 use crate::data::{Hints, Modality, plain};
+use pages::Pages;
 
 /// Bytes of XML that are read at most: of ten thousand files it has a few million.
-pub(super) const MOST_XML_BYTES: u64 = 64 << 20;
+pub(in super::super) const MOST_XML_BYTES: u64 = 64 << 20;
 
 /// Most elements and texts of it.
 const MOST_NODES: u32 = 4 << 20;
 
 /// Whether a description is OME's XML.
-pub(super) fn is_ome(description: &str) -> bool {
+pub(in super::super) fn is_ome(description: &str) -> bool {
     // After a byte order mark, a declaration and a comment, which writers put there.
     let head: String = description.chars().take(2000).collect();
     head.trim_start_matches('\u{feff}').trim_start().starts_with('<')
@@ -91,7 +93,7 @@ impl Sizes {
 }
 
 /// The stack of a file with such a description.
-pub(super) fn stack(
+pub(in super::super) fn stack(
     attempt: Attempt<'_>,
     tiff: &Tiff,
     description: &str,
@@ -112,7 +114,7 @@ pub(super) fn stack(
 
 fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
     use std::io::Read as _;
-    let input = super::super::input::Input::open(attempt)?;
+    let input = crate::data::load::input::Input::open(attempt)?;
     let mut text = String::new();
     input.reader.take(MOST_XML_BYTES).read_to_string(&mut text).map_err(|error| attempt.io(error))?;
     Ok(text)
@@ -153,12 +155,12 @@ fn of_root(
             .collect(),
         frames: sizes.frames,
     };
-    if channels.saturating_mul(sizes.frames) > super::directory::MOST_PAGES {
+    if channels.saturating_mul(sizes.frames) > super::super::file::directory::MOST_PAGES {
         return Err(attempt.bad_input("SizeC, SizeT", "so many channels and times cannot be", HELP));
     }
     let chosen = steps.chosen(attempt, choice)?;
     let slices = usize::try_from(sizes.dims[2]).unwrap_or(usize::MAX);
-    if slices > super::directory::MOST_PAGES {
+    if slices > super::super::file::directory::MOST_PAGES {
         return Err(attempt.bad_input("SizeZ", format!("{slices} slices cannot be"), HELP));
     }
     let channel = chosen.channel / inside;
@@ -173,7 +175,7 @@ fn of_root(
     check_size(attempt, tiff, &slices, sizes.dims)?;
     chosen.remark(&mut placement);
     let name = match named(image) {
-        name if name.trim().is_empty() => super::super::input::stem(attempt.path),
+        name if name.trim().is_empty() => crate::data::load::input::stem(attempt.path),
         name => plain(name.trim(), 120),
     };
     Ok(Stack {

@@ -2,7 +2,7 @@
 
 use super::writer::{LITTLE, LONG, Leaf, SHORT, Writer};
 use super::{assert_refused, load_bytes};
-use crate::data::load::tiff::page::tag;
+use crate::data::load::pictures::tiff::file::page::tag;
 use crate::data::load::{Endian, LoadErrorKind};
 
 fn leaf() -> Leaf {

@@ -1,20 +1,26 @@
 //! A TIFF file: its pages, and the numbers of each.
 
+pub(super) mod bytes;
+mod codec;
+pub(super) mod directory;
+pub(super) mod page;
+mod unpack;
+
 use std::io;
 
 use rayon::prelude::*;
 
-use super::super::input::Input;
-use super::super::number::Number;
-use super::super::samples::{Fault, reserve};
-use super::super::{Endian, LoadControl, LoadError};
-use super::bytes::Bytes;
-use super::codec::Codec;
-use super::directory::{Directory, walk};
 use super::fault::{HELP, compression_name, unreadable};
-use super::page::{Offsets, Page};
-use super::unpack::{invert, restore, widen};
 use crate::data::attempt::Attempt;
+use crate::data::load::input::Input;
+use crate::data::load::number::Number;
+use crate::data::load::samples::{Fault, reserve};
+use crate::data::load::{Endian, LoadControl, LoadError};
+use bytes::Bytes;
+use codec::Codec;
+use directory::{Directory, walk};
+use page::{Offsets, Page};
+use unpack::{invert, restore, widen};
 
 /// A tile may be larger than its page by so much: pages are rounded up to whole tiles, of 256 x 256 pixels mostly.
 const MOST_TILE_EXCESS: u64 = 64 << 20;
@@ -166,7 +172,7 @@ impl Page {
     pub(super) fn check(&self, attempt: Attempt<'_>, field: &str) -> Result<(), LoadError> {
         let refuse = |why: String, help: &str| Err(attempt.bad_input(field, why, help));
         let bits = self.bits;
-        if let super::page::Meaning::Foreign(photometric) = self.meaning {
+        if let page::Meaning::Foreign(photometric) = self.meaning {
             let kind = match photometric {
                 4 => "a mask",
                 5 => "CMYK",

@@ -1,0 +1,6 @@
+//! What programs say of the pages of their TIFF files: which slice, channel and time each is, and how large voxels are.
+
+pub(super) mod imagej;
+mod length;
+pub(super) mod lsm;
+pub(super) mod ome;
