@@ -52,26 +52,99 @@ fn transfer(path: &Path) -> bool {
     import(path, &bytes, range()).is_ok()
 }
 
+/// A `MetaImage` header of 6 x 5 x 4 bytes without the field that ends it.
+const METAIMAGE: &str = "ObjectType = Image\nNDims = 3\nBinaryData = True\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n\
+     Offset = 0 0 0\nElementSpacing = 1 1 1.5\nDimSize = 6 5 4\nElementType = MET_UCHAR\n";
+
+/// As a volume whose voxels are in a second file.
+fn listed(path: &Path) -> bool {
+    let data = path.with_file_name("bare_6x5x4_uint8.raw");
+    std::fs::write(data, [7; 6 * 5 * 4]).expect("room");
+    volume(path)
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(bytes).expect("it is in memory");
+    encoder.finish().expect("it is in memory")
+}
+
+fn zlib(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(bytes).expect("it is in memory");
+    encoder.finish().expect("it is in memory")
+}
+
+/// Puts bytes at places of a header of so many.
+fn header(size: usize, fields: &[(usize, &[u8])]) -> Vec<u8> {
+    let mut bytes = vec![0; size];
+    for (at, field) in fields {
+        bytes[*at..at + field.len()].copy_from_slice(field);
+    }
+    bytes
+}
+
+fn f32s(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+/// NIfTI-1 with a quaternion.
+fn nifti(voxels: &[u8]) -> Vec<u8> {
+    let fields: [(usize, &[u8]); 9] = [
+        (0, &348i32.to_le_bytes()),
+        (40, &[3, 0, 6, 0, 5, 0, 4, 0]),
+        (70, &[2, 0, 8, 0]),
+        (76, &f32s(&[1.0, 1.0, 1.0, 1.5])),
+        (108, &f32s(&[352.0, 2.0, 1.0])),
+        (148, b"a description"),
+        (252, &[1, 0]),
+        (256, &f32s(&[0.0, 0.0, 0.5, 1.0, 2.0, 3.0])),
+        (344, b"n+1\0"),
+    ];
+    [header(352, &fields), voxels.to_vec()].concat()
+}
+
+/// NIfTI-2 with a matrix, and vectors of two components.
+fn nifti_2(voxels: &[u8]) -> Vec<u8> {
+    let i64s = |values: &[i64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
+    let f64s = |values: &[f64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
+    let fields: [(usize, &[u8]); 8] = [
+        (0, &540i32.to_le_bytes()),
+        (4, b"n+2\0\r\n\x1a\n"),
+        (12, &[2, 0, 8, 0]),
+        (16, &i64s(&[5, 6, 5, 2, 1, 2])),
+        (168, &i64s(&[544])),
+        (348, &[1]),
+        (400, &f64s(&[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0])),
+        (504, &1007i32.to_le_bytes()),
+    ];
+    [header(544, &fields), voxels.to_vec()].concat()
+}
+
 /// One of each kind.
 pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     let mut found = Vec::new();
     let mut add =
         |name: &str, bytes: Vec<u8>, read| found.push(Sample { name: name.to_owned(), bytes, read });
     let voxels: Vec<u8> = (0..6 * 5 * 4).map(|at| (at * 2) as u8).collect();
-    let zipped = {
-        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-        encoder.write_all(&voxels).expect("it is in memory");
-        encoder.finish().expect("it is in memory")
-    };
-    let header = |encoding: &str| {
+    let zipped = gzip(&voxels);
+    let nrrd = |encoding: &str| {
         format!(
             "NRRD0004\n# a comment\ntype: uint8\ndimension: 3\nsizes: 6 5 4\nspacings: 1 1 1.5\nencoding: {encoding}\n\n"
         )
     };
-    add("plain.nrrd", [header("raw").into_bytes(), voxels.clone()].concat(), volume as fn(&Path) -> bool);
-    add("zipped.nrrd", [header("gzip").into_bytes(), zipped.clone()].concat(), volume);
-    add("bare_6x5x4_uint8.raw", voxels, volume);
+    add("plain.nrrd", [nrrd("raw").into_bytes(), voxels.clone()].concat(), volume as fn(&Path) -> bool);
+    add("zipped.nrrd", [nrrd("gzip").into_bytes(), zipped.clone()].concat(), volume);
+    add("bare_6x5x4_uint8.raw", voxels.clone(), volume);
     add("bare_6x5x4_uint8.raw.gz", zipped, volume);
+    add("plain.nii", nifti(&voxels), volume);
+    add("second.nii.gz", gzip(&nifti_2(&voxels)), volume);
+    let local = [METAIMAGE, "ElementDataFile = LOCAL\n"].concat();
+    add("plain.mha", [local.as_bytes(), &voxels].concat(), volume);
+    let compressed = [METAIMAGE, "CompressedData = True\nElementDataFile = LOCAL\n"].concat();
+    add("zipped.mha", [compressed.as_bytes(), &zlib(&voxels)].concat(), volume);
+    let list = [METAIMAGE, "ElementDataFile = LIST 3\nbare_6x5x4_uint8.raw\n"].concat();
+    add("list.mhd", list.into_bytes(), listed);
 
     let of = VolumeRecord::new(Path::new("builtin:chair"), 7, None);
     let record = Record::text(&Settings::default(), Some(&of), None);
