@@ -52,17 +52,45 @@ fn transfer(path: &Path) -> bool {
     import(path, &bytes, range()).is_ok()
 }
 
-/// Files of other programs, and descriptions of `described.raw`.
-const FILES: [(&str, &[u8]); 8] = [
-    ("density.mrc", include_bytes!("found/density.mrc/far")),
-    ("array.npy", include_bytes!("found/array.npy/far")),
-    ("arrays.npz", include_bytes!("found/arrays.npz/far")),
-    ("density.cube", include_bytes!("found/density.cube/far")),
-    ("packed.pvm", include_bytes!("found/packed.pvm/far")),
-    ("described.dat", include_bytes!("found/described.dat/far")),
-    ("described.ini", include_bytes!("found/described.ini/far")),
-    ("described.ivf", include_bytes!("found/described.ivf/far")),
+/// Files of other programs, which take a program to write: `found/NAME/far` is one that is valid.
+const KEPT: [&str; 30] = [
+    "plain.nii",
+    "second.nii.gz",
+    "plain.mha",
+    "zipped.mha",
+    "frames.dcm",
+    "implicit.dcm",
+    "deflated.dcm",
+    "runs.dcm",
+    "lossless.dcm",
+    "jpeg.dcm",
+    "jpeg_ls.dcm",
+    "jpeg_2000.dcm",
+    "tiles.tif",
+    "lzw.tif",
+    "zstd.tif",
+    "colors.tif",
+    "imagej.tif",
+    "ome.tif",
+    "grey.jpg",
+    "grey.bmp",
+    "slice.png",
+    "density.mrc",
+    "array.npy",
+    "arrays.npz",
+    "density.cube",
+    "packed.pvm",
+    "described.dat",
+    "described.ini",
+    "described.ivf",
+    "list.mhd",
 ];
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(bytes).expect("it is in memory");
+    encoder.finish().expect("it is in memory")
+}
 
 /// One of each kind.
 pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
@@ -70,56 +98,23 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     let mut add =
         |name: &str, bytes: Vec<u8>, read| found.push(Sample { name: name.to_owned(), bytes, read });
     let voxels: Vec<u8> = (0..6 * 5 * 4).map(|at| (at * 2) as u8).collect();
-    let zipped = {
-        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-        encoder.write_all(&voxels).expect("it is in memory");
-        encoder.finish().expect("it is in memory")
-    };
-    let header = |encoding: &str| {
+    let zipped = gzip(&voxels);
+    let nrrd = |encoding: &str| {
         format!(
             "NRRD0004\n# a comment\ntype: uint8\ndimension: 3\nsizes: 6 5 4\nspacings: 1 1 1.5\nencoding: {encoding}\n\n"
         )
     };
-    add("plain.nrrd", [header("raw").into_bytes(), voxels.clone()].concat(), volume as fn(&Path) -> bool);
-    add("zipped.nrrd", [header("gzip").into_bytes(), zipped.clone()].concat(), volume);
-    add("bare_6x5x4_uint8.raw", voxels, volume);
+    add("plain.nrrd", [nrrd("raw").into_bytes(), voxels.clone()].concat(), volume as fn(&Path) -> bool);
+    add("zipped.nrrd", [nrrd("gzip").into_bytes(), zipped.clone()].concat(), volume);
+    add("bare_6x5x4_uint8.raw", voxels.clone(), volume);
     add("bare_6x5x4_uint8.raw.gz", zipped, volume);
-    // Whole files by other programs, of every kind of compression.
-    let dicom: [(&str, &[u8]); 8] = [
-        ("frames.dcm", include_bytes!("found/frames.dcm/far")),
-        ("implicit.dcm", include_bytes!("found/implicit.dcm/far")),
-        ("deflated.dcm", include_bytes!("found/deflated.dcm/far")),
-        ("runs.dcm", include_bytes!("found/runs.dcm/far")),
-        ("lossless.dcm", include_bytes!("found/lossless.dcm/far")),
-        ("jpeg.dcm", include_bytes!("found/jpeg.dcm/far")),
-        ("jpeg_ls.dcm", include_bytes!("found/jpeg_ls.dcm/far")),
-        ("jpeg_2000.dcm", include_bytes!("found/jpeg_2000.dcm/far")),
-    ];
-    for (name, bytes) in dicom {
-        add(name, bytes.to_vec(), volume);
-    }
-
-    for (name, bytes) in FILES {
-        add(name, bytes.to_vec(), volume);
-    }
-    // What descriptions are of.
-    std::fs::write(folder.join("described.raw"), [7; 24]).expect("room");
-
-    // Those that need a program to be written are kept.
-    for name in [
-        "tiles.tif",
-        "lzw.tif",
-        "zstd.tif",
-        "colors.tif",
-        "imagej.tif",
-        "ome.tif",
-        "grey.jpg",
-        "grey.bmp",
-        "slice.png",
-    ] {
+    for name in KEPT {
         let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/found").join(name).join("far");
         add(name, std::fs::read(kept).expect("it is kept"), volume);
     }
+    // What headers and descriptions are of.
+    std::fs::write(folder.join("described.raw"), [7; 24]).expect("room");
+    std::fs::write(folder.join("listed.raw"), [7; 6 * 5 * 4]).expect("room");
 
     let of = VolumeRecord::new(Path::new("builtin:chair"), 7, None);
     let record = Record::text(&Settings::default(), Some(&of), None);

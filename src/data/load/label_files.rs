@@ -1,5 +1,5 @@
 //! Names and colours of labels in a text file beside a label map: as ITK-SNAP writes them ("label descriptions"), or
-//! FreeSurfer (colour tables: <https://surfer.nmr.mgh.harvard.edu/fswiki/LabelsClutsAnnotationFiles>).
+//! `FreeSurfer` (colour tables: <https://surfer.nmr.mgh.harvard.edu/fswiki/LabelsClutsAnnotationFiles>).
 //!
 //! Nothing names such a file: it is called like the volume.
 

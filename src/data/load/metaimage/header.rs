@@ -12,7 +12,7 @@ const LONGEST_HEADER_BYTES: u64 = 4 << 20;
 /// The last field.
 pub(super) const DATA_FILE: &str = "ElementDataFile";
 
-/// Whether a file that begins like this is a MetaImage: all of them say how many dimensions they have.
+/// Whether a file that begins like this is a `MetaImage`: all of them say how many dimensions they have.
 pub(super) fn is_metaimage(start: &[u8]) -> bool {
     start
         .split(|&byte| byte == b'\n')

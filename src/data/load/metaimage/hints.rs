@@ -1,4 +1,4 @@
-//! What a header says of its values: the fields of MetaImage, and DICOM attributes by their tags, which programs of ITK
+//! What a header says of its values: the fields of `MetaImage`, and DICOM attributes by their tags, which programs of ITK
 //! write beside them.
 
 use super::header::Header;

@@ -36,7 +36,7 @@ pub(super) const READER: Reader = Reader {
     load,
 };
 
-/// Loads a NIfTI or Analyze file, or two, of which either may be named.
+/// Loads a `NIfTI` or Analyze file, or two, of which either may be named.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, input, start, options, control } = source;
     let attempt = Attempt { what: "read the NIfTI volume", path };

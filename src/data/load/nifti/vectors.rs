@@ -34,7 +34,7 @@ pub(super) fn lengths(
                 let component = stored.number.value(number, stored.endian) * slope + intercept;
                 *length = (f64::from(*length).powi(2) + component.powi(2)).sqrt() as f32;
             }
-            control.advance((lengths.len() * size_of::<f32>()) as u64);
+            control.advance(size_of_val(lengths) as u64);
         }
     }
     Ok(Samples::F32(lengths))

@@ -1,4 +1,4 @@
-//! MetaImage files from the outside: what is read and what is refused.
+//! `MetaImage` files from the outside: what is read and what is refused.
 
 mod files;
 mod geometry;

@@ -1,4 +1,4 @@
-//! NIfTI and Analyze files from the outside: what is read and what is refused.
+//! `NIfTI` and Analyze files from the outside: what is read and what is refused.
 
 mod geometry;
 mod hints;
