@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::super::LoadError;
 use super::header::Header;
-use super::plane::Plane;
-use super::shape::Shape;
-use super::store::check_room;
+use super::header::plane::Plane;
+use super::pixels::shape::Shape;
+use super::pixels::store::check_room;
 use crate::data::attempt::{Attempt, Offer};
 
 /// Pictures whose places differ by less in every cosine lie in parallel.
@@ -57,7 +57,7 @@ pub(super) fn groups(headers: &[Header]) -> Result<Vec<Group>, LoadError> {
         let number = header.found.series_number.map_or(i64::MAX, |number| number as i64);
         let groups = of_series.entry((number, &header.found.series, own(file), shape)).or_default();
         let count = usize::try_from(header.frame_count()).unwrap_or(usize::MAX);
-        for frame in 0..count.min(super::found::MOST_FRAMES) {
+        for frame in 0..count.min(super::header::found::MOST_FRAMES) {
             let slice = Slice { file, frame, plane: header.found.plane(frame) };
             let fits = |group: &&mut Group| {
                 group.slices.first().is_some_and(|first| lie_in_parallel(&first.plane, &slice.plane))

@@ -1,8 +1,8 @@
 //! What a header says of the values.
 
-use super::found::Found;
 use super::groups::Slice;
-use super::shape::{Colors, PixelNumber, Shape};
+use super::header::found::Found;
+use super::pixels::shape::{Colors, PixelNumber, Shape};
 use crate::data::{Hints, Meaning, Modality};
 
 impl Found {

@@ -4,26 +4,15 @@
 //! <https://www.dicomstandard.org/current>. A data set is read up to its pixels, of which only those that are shown are
 //! read. World space is left-posterior-superior millimetres in files, right-anterior-superior here.
 
-mod bytes;
-mod codec;
-mod found;
 mod groups;
 mod header;
 mod hints;
-mod plane;
-mod raster;
-mod rle;
+mod pixels;
 mod scan;
-mod shape;
 mod stack;
-mod store;
-mod syntax;
-mod tags;
 #[cfg(test)]
 mod tests;
-mod value;
 mod voxels;
-mod walk;
 
 use std::path::{Path, PathBuf};
 

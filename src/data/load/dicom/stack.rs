@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::placement::Placement;
 use super::groups::Slice;
-use super::plane::{Plane, Taken};
+use super::header::plane::{Plane, Taken};
 
 /// Positions that are nearer to each other than this share of what lies between two on average are the same.
 const SAME_POSITION: f64 = 0.01;

@@ -14,8 +14,8 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use tempfile::TempDir;
 
-use super::syntax::{Form, Syntax};
-use super::tags::{self, Tag};
+use super::header::syntax::{Form, Syntax};
+use super::header::tags::{self, Tag};
 use crate::data::load::{Choice, Endian, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
 use crate::data::{Samples, Volume};
 

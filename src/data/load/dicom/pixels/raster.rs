@@ -1,11 +1,11 @@
 //! Pixels as they are stored to voxels.
 
-use super::super::Endian;
-use super::super::number::Part;
 use super::shape::{Colors, PixelNumber, Shape};
+use crate::data::load::Endian;
+use crate::data::load::number::Part;
 
 /// A type that voxels have.
-pub(super) trait Voxel: Copy + Default + Send {
+pub(in crate::data::load::dicom) trait Voxel: Copy + Default + Send {
     fn of_integer(value: i64) -> Self;
     fn of_float(value: f64) -> Self;
 }
@@ -38,18 +38,18 @@ impl Voxel for f64 {
 
 /// How pixels become voxels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Raster {
-    pub(super) shape: Shape,
-    pub(super) endian: Endian,
+pub(in crate::data::load::dicom) struct Raster {
+    pub(in crate::data::load::dicom) shape: Shape,
+    pub(in crate::data::load::dicom) endian: Endian,
     /// What is shown of colours.
-    pub(super) part: Part,
+    pub(in crate::data::load::dicom) part: Part,
     /// Slope and intercept, where each picture has its own.
-    pub(super) scale: Option<[f64; 2]>,
+    pub(in crate::data::load::dicom) scale: Option<[f64; 2]>,
 }
 
 impl Raster {
     /// Turns as many pixels into voxels as there are voxels; `bytes` are theirs and no more.
-    pub(super) fn write<T: Voxel>(&self, bytes: &[u8], voxels: &mut [T]) {
+    pub(in crate::data::load::dicom) fn write<T: Voxel>(&self, bytes: &[u8], voxels: &mut [T]) {
         if self.shape.samples > 1 {
             return self.write_colors(bytes, voxels);
         }

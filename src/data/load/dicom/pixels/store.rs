@@ -2,17 +2,17 @@
 
 use std::io::{self, Read as _};
 
-use super::super::input::Input;
-use super::super::{Endian, LoadControl, LoadError};
-use super::bytes::Bytes;
+use super::super::header::Header;
+use super::super::header::bytes::Bytes;
+use super::super::header::syntax::Codec;
+use super::super::header::tags::{ITEM, SEQUENCE_END};
+use super::super::header::walk::PixelElement;
 use super::codec::{Unpacked, unpack};
-use super::header::Header;
 use super::raster::{Raster, Voxel};
 use super::shape::Shape;
-use super::syntax::Codec;
-use super::tags::{ITEM, SEQUENCE_END};
-use super::walk::PixelElement;
 use crate::data::attempt::{Attempt, human_bytes};
+use crate::data::load::input::Input;
+use crate::data::load::{Endian, LoadControl, LoadError};
 
 /// Most fragments that are looked at: 16 for each of the most frames.
 const MOST_FRAGMENTS: usize = 1 << 22;
@@ -31,7 +31,7 @@ struct Fragment {
 
 /// Where pixels are.
 #[derive(Debug)]
-pub(super) struct Store {
+pub(in crate::data::load::dicom) struct Store {
     shape: Shape,
     kept: Kept,
 }
@@ -48,13 +48,13 @@ enum Kept {
 
 impl Store {
     /// Finds the frames of a file, so many of them.
-    pub(super) fn of(
+    pub(in crate::data::load::dicom) fn of(
         header: &Header,
         shape: Shape,
         budget_bytes: u64,
         control: &LoadControl,
     ) -> Result<Self, LoadError> {
-        let attempt = Attempt { what: super::WHAT, path: &header.path };
+        let attempt = Attempt { what: super::super::WHAT, path: &header.path };
         let count = header.frame_count();
         let Some(pixels) = header.pixels else {
             return Err(attempt.bad_input("Pixel Data", "it has no pixels", HELP_COPY));
@@ -185,7 +185,7 @@ impl Store {
     }
 
     /// Reads a frame's voxels.
-    pub(super) fn read<T: Voxel>(
+    pub(in crate::data::load::dicom) fn read<T: Voxel>(
         &self,
         attempt: Attempt<'_>,
         frame: usize,
@@ -245,7 +245,11 @@ impl Store {
 const MOST_DEFLATED: u64 = 1032;
 
 /// Checks that a file has room for the frames that it announces, before any of them is made room for.
-pub(super) fn check_room(attempt: Attempt<'_>, header: &Header, shape: &Shape) -> Result<(), LoadError> {
+pub(in crate::data::load::dicom) fn check_room(
+    attempt: Attempt<'_>,
+    header: &Header,
+    shape: &Shape,
+) -> Result<(), LoadError> {
     let Some(pixels) = header.pixels else { return Ok(()) };
     let count = header.frame_count();
     match pixels.length {

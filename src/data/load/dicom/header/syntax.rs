@@ -1,22 +1,24 @@
 //! Transfer syntaxes: how a data set is written, and how its pixels are compressed (PS3.5 chapter 10, PS3.6 annex A).
 
-use super::super::Endian;
+use crate::data::load::Endian;
 
 /// How data elements are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Form {
+pub(in crate::data::load::dicom) struct Form {
     /// Elements say their representation.
-    pub(super) is_explicit: bool,
-    pub(super) endian: Endian,
+    pub(in crate::data::load::dicom) is_explicit: bool,
+    pub(in crate::data::load::dicom) endian: Endian,
 }
 
 impl Form {
-    pub(super) const EXPLICIT: Self = Self { is_explicit: true, endian: Endian::Little };
-    pub(super) const IMPLICIT: Self = Self { is_explicit: false, endian: Endian::Little };
+    pub(in crate::data::load::dicom) const EXPLICIT: Self =
+        Self { is_explicit: true, endian: Endian::Little };
+    pub(in crate::data::load::dicom) const IMPLICIT: Self =
+        Self { is_explicit: false, endian: Endian::Little };
     const BIG: Self = Self { is_explicit: true, endian: Endian::Big };
 
     /// How a data set is written that begins so.
-    pub(super) fn of_start(start: &[u8], said: Self) -> Self {
+    pub(in crate::data::load::dicom) fn of_start(start: &[u8], said: Self) -> Self {
         let [a, b, _, _, vr @ ..] = start else { return said };
         // The first group is 8 at most, so that one of its bytes is 0 and says the order.
         let endian = match (a, b) {
@@ -31,7 +33,7 @@ impl Form {
 
 /// How pixels are compressed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Codec {
+pub(in crate::data::load::dicom) enum Codec {
     /// They are not.
     Native,
     Rle,
@@ -42,23 +44,23 @@ pub(super) enum Codec {
 
 /// A transfer syntax.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Syntax {
-    pub(super) form: Form,
-    pub(super) is_deflated: bool,
+pub(in crate::data::load::dicom) struct Syntax {
+    pub(in crate::data::load::dicom) form: Form,
+    pub(in crate::data::load::dicom) is_deflated: bool,
     /// Pixels are in fragments.
-    pub(super) is_encapsulated: bool,
+    pub(in crate::data::load::dicom) is_encapsulated: bool,
     /// `Err` with its name where it is not read.
-    pub(super) codec: Result<Codec, String>,
+    pub(in crate::data::load::dicom) codec: Result<Codec, String>,
 }
 
 impl Syntax {
     /// The syntax of a data set whose file does not say it.
-    pub(super) fn unsaid(form: Form) -> Self {
+    pub(in crate::data::load::dicom) fn unsaid(form: Form) -> Self {
         Self { form, is_deflated: false, is_encapsulated: false, codec: Ok(Codec::Native) }
     }
 
     /// The syntax of an identifier.
-    pub(super) fn of(uid: &str) -> Self {
+    pub(in crate::data::load::dicom) fn of(uid: &str) -> Self {
         let native = |form| Self::unsaid(form);
         let encapsulated = |codec| Self {
             form: Form::EXPLICIT,

@@ -4,41 +4,41 @@ use glam::DVec3;
 
 /// Where a picture lies, in left-posterior-superior millimetres, and what its values mean: as far as it is said.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Plane {
+pub(in crate::data::load::dicom) struct Plane {
     /// The middle of its first pixel.
-    pub(super) position: Option<DVec3>,
+    pub(in crate::data::load::dicom) position: Option<DVec3>,
     /// The position is that of this picture, and not of a whole file of several.
-    pub(super) has_own_position: bool,
+    pub(in crate::data::load::dicom) has_own_position: bool,
     /// Along rows, that is from column to column; and along columns.
-    pub(super) orientation: Option<[DVec3; 2]>,
+    pub(in crate::data::load::dicom) orientation: Option<[DVec3; 2]>,
     /// Between rows, and between columns.
-    pub(super) spacing: Option<[f64; 2]>,
-    pub(super) thickness: Option<f64>,
+    pub(in crate::data::load::dicom) spacing: Option<[f64; 2]>,
+    pub(in crate::data::load::dicom) thickness: Option<f64>,
     /// Between the middles of slices.
-    pub(super) between: Option<f64>,
-    pub(super) slope: Option<f64>,
-    pub(super) intercept: Option<f64>,
+    pub(in crate::data::load::dicom) between: Option<f64>,
+    pub(in crate::data::load::dicom) slope: Option<f64>,
+    pub(in crate::data::load::dicom) intercept: Option<f64>,
     /// Centre and width.
-    pub(super) window: [Option<f64>; 2],
-    pub(super) taken: Taken,
+    pub(in crate::data::load::dicom) window: [Option<f64>; 2],
+    pub(in crate::data::load::dicom) taken: Taken,
 }
 
 /// When and how a picture was taken: by what those of one place are put in order, the first difference deciding.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Taken {
-    pub(super) temporal_position: Option<f64>,
-    pub(super) b_value: Option<f64>,
-    pub(super) echo_time_ms: Option<f64>,
-    pub(super) trigger_time_ms: Option<f64>,
-    pub(super) acquisition: Option<f64>,
+pub(in crate::data::load::dicom) struct Taken {
+    pub(in crate::data::load::dicom) temporal_position: Option<f64>,
+    pub(in crate::data::load::dicom) b_value: Option<f64>,
+    pub(in crate::data::load::dicom) echo_time_ms: Option<f64>,
+    pub(in crate::data::load::dicom) trigger_time_ms: Option<f64>,
+    pub(in crate::data::load::dicom) acquisition: Option<f64>,
     /// Of the day.
-    pub(super) time_s: Option<f64>,
-    pub(super) instance: Option<f64>,
+    pub(in crate::data::load::dicom) time_s: Option<f64>,
+    pub(in crate::data::load::dicom) instance: Option<f64>,
 }
 
 impl Plane {
     /// What is said of one picture, or else of all.
-    pub(super) fn or(&self, all: &Self) -> Self {
+    pub(in crate::data::load::dicom) fn or(&self, all: &Self) -> Self {
         Self {
             position: self.position.or(all.position),
             has_own_position: self.has_own_position,
@@ -54,13 +54,13 @@ impl Plane {
     }
 
     /// Across the picture, if it is said how it lies.
-    pub(super) fn normal(&self) -> Option<DVec3> {
+    pub(in crate::data::load::dicom) fn normal(&self) -> Option<DVec3> {
         let [along_row, along_column] = self.orientation?;
         along_row.cross(along_column).try_normalize()
     }
 
     /// Slope and intercept of its values; one of 0 says nothing.
-    pub(super) fn scale(&self) -> [f64; 2] {
+    pub(in crate::data::load::dicom) fn scale(&self) -> [f64; 2] {
         let is_usable = |slope: &f64| slope.is_finite() && *slope != 0.0;
         [self.slope.filter(is_usable).unwrap_or(1.0), self.intercept.filter(|v| v.is_finite()).unwrap_or(0.0)]
     }
@@ -80,7 +80,7 @@ impl Taken {
     }
 
     /// What decides about the order, the most important first.
-    pub(super) fn order(&self) -> [f64; 7] {
+    pub(in crate::data::load::dicom) fn order(&self) -> [f64; 7] {
         [
             self.temporal_position,
             self.b_value,
@@ -94,7 +94,7 @@ impl Taken {
     }
 
     /// What sets it apart from another, in words.
-    pub(super) fn apart_from(&self, other: &Self) -> String {
+    pub(in crate::data::load::dicom) fn apart_from(&self, other: &Self) -> String {
         let named = [
             (self.temporal_position, other.temporal_position, "temporal position", ""),
             (self.b_value, other.b_value, "b value", ""),

@@ -3,12 +3,12 @@
 
 use std::io;
 
-use super::super::{Endian, LoadControl, LoadError};
 use super::bytes::{Bytes, LONGEST_VALUE};
 use super::found::{Found, Place};
 use super::syntax::Form;
 use super::tags::{DOUBLES, FLOATS, ITEM, ITEM_END, PIXELS, SEQUENCE_END, Tag, written};
 use crate::data::attempt::Attempt;
+use crate::data::load::{Endian, LoadControl, LoadError};
 
 /// How deep sequences are followed: real files nest some ten of them.
 const DEEPEST: usize = 64;
@@ -27,19 +27,19 @@ const UNDEFINED: u32 = u32::MAX;
 
 /// Where the pixels are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct PixelElement {
-    pub(super) tag: Tag,
+pub(in crate::data::load::dicom) struct PixelElement {
+    pub(in crate::data::load::dicom) tag: Tag,
     /// Bytes are pairs, and swapped where the order is big endian.
-    pub(super) is_words: bool,
+    pub(in crate::data::load::dicom) is_words: bool,
     /// Where the value begins.
-    pub(super) offset: u64,
+    pub(in crate::data::load::dicom) offset: u64,
     /// Its length; `None` where it is in fragments.
-    pub(super) length: Option<u64>,
+    pub(in crate::data::load::dicom) length: Option<u64>,
 }
 
 /// Why a data set cannot be read.
 #[derive(Debug)]
-pub(super) enum Broken {
+pub(in crate::data::load::dicom) enum Broken {
     Io(io::Error),
     /// What is wrong.
     Wrong(String),
@@ -61,7 +61,7 @@ impl From<io::Error> for Broken {
 }
 
 impl Broken {
-    pub(super) fn into_error(self, attempt: Attempt<'_>) -> LoadError {
+    pub(in crate::data::load::dicom) fn into_error(self, attempt: Attempt<'_>) -> LoadError {
         match self {
             Self::Io(error) => attempt.io(error),
             Self::Wrong(why) => attempt.bad_input("data set", why, "copy or export the file again"),
@@ -85,17 +85,17 @@ struct Level {
 }
 
 /// An element up to its value.
-pub(super) struct Head {
+pub(in crate::data::load::dicom) struct Head {
     /// Two letters; `None` where the form does not say them.
     vr: Option<[u8; 2]>,
-    pub(super) length: u32,
+    pub(in crate::data::load::dicom) length: u32,
 }
 
 /// Reads a data set up to its pixels.
 ///
 /// # Errors
 /// What contradicts itself, ends too early, or nests too deeply.
-pub(super) fn walk(
+pub(in crate::data::load::dicom) fn walk(
     bytes: &mut Bytes,
     form: Form,
     found: &mut Found,
@@ -207,7 +207,11 @@ fn is_pixels(tag: Tag) -> bool {
 }
 
 /// The representation and the length of an element.
-pub(super) fn head(bytes: &mut Bytes, is_explicit: bool, endian: Endian) -> io::Result<Head> {
+pub(in crate::data::load::dicom) fn head(
+    bytes: &mut Bytes,
+    is_explicit: bool,
+    endian: Endian,
+) -> io::Result<Head> {
     if !is_explicit {
         return Ok(Head { vr: None, length: bytes.u32(endian)? });
     }

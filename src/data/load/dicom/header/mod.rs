@@ -1,17 +1,25 @@
 //! The header of a file: everything before its pixels.
 
+pub(super) mod bytes;
+pub(super) mod found;
+pub(super) mod plane;
+pub(super) mod syntax;
+pub(super) mod tags;
+mod value;
+pub(super) mod walk;
+
 use std::path::{Path, PathBuf};
 
-use super::super::input::Input;
-use super::super::reader::Start;
-use super::super::{Endian, LoadControl, LoadError};
-use super::bytes::{Bytes, LONGEST_VALUE};
-use super::found::Found;
-use super::syntax::{Form, Syntax};
-use super::tags::TRANSFER_SYNTAX;
-use super::value::Value;
-use super::walk::{Broken, PixelElement, head, walk};
 use crate::data::attempt::Attempt;
+use crate::data::load::input::Input;
+use crate::data::load::reader::Start;
+use crate::data::load::{Endian, LoadControl, LoadError};
+use bytes::{Bytes, LONGEST_VALUE};
+use found::Found;
+use syntax::{Form, Syntax};
+use tags::TRANSFER_SYNTAX;
+use value::Value;
+use walk::{Broken, PixelElement, head, walk};
 
 /// Where files have their mark (PS3.10 section 7.1): after 128 bytes that mean nothing.
 const MARK_AT: usize = 128;

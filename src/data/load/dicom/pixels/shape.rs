@@ -1,27 +1,27 @@
 //! How the pixels of a picture are stored (PS3.3 section C.7.6.3).
 
-use super::super::LoadError;
-use super::header::Header;
-use super::tags::{DOUBLES, FLOATS};
+use super::super::header::Header;
+use super::super::header::tags::{DOUBLES, FLOATS};
 use crate::data::VoxelType;
 use crate::data::attempt::{Attempt, quoted};
+use crate::data::load::LoadError;
 
 /// How pixels are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Shape {
-    pub(super) columns: usize,
-    pub(super) rows: usize,
+pub(in crate::data::load::dicom) struct Shape {
+    pub(in crate::data::load::dicom) columns: usize,
+    pub(in crate::data::load::dicom) rows: usize,
     /// Numbers of each pixel.
-    pub(super) samples: usize,
+    pub(in crate::data::load::dicom) samples: usize,
     /// All numbers of one colour come before those of the next.
-    pub(super) is_planar: bool,
-    pub(super) colors: Colors,
-    pub(super) number: PixelNumber,
+    pub(in crate::data::load::dicom) is_planar: bool,
+    pub(in crate::data::load::dicom) colors: Colors,
+    pub(in crate::data::load::dicom) number: PixelNumber,
 }
 
 /// What the numbers of a pixel are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Colors {
+pub(in crate::data::load::dicom) enum Colors {
     /// More is brighter.
     Grey,
     /// More is darker.
@@ -37,7 +37,7 @@ pub(super) enum Colors {
 
 /// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum PixelNumber {
+pub(in crate::data::load::dicom) enum PixelNumber {
     Integer(Bits),
     F32,
     F64,
@@ -45,20 +45,20 @@ pub(super) enum PixelNumber {
 
 /// Where the bits of a whole number are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Bits {
+pub(in crate::data::load::dicom) struct Bits {
     /// That it takes in the file: 8, 16 or 32.
-    pub(super) allocated: u32,
+    pub(in crate::data::load::dicom) allocated: u32,
     /// That count.
-    pub(super) stored: u32,
+    pub(in crate::data::load::dicom) stored: u32,
     /// The highest of these.
-    pub(super) high: u32,
+    pub(in crate::data::load::dicom) high: u32,
     /// Two's complement.
-    pub(super) is_signed: bool,
+    pub(in crate::data::load::dicom) is_signed: bool,
 }
 
 impl Shape {
     /// How the pixels of a file are stored.
-    pub(super) fn of(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
+    pub(in crate::data::load::dicom) fn of(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
         let found = &header.found;
         let (Some(rows), Some(columns)) = (found.rows, found.columns) else {
             return Err(attempt.bad_input(
@@ -107,12 +107,12 @@ impl Shape {
     }
 
     /// Pixels of a picture.
-    pub(super) fn pixels(&self) -> usize {
+    pub(in crate::data::load::dicom) fn pixels(&self) -> usize {
         self.columns * self.rows
     }
 
     /// Bytes of a number.
-    pub(super) fn bytes(&self) -> usize {
+    pub(in crate::data::load::dicom) fn bytes(&self) -> usize {
         match self.number {
             PixelNumber::Integer(bits) => bits.allocated as usize / 8,
             PixelNumber::F32 => 4,
@@ -121,18 +121,18 @@ impl Shape {
     }
 
     /// Bytes of two pixels, side by side, as they are stored without compression.
-    pub(super) fn bytes_of_pair(&self) -> usize {
+    pub(in crate::data::load::dicom) fn bytes_of_pair(&self) -> usize {
         let numbers = if self.colors == Colors::YbrPairs { 4 } else { 2 * self.samples };
         numbers * self.bytes()
     }
 
     /// Bytes of a picture without compression.
-    pub(super) fn bytes_of_frame(&self) -> u64 {
+    pub(in crate::data::load::dicom) fn bytes_of_frame(&self) -> u64 {
         (self.pixels() as u64 * self.bytes_of_pair() as u64).div_ceil(2)
     }
 
     /// The type of voxels that have what is stored.
-    pub(super) fn voxel_type(&self) -> VoxelType {
+    pub(in crate::data::load::dicom) fn voxel_type(&self) -> VoxelType {
         match self.number {
             PixelNumber::F32 => VoxelType::F32,
             PixelNumber::F64 => VoxelType::F64,
@@ -174,7 +174,7 @@ fn bits(attempt: Attempt<'_>, header: &Header) -> Result<Bits, LoadError> {
 
 impl Bits {
     /// The value of a number as it is stored.
-    pub(super) fn value(self, raw: u32) -> i64 {
+    pub(in crate::data::load::dicom) fn value(self, raw: u32) -> i64 {
         let shifted = raw >> (self.high + 1 - self.stored);
         let unused = 32 - self.stored;
         if self.is_signed {

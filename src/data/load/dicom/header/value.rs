@@ -1,6 +1,6 @@
 //! The value of a data element (PS3.5 chapter 6): numbers are text, or binary, as the element's representation has it.
 
-use super::super::Endian;
+use crate::data::load::Endian;
 
 /// Characters of a text that are kept.
 const LONGEST_TEXT: usize = 256;

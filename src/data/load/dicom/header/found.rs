@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
-use super::super::Endian;
 use super::plane::Plane;
 use super::tags::{self, Tag};
 use super::value::Value;
+use crate::data::load::Endian;
 
 /// Most frames of a file that are told apart.
-pub(super) const MOST_FRAMES: usize = 1 << 18;
+pub(in crate::data::load::dicom) const MOST_FRAMES: usize = 1 << 18;
 
 /// Where in a data set an element lies, as far as that matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(in crate::data::load::dicom) enum Place {
     Top,
     /// What is said of all frames.
     Shared,
@@ -26,7 +26,7 @@ pub(super) enum Place {
 
 impl Place {
     /// The place inside a sequence; `None` where nothing in it is wanted.
-    pub(super) fn inside(self, sequence: Tag) -> Option<Self> {
+    pub(in crate::data::load::dicom) fn inside(self, sequence: Tag) -> Option<Self> {
         match (self, sequence) {
             (Self::Top, tags::SHARED_GROUPS) => Some(Self::Shared),
             (Self::Top, tags::FRAME_GROUPS) => Some(Self::Frame(0)),
@@ -48,7 +48,7 @@ impl Place {
     }
 
     /// The place inside an item of a sequence that this is the place inside of.
-    pub(super) fn item(self, sequence: Tag, number: usize) -> Self {
+    pub(in crate::data::load::dicom) fn item(self, sequence: Tag, number: usize) -> Self {
         match (self, sequence) {
             (Self::Frame(_), tags::FRAME_GROUPS) if number >= MOST_FRAMES => Self::Elsewhere,
             (Self::Frame(_), tags::FRAME_GROUPS) => Self::Frame(number),
@@ -61,45 +61,45 @@ impl Place {
 
 /// What is kept of a header.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Found {
-    pub(super) sop_class: String,
-    pub(super) sop_instance: String,
-    pub(super) series: String,
-    pub(super) series_number: Option<f64>,
-    pub(super) series_description: String,
-    pub(super) protocol: String,
-    pub(super) modality: String,
-    pub(super) image_type: String,
-    pub(super) photometric: String,
-    pub(super) rescale_type: String,
-    pub(super) units: String,
-    pub(super) samples: Option<u16>,
-    pub(super) planar: Option<u16>,
-    pub(super) frame_count: Option<f64>,
-    pub(super) rows: Option<u16>,
-    pub(super) columns: Option<u16>,
-    pub(super) bits_allocated: Option<u16>,
-    pub(super) bits_stored: Option<u16>,
-    pub(super) high_bit: Option<u16>,
-    pub(super) is_signed: bool,
+pub(in crate::data::load::dicom) struct Found {
+    pub(in crate::data::load::dicom) sop_class: String,
+    pub(in crate::data::load::dicom) sop_instance: String,
+    pub(in crate::data::load::dicom) series: String,
+    pub(in crate::data::load::dicom) series_number: Option<f64>,
+    pub(in crate::data::load::dicom) series_description: String,
+    pub(in crate::data::load::dicom) protocol: String,
+    pub(in crate::data::load::dicom) modality: String,
+    pub(in crate::data::load::dicom) image_type: String,
+    pub(in crate::data::load::dicom) photometric: String,
+    pub(in crate::data::load::dicom) rescale_type: String,
+    pub(in crate::data::load::dicom) units: String,
+    pub(in crate::data::load::dicom) samples: Option<u16>,
+    pub(in crate::data::load::dicom) planar: Option<u16>,
+    pub(in crate::data::load::dicom) frame_count: Option<f64>,
+    pub(in crate::data::load::dicom) rows: Option<u16>,
+    pub(in crate::data::load::dicom) columns: Option<u16>,
+    pub(in crate::data::load::dicom) bits_allocated: Option<u16>,
+    pub(in crate::data::load::dicom) bits_stored: Option<u16>,
+    pub(in crate::data::load::dicom) high_bit: Option<u16>,
+    pub(in crate::data::load::dicom) is_signed: bool,
     /// As it is stored: the representation of the pixels says whether it has a sign.
-    pub(super) padding: Option<u16>,
+    pub(in crate::data::load::dicom) padding: Option<u16>,
     /// Values go through a table before they mean anything.
-    pub(super) has_value_table: bool,
+    pub(in crate::data::load::dicom) has_value_table: bool,
     /// It lists other files.
-    pub(super) is_directory: bool,
+    pub(in crate::data::load::dicom) is_directory: bool,
     /// Where the frames of compressed pixels begin, after the table before them.
-    pub(super) frame_starts: Vec<u64>,
+    pub(in crate::data::load::dicom) frame_starts: Vec<u64>,
     /// How far from the first frames lie, across.
-    pub(super) frame_offsets: Vec<f64>,
-    pub(super) all: Plane,
-    pub(super) shared: Plane,
-    pub(super) frames: Vec<Plane>,
+    pub(in crate::data::load::dicom) frame_offsets: Vec<f64>,
+    pub(in crate::data::load::dicom) all: Plane,
+    pub(in crate::data::load::dicom) shared: Plane,
+    pub(in crate::data::load::dicom) frames: Vec<Plane>,
 }
 
 impl Found {
     /// Whether an element's value is kept.
-    pub(super) fn wants(place: Place, tag: Tag) -> bool {
+    pub(in crate::data::load::dicom) fn wants(place: Place, tag: Tag) -> bool {
         match place {
             Place::Elsewhere => false,
             Place::Top => {
@@ -111,7 +111,7 @@ impl Found {
     }
 
     /// Takes notice of a sequence.
-    pub(super) fn pass(&mut self, place: Place, sequence: Tag) {
+    pub(in crate::data::load::dicom) fn pass(&mut self, place: Place, sequence: Tag) {
         match (place, sequence) {
             (Place::Top, tags::VALUE_TABLE) => self.has_value_table = true,
             (Place::Top, tags::DIRECTORY_RECORDS) => self.is_directory = true,
@@ -120,7 +120,13 @@ impl Found {
     }
 
     /// Keeps a value.
-    pub(super) fn take(&mut self, place: Place, tag: Tag, bytes: &[u8], endian: Endian) {
+    pub(in crate::data::load::dicom) fn take(
+        &mut self,
+        place: Place,
+        tag: Tag,
+        bytes: &[u8],
+        endian: Endian,
+    ) {
         let value = Value { bytes, endian };
         // Said of all, of all frames or of each: nobody mixes units.
         if tag == tags::RESCALE_TYPE && self.rescale_type.is_empty() {
@@ -176,7 +182,7 @@ impl Found {
     }
 
     /// What is said of a frame.
-    pub(super) fn plane(&self, frame: usize) -> Plane {
+    pub(in crate::data::load::dicom) fn plane(&self, frame: usize) -> Plane {
         let of_frame = self.frames.get(frame).copied().unwrap_or_default();
         let mut plane = of_frame.or(&self.shared).or(&self.all);
         plane.has_own_position =

@@ -8,9 +8,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use hayro_jpeg2000::{DecodeSettings, DecoderContext, Image};
 use jpeg_decoder::{CodingProcess, ColorTransform, Decoder, PixelFormat};
 
+use super::super::header::syntax::Codec;
 use super::rle;
 use super::shape::{Colors, Shape};
-use super::syntax::Codec;
 use crate::data::plain;
 
 /// A picture without compression: numbers with their lowest byte first, the colours of a pixel side by side.

@@ -5,20 +5,20 @@ use std::io::{self, BufReader, Read};
 
 use flate2::bufread::DeflateDecoder;
 
-use super::super::Endian;
-use super::super::input::Input;
 use super::tags::Tag;
+use crate::data::load::Endian;
+use crate::data::load::input::Input;
 
 /// Longer values are not read: of those that are, only tables of offsets grow, by 8 bytes for each frame.
-pub(super) const LONGEST_VALUE: u64 = 4 << 20;
+pub(in crate::data::load::dicom) const LONGEST_VALUE: u64 = 4 << 20;
 
 /// The bytes of a file, read from its beginning on.
-pub(super) struct Bytes {
+pub(in crate::data::load::dicom) struct Bytes {
     from: From,
     /// How many have been read, after inflating.
-    pub(super) at: u64,
+    pub(in crate::data::load::dicom) at: u64,
     /// How many there are; `u64::MAX` where only inflating them all would tell.
-    pub(super) len: u64,
+    pub(in crate::data::load::dicom) len: u64,
 }
 
 enum From {
@@ -27,12 +27,12 @@ enum From {
 }
 
 impl Bytes {
-    pub(super) fn of(input: Input) -> Self {
+    pub(in crate::data::load::dicom) fn of(input: Input) -> Self {
         Self { from: From::File(input.reader), at: 0, len: input.len }
     }
 
     /// The rest, inflated.
-    pub(super) fn inflated(self) -> Self {
+    pub(in crate::data::load::dicom) fn inflated(self) -> Self {
         match self.from {
             From::File(reader) => {
                 Self { from: From::Deflated(DeflateDecoder::new(reader)), at: 0, len: u64::MAX }
@@ -42,7 +42,7 @@ impl Bytes {
     }
 
     /// Whether the place can be found again in the file itself.
-    pub(super) fn is_deflated(&self) -> bool {
+    pub(in crate::data::load::dicom) fn is_deflated(&self) -> bool {
         matches!(self.from, From::Deflated(_))
     }
 
@@ -50,14 +50,14 @@ impl Bytes {
     ///
     /// # Errors
     /// `UnexpectedEof` where there are not so many.
-    pub(super) fn next<const N: usize>(&mut self) -> io::Result<[u8; N]> {
+    pub(in crate::data::load::dicom) fn next<const N: usize>(&mut self) -> io::Result<[u8; N]> {
         let mut bytes = [0; N];
         self.read_exact(&mut bytes)?;
         Ok(bytes)
     }
 
     /// The next bytes, without going on; fewer at the end. Not of what is deflated.
-    pub(super) fn peek<const N: usize>(&mut self) -> io::Result<Vec<u8>> {
+    pub(in crate::data::load::dicom) fn peek<const N: usize>(&mut self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::with_capacity(N);
         let From::File(reader) = &mut self.from else { return Ok(bytes) };
         reader.by_ref().take(N as u64).read_to_end(&mut bytes)?;
@@ -65,14 +65,14 @@ impl Bytes {
         Ok(bytes)
     }
 
-    pub(super) fn u16(&mut self, endian: Endian) -> io::Result<u16> {
+    pub(in crate::data::load::dicom) fn u16(&mut self, endian: Endian) -> io::Result<u16> {
         self.next().map(|bytes| match endian {
             Endian::Little => u16::from_le_bytes(bytes),
             Endian::Big => u16::from_be_bytes(bytes),
         })
     }
 
-    pub(super) fn u32(&mut self, endian: Endian) -> io::Result<u32> {
+    pub(in crate::data::load::dicom) fn u32(&mut self, endian: Endian) -> io::Result<u32> {
         self.next().map(|bytes| match endian {
             Endian::Little => u32::from_le_bytes(bytes),
             Endian::Big => u32::from_be_bytes(bytes),
@@ -80,7 +80,7 @@ impl Bytes {
     }
 
     /// The next tag; `None` where the bytes end before one.
-    pub(super) fn tag(&mut self, endian: Endian) -> io::Result<Option<Tag>> {
+    pub(in crate::data::load::dicom) fn tag(&mut self, endian: Endian) -> io::Result<Option<Tag>> {
         match self.u16(endian).and_then(|group| Ok((group, self.u16(endian)?))) {
             Ok((group, element)) => Ok(Some(Tag::from(group) << 16 | Tag::from(element))),
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
@@ -89,14 +89,14 @@ impl Bytes {
     }
 
     /// A value of so many bytes, at most [`LONGEST_VALUE`] of them.
-    pub(super) fn value(&mut self, length: u64) -> io::Result<Vec<u8>> {
+    pub(in crate::data::load::dicom) fn value(&mut self, length: u64) -> io::Result<Vec<u8>> {
         let mut value = Vec::new();
         self.by_ref().take(length.min(LONGEST_VALUE)).read_to_end(&mut value)?;
         if (value.len() as u64) < length { Err(io::ErrorKind::UnexpectedEof.into()) } else { Ok(value) }
     }
 
     /// Goes on by so many bytes.
-    pub(super) fn skip(&mut self, count: u64) -> io::Result<()> {
+    pub(in crate::data::load::dicom) fn skip(&mut self, count: u64) -> io::Result<()> {
         if let From::File(reader) = &mut self.from {
             // Beyond the end would be no error.
             let is_within = self.at.checked_add(count).is_some_and(|end| end <= self.len);
