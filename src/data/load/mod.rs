@@ -5,43 +5,22 @@
 //! its own folder. Files are read in blocks into typed voxels, never mapped: the peak is the volume
 //! itself and one block.
 
-mod beside;
-mod content;
-mod cube;
-mod dicom;
-mod folder;
 mod formats;
-mod input;
-mod label_files;
-mod metaimage;
-mod mrc;
-mod nifti;
-mod nrrd;
-mod number;
-mod numpy;
-mod pictures;
-mod placement;
-mod pvm;
-mod raw;
-mod reader;
-mod samples;
+mod reading;
 #[cfg(test)]
 mod tests;
-mod text_numbers;
-mod vtk;
 
 use std::path::Path;
 
-pub use formats::endings;
-pub use raw::{RawFormat, RawGuess, RawLayout};
+pub use formats::{RawFormat, RawGuess, RawLayout, endings};
 
 use super::Volume;
 use super::attempt::Attempt;
 pub(crate) use super::attempt::memory_budget_bytes;
 pub use super::attempt::{Choice, Dimension, Explanation, LoadControl, LoadError, LoadErrorKind, Offer};
-use formats::{READERS, reader_of};
-use input::{Input, Witness};
-use reader::{Source, Start};
+use formats::{READERS, folder, reader_of};
+use reading::input::{Input, Witness};
+use reading::reader::{Source, Start};
 
 /// The order of the bytes of one voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -254,9 +254,10 @@ fn cancelling_stops_within_a_block() {
     let control = LoadControl::new();
     let attempt = Attempt { what: "test", path: Path::new("t") };
     let extent = Extent::checked(attempt, "", [64 << 20, 1, 1], VoxelType::U8, 1 << 30).unwrap();
-    let layout = samples::Layout { extent, voxel_type: VoxelType::U8, endian: Endian::Little };
-    let stopped = samples::read_binary(&mut CancellingReader(&control), &layout, &control);
-    assert!(matches!(stopped, Err(samples::Fault::Stopped(LoadError::Cancelled))));
+    let layout =
+        super::reading::samples::Layout { extent, voxel_type: VoxelType::U8, endian: Endian::Little };
+    let stopped = super::reading::samples::read_binary(&mut CancellingReader(&control), &layout, &control);
+    assert!(matches!(stopped, Err(super::reading::samples::Fault::Stopped(LoadError::Cancelled))));
     assert!(control.done_bytes.load(std::sync::atomic::Ordering::Relaxed) <= 4 << 20);
 }
 

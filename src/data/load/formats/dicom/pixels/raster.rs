@@ -1,0 +1,164 @@
+//! Pixels as they are stored to voxels.
+
+use super::shape::{Colors, PixelNumber, Shape};
+use crate::data::load::Endian;
+use crate::data::load::reading::number::Part;
+
+/// A type that voxels have.
+pub(in crate::data::load::formats::dicom) trait Voxel:
+    Copy + Default + Send
+{
+    fn of_integer(value: i64) -> Self;
+    fn of_float(value: f64) -> Self;
+}
+
+macro_rules! voxel {
+    ($($type:ty),*) => { $(
+        impl Voxel for $type {
+            // Every value that is stored fits into the type that was chosen for it.
+            fn of_integer(value: i64) -> Self {
+                value as Self
+            }
+
+            fn of_float(value: f64) -> Self {
+                value as Self
+            }
+        }
+    )* };
+}
+voxel!(u8, i8, u16, i16, u32, i32, f32);
+
+impl Voxel for f64 {
+    fn of_integer(value: i64) -> Self {
+        value as Self
+    }
+
+    fn of_float(value: f64) -> Self {
+        value
+    }
+}
+
+/// How pixels become voxels.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::data::load::formats::dicom) struct Raster {
+    pub(in crate::data::load::formats::dicom) shape: Shape,
+    pub(in crate::data::load::formats::dicom) endian: Endian,
+    /// What is shown of colours.
+    pub(in crate::data::load::formats::dicom) part: Part,
+    /// Slope and intercept, where each picture has its own.
+    pub(in crate::data::load::formats::dicom) scale: Option<[f64; 2]>,
+}
+
+impl Raster {
+    /// Turns as many pixels into voxels as there are voxels; `bytes` are theirs and no more.
+    pub(in crate::data::load::formats::dicom) fn write<T: Voxel>(&self, bytes: &[u8], voxels: &mut [T]) {
+        if self.shape.samples > 1 {
+            return self.write_colors(bytes, voxels);
+        }
+        match self.shape.number {
+            PixelNumber::Integer(bits) => match bits.allocated {
+                8 => self.write_integers(bytes.iter().map(|&byte| bits.value(u32::from(byte))), voxels),
+                16 => self.write_integers(
+                    bytes.as_chunks().0.iter().map(|&raw| bits.value(u32::from(u16_of(raw, self.endian)))),
+                    voxels,
+                ),
+                _ => self.write_integers(
+                    bytes.as_chunks().0.iter().map(|&raw| bits.value(u32_of(raw, self.endian))),
+                    voxels,
+                ),
+            },
+            PixelNumber::F32 => {
+                let floats = bytes
+                    .as_chunks()
+                    .0
+                    .iter()
+                    .map(|&raw| f64::from(f32::from_bits(u32_of(raw, self.endian))));
+                self.write_floats(floats, voxels);
+            }
+            PixelNumber::F64 => {
+                let endian = self.endian;
+                let floats = bytes.as_chunks().0.iter().map(|&raw| match endian {
+                    Endian::Little => f64::from_le_bytes(raw),
+                    Endian::Big => f64::from_be_bytes(raw),
+                });
+                self.write_floats(floats, voxels);
+            }
+        }
+    }
+
+    fn write_integers<T: Voxel>(&self, values: impl Iterator<Item = i64>, voxels: &mut [T]) {
+        match self.scale {
+            None => voxels.iter_mut().zip(values).for_each(|(voxel, value)| *voxel = T::of_integer(value)),
+            Some(_) => self.write_floats(values.map(|value| value as f64), voxels),
+        }
+    }
+
+    fn write_floats<T: Voxel>(&self, values: impl Iterator<Item = f64>, voxels: &mut [T]) {
+        let [slope, intercept] = self.scale.unwrap_or([1.0, 0.0]);
+        for (voxel, value) in voxels.iter_mut().zip(values) {
+            *voxel = T::of_float(value * slope + intercept);
+        }
+    }
+
+    fn write_colors<T: Voxel>(&self, bytes: &[u8], voxels: &mut [T]) {
+        let size = self.shape.bytes();
+        let count = voxels.len();
+        let number = |at: usize| {
+            let bytes = bytes.get(at * size..).unwrap_or_default();
+            match (self.shape.number, size) {
+                (PixelNumber::Integer(bits), 1) => {
+                    bits.value(bytes.first().copied().unwrap_or(0).into()) as f64
+                }
+                (PixelNumber::Integer(bits), 2) => {
+                    bits.value(bytes.first_chunk().map_or(0, |&raw| u16_of(raw, self.endian).into())) as f64
+                }
+                (PixelNumber::Integer(bits), _) => {
+                    bits.value(bytes.first_chunk().map_or(0, |&raw| u32_of(raw, self.endian))) as f64
+                }
+                (PixelNumber::F32 | PixelNumber::F64, _) => 0.0,
+            }
+        };
+        let most = match self.shape.number {
+            PixelNumber::Integer(bits) => 2f64.powi(bits.stored as i32),
+            PixelNumber::F32 | PixelNumber::F64 => 1.0,
+        };
+        for (pixel, voxel) in voxels.iter_mut().enumerate() {
+            let stored = match (self.shape.colors, self.shape.is_planar) {
+                // Y0 Y1 B R for every two.
+                (Colors::YbrPairs, _) => {
+                    let pair = pixel / 2 * 4;
+                    [number(pair + pixel % 2), number(pair + 2), number(pair + 3)]
+                }
+                (_, true) => [0, 1, 2].map(|color| number(color * count + pixel)),
+                (_, false) => [0, 1, 2].map(|color| number(pixel * 3 + color)),
+            };
+            let rgb = match self.shape.colors {
+                Colors::Ybr | Colors::YbrPairs => rgb_of_ybr(stored, most),
+                _ => stored,
+            };
+            let value = self.part.of(|color| rgb[color], 3);
+            *voxel = T::of_float(value.round());
+        }
+    }
+}
+
+/// Red, green and blue (PS3.3 section C.7.6.3.1.2), within 0 … `most` − 1.
+fn rgb_of_ybr([y, b, r]: [f64; 3], most: f64) -> [f64; 3] {
+    let (b, r) = (b - most / 2.0, r - most / 2.0);
+    let rgb = [y + 1.402 * r, y - 0.344_136 * b - 0.714_136 * r, y + 1.772 * b];
+    rgb.map(|value| value.round().clamp(0.0, most - 1.0))
+}
+
+fn u16_of(raw: [u8; 2], endian: Endian) -> u16 {
+    match endian {
+        Endian::Little => u16::from_le_bytes(raw),
+        Endian::Big => u16::from_be_bytes(raw),
+    }
+}
+
+fn u32_of(raw: [u8; 4], endian: Endian) -> u32 {
+    match endian {
+        Endian::Little => u32::from_le_bytes(raw),
+        Endian::Big => u32::from_be_bytes(raw),
+    }
+}

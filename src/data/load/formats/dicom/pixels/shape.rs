@@ -1,0 +1,215 @@
+//! How the pixels of a picture are stored (PS3.3 section C.7.6.3).
+
+use super::super::header::Header;
+use super::super::header::tags::{DOUBLES, FLOATS};
+use crate::data::VoxelType;
+use crate::data::attempt::{Attempt, quoted};
+use crate::data::load::LoadError;
+
+/// How pixels are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::data::load::formats::dicom) struct Shape {
+    pub(in crate::data::load::formats::dicom) columns: usize,
+    pub(in crate::data::load::formats::dicom) rows: usize,
+    /// Numbers of each pixel.
+    pub(in crate::data::load::formats::dicom) samples: usize,
+    /// All numbers of one colour come before those of the next.
+    pub(in crate::data::load::formats::dicom) is_planar: bool,
+    pub(in crate::data::load::formats::dicom) colors: Colors,
+    pub(in crate::data::load::formats::dicom) number: PixelNumber,
+}
+
+/// What the numbers of a pixel are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::data::load::formats::dicom) enum Colors {
+    /// More is brighter.
+    Grey,
+    /// More is darker.
+    Inverted,
+    /// Numbers of colours in a table.
+    Palette,
+    Rgb,
+    /// Luminance and two differences of colour (ITU-R BT.601, full range).
+    Ybr,
+    /// The same, where two pixels share the differences.
+    YbrPairs,
+}
+
+/// How a number is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::data::load::formats::dicom) enum PixelNumber {
+    Integer(Bits),
+    F32,
+    F64,
+}
+
+/// Where the bits of a whole number are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::data::load::formats::dicom) struct Bits {
+    /// That it takes in the file: 8, 16 or 32.
+    pub(in crate::data::load::formats::dicom) allocated: u32,
+    /// That count.
+    pub(in crate::data::load::formats::dicom) stored: u32,
+    /// The highest of these.
+    pub(in crate::data::load::formats::dicom) high: u32,
+    /// Two's complement.
+    pub(in crate::data::load::formats::dicom) is_signed: bool,
+}
+
+impl Shape {
+    /// How the pixels of a file are stored.
+    pub(in crate::data::load::formats::dicom) fn of(
+        attempt: Attempt<'_>,
+        header: &Header,
+    ) -> Result<Self, LoadError> {
+        let found = &header.found;
+        let (Some(rows), Some(columns)) = (found.rows, found.columns) else {
+            return Err(attempt.bad_input(
+                "Rows, Columns",
+                "it does not say how large its pictures are",
+                "copy or export the file again",
+            ));
+        };
+        let samples = found.samples.unwrap_or(1);
+        let colors = match (samples, found.photometric.as_str()) {
+            (1, "MONOCHROME1") => Colors::Inverted,
+            (1, "PALETTE COLOR") => Colors::Palette,
+            (1, _) => Colors::Grey,
+            (3, "YBR_FULL") => Colors::Ybr,
+            (3, "YBR_FULL_422") => Colors::YbrPairs,
+            (3, "RGB" | "YBR_RCT" | "YBR_ICT" | "") => Colors::Rgb,
+            (samples, photometric) => {
+                return Err(attempt.bad_input(
+                    "Photometric Interpretation",
+                    format!("pixels of {samples} numbers as {} are not read", quoted(photometric)),
+                    "convert it to grey values or RGB: `gdcmconv --photometric-interpretation RGB in.dcm out.dcm`",
+                ));
+            }
+        };
+        let number = match header.pixels.map(|pixels| pixels.tag) {
+            Some(FLOATS) => PixelNumber::F32,
+            Some(DOUBLES) => PixelNumber::F64,
+            _ => PixelNumber::Integer(bits(attempt, header)?),
+        };
+        let shape = Self {
+            columns: usize::from(columns),
+            rows: usize::from(rows),
+            samples: usize::from(samples),
+            is_planar: samples > 1 && found.planar == Some(1),
+            colors,
+            number,
+        };
+        if shape.colors == Colors::YbrPairs && !shape.columns.is_multiple_of(2) {
+            return Err(attempt.bad_input(
+                "Columns",
+                format!("pixels share colours in pairs, and {columns} are not pairs"),
+                "copy or export the file again",
+            ));
+        }
+        Ok(shape)
+    }
+
+    /// Pixels of a picture.
+    pub(in crate::data::load::formats::dicom) fn pixels(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Bytes of a number.
+    pub(in crate::data::load::formats::dicom) fn bytes(&self) -> usize {
+        match self.number {
+            PixelNumber::Integer(bits) => bits.allocated as usize / 8,
+            PixelNumber::F32 => 4,
+            PixelNumber::F64 => 8,
+        }
+    }
+
+    /// Bytes of two pixels, side by side, as they are stored without compression.
+    pub(in crate::data::load::formats::dicom) fn bytes_of_pair(&self) -> usize {
+        let numbers = if self.colors == Colors::YbrPairs { 4 } else { 2 * self.samples };
+        numbers * self.bytes()
+    }
+
+    /// Bytes of a picture without compression.
+    pub(in crate::data::load::formats::dicom) fn bytes_of_frame(&self) -> u64 {
+        (self.pixels() as u64 * self.bytes_of_pair() as u64).div_ceil(2)
+    }
+
+    /// The type of voxels that have what is stored.
+    pub(in crate::data::load::formats::dicom) fn voxel_type(&self) -> VoxelType {
+        match self.number {
+            PixelNumber::F32 => VoxelType::F32,
+            PixelNumber::F64 => VoxelType::F64,
+            PixelNumber::Integer(Bits { allocated, is_signed, .. }) => match (allocated, is_signed) {
+                (8, false) => VoxelType::U8,
+                (8, true) => VoxelType::I8,
+                (16, false) => VoxelType::U16,
+                (16, true) => VoxelType::I16,
+                (_, false) => VoxelType::U32,
+                (_, true) => VoxelType::I32,
+            },
+        }
+    }
+}
+
+/// Where the bits of numbers are; what cannot be is taken as nearly all files have it.
+fn bits(attempt: Attempt<'_>, header: &Header) -> Result<Bits, LoadError> {
+    let found = &header.found;
+    let allocated = u32::from(found.bits_allocated.unwrap_or(16));
+    if !matches!(allocated, 8 | 16 | 32) {
+        let (why, help) = match allocated {
+            1 => (
+                "pixels of one bit, as those of segmentations, are not read".to_owned(),
+                "convert it: `segimage2itkimage --inputDICOM in.dcm --outputDirectory . -t nrrd` (dcmqi)",
+            ),
+            _ => (
+                format!("numbers of {allocated} bits are not read, but those of 8, 16 and 32"),
+                "convert it with `gdcmconv --raw in.dcm out.dcm`",
+            ),
+        };
+        return Err(attempt.bad_input("Bits Allocated", why, help));
+    }
+    let stored = found.bits_stored.map_or(allocated, u32::from);
+    let stored = if (1..=allocated).contains(&stored) { stored } else { allocated };
+    let high = found.high_bit.map_or(stored - 1, u32::from);
+    let high = if (stored - 1..allocated).contains(&high) { high } else { stored - 1 };
+    Ok(Bits { allocated, stored, high, is_signed: found.is_signed })
+}
+
+impl Bits {
+    /// The value of a number as it is stored.
+    pub(in crate::data::load::formats::dicom) fn value(self, raw: u32) -> i64 {
+        let shifted = raw >> (self.high + 1 - self.stored);
+        let unused = 32 - self.stored;
+        if self.is_signed {
+            i64::from((shifted << unused) as i32 >> unused)
+        } else {
+            i64::from(shifted << unused >> unused)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unused_bits_do_not_count_and_signs_do() {
+        for (allocated, stored, high, is_signed, raw, value) in [
+            (16, 12, 11, false, 0xf123, 0x123),
+            (16, 12, 11, true, 0x0fff, -1),
+            (16, 12, 11, true, 0xf7ff, 0x7ff),
+            (16, 12, 15, false, 0xabcf, 0xabc),
+            (16, 12, 15, true, 0xabcf, 0xabc - 0x1000),
+            (16, 16, 15, true, 0x8000, -0x8000),
+            (8, 8, 7, true, 0xff, -1),
+            (8, 8, 7, false, 0xff, 0xff),
+            (32, 32, 31, false, u32::MAX, 0xffff_ffff),
+            (32, 32, 31, true, u32::MAX, -1),
+            (8, 1, 0, false, 0xff, 1),
+            (8, 1, 0, true, 1, -1),
+        ] {
+            let bits = Bits { allocated, stored, high, is_signed };
+            assert_eq!(bits.value(raw), value, "{bits:?} {raw:x}");
+        }
+    }
+}

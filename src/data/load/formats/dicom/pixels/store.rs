@@ -1,0 +1,344 @@
+//! Where the pixels of a file's frames are, and how they are fetched.
+
+use std::io::{self, Read as _};
+
+use super::super::header::Header;
+use super::super::header::bytes::Bytes;
+use super::super::header::syntax::Codec;
+use super::super::header::tags::{ITEM, SEQUENCE_END};
+use super::super::header::walk::PixelElement;
+use super::codec::{Unpacked, unpack};
+use super::raster::{Raster, Voxel};
+use super::shape::Shape;
+use crate::data::attempt::{Attempt, human_bytes};
+use crate::data::load::reading::input::Input;
+use crate::data::load::{Endian, LoadControl, LoadError};
+
+/// Most fragments that are looked at: 16 for each of the most frames.
+const MOST_FRAGMENTS: usize = 1 << 22;
+
+/// Pixels that are read at a time; an even number.
+const PIXELS_AT_ONCE: usize = 1 << 18;
+
+const HELP_COPY: &str = "copy or export the file again";
+
+/// A piece of compressed pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Fragment {
+    offset: u64,
+    length: u32,
+}
+
+/// Where pixels are.
+#[derive(Debug)]
+pub(in crate::data::load::formats::dicom) struct Store {
+    shape: Shape,
+    kept: Kept,
+}
+
+#[derive(Debug)]
+enum Kept {
+    /// In the file, frame after frame.
+    Plain { offset: u64, endian: Endian, is_swapped: bool },
+    /// Here, frame after frame.
+    Inflated(Vec<u8>),
+    /// In the file, each frame in pieces.
+    Packed { codec: Codec, frames: Vec<Vec<Fragment>> },
+}
+
+impl Store {
+    /// Finds the frames of a file, so many of them.
+    pub(in crate::data::load::formats::dicom) fn of(
+        header: &Header,
+        shape: Shape,
+        budget_bytes: u64,
+        control: &LoadControl,
+    ) -> Result<Self, LoadError> {
+        let attempt = Attempt { what: super::super::WHAT, path: &header.path };
+        let count = header.frame_count();
+        let Some(pixels) = header.pixels else {
+            return Err(attempt.bad_input("Pixel Data", "it has no pixels", HELP_COPY));
+        };
+        let codec = header.syntax.codec.as_ref().map_err(|name| {
+            attempt.bad_input(
+                "Transfer Syntax",
+                format!("its pixels are compressed in a way that is not read: {name}"),
+                "convert it with `gdcmconv --raw in.dcm out.dcm`",
+            )
+        })?;
+        if pixels.length.is_none() {
+            let packed = Self::packed(attempt, header, pixels, *codec, count, control)?;
+            return Ok(Self { shape, kept: packed });
+        }
+        if header.syntax.is_encapsulated {
+            return Err(attempt.bad_input("Pixel Data", "compressed pixels are not in fragments", HELP_COPY));
+        }
+        if header.syntax.is_deflated {
+            let expected = shape.bytes_of_frame().saturating_mul(count);
+            return Self::inflated(attempt, header, shape, expected, budget_bytes, control);
+        }
+        check_room(attempt, header, &shape)?;
+        let endian = header.syntax.form.endian;
+        let is_swapped = endian == Endian::Big && shape.bytes() == 1 && pixels.is_words;
+        Ok(Self { shape, kept: Kept::Plain { offset: pixels.offset, endian, is_swapped } })
+    }
+
+    fn inflated(
+        attempt: Attempt<'_>,
+        header: &Header,
+        shape: Shape,
+        expected: u64,
+        budget_bytes: u64,
+        control: &LoadControl,
+    ) -> Result<Self, LoadError> {
+        if expected > budget_bytes {
+            return Err(attempt.limit(
+                "Number of Frames",
+                format!(
+                    "deflated pixels of {} are expected, {} are allowed",
+                    human_bytes(u128::from(expected)),
+                    human_bytes(u128::from(budget_bytes))
+                ),
+                "close other programs, or convert it with `gdcmconv --raw in.dcm out.dcm`",
+            ));
+        }
+        let (_, mut bytes) = Header::read(&header.path, control)?;
+        let mut inflated = Vec::new();
+        while (inflated.len() as u64) < expected {
+            control.check()?;
+            let most = (expected - inflated.len() as u64).min(1 << 20);
+            match io::Read::by_ref(&mut bytes).take(most).read_to_end(&mut inflated) {
+                Ok(0) => return Err(truncated(attempt, &shape, header.frame_count(), inflated.len() as u64)),
+                Ok(_) => {}
+                Err(error) => {
+                    return Err(attempt.bad_input(
+                        "data",
+                        format!("the deflated data are broken: {error}"),
+                        HELP_COPY,
+                    ));
+                }
+            }
+        }
+        Ok(Self { shape, kept: Kept::Inflated(inflated) })
+    }
+
+    fn packed(
+        attempt: Attempt<'_>,
+        header: &Header,
+        pixels: PixelElement,
+        codec: Codec,
+        count: u64,
+        control: &LoadControl,
+    ) -> Result<Kept, LoadError> {
+        let wrong = |why: &str| attempt.bad_input("Pixel Data", why, HELP_COPY);
+        if header.syntax.is_deflated {
+            return Err(wrong("its pixels are compressed twice"));
+        }
+        let mut input = Input::open(attempt)?;
+        input.seek(pixels.offset).map_err(|error| attempt.io(error))?;
+        let mut bytes = Bytes::of(input);
+        bytes.at = pixels.offset;
+        let mut table = Vec::new();
+        let mut fragments = Vec::new();
+        let mut is_first = true;
+        loop {
+            control.check()?;
+            let tag = bytes.tag(Endian::Little).map_err(|error| attempt.io(error))?;
+            // Without an end mark what is there counts: the decoder will know whether it is whole.
+            let (Some(ITEM), Ok(length)) = (tag, bytes.u32(Endian::Little)) else {
+                if matches!(tag, None | Some(SEQUENCE_END | ITEM)) {
+                    break;
+                }
+                return Err(wrong("something that is no fragment lies among the fragments"));
+            };
+            let offset = bytes.at;
+            let left = bytes.len.saturating_sub(offset);
+            if u64::from(length) > left {
+                return Err(wrong(&format!(
+                    "it is cut off: {length} bytes of a fragment expected, {left} found"
+                )));
+            }
+            if is_first {
+                is_first = false;
+                // A table that does not fit the frames says nothing.
+                if u64::from(length) == count.saturating_mul(4) {
+                    table = starts(&bytes.value(u64::from(length)).map_err(|error| attempt.io(error))?);
+                } else {
+                    bytes.skip(u64::from(length)).map_err(|error| attempt.io(error))?;
+                }
+                continue;
+            }
+            if fragments.len() == MOST_FRAGMENTS {
+                return Err(wrong(&format!("it has more than {MOST_FRAGMENTS} fragments")));
+            }
+            bytes.skip(u64::from(length)).map_err(|error| attempt.io(error))?;
+            fragments.push(Fragment { offset, length });
+        }
+        if table.is_empty() && header.found.frame_starts.len() as u64 == count {
+            table.clone_from(&header.found.frame_starts);
+        }
+        let found = fragments.len();
+        let frames = in_frames(fragments, &table, count).ok_or_else(|| {
+            wrong(&format!("its {found} fragments make no {count} frames, and no table says which do"))
+        })?;
+        Ok(Kept::Packed { codec, frames })
+    }
+
+    /// Reads a frame's voxels.
+    pub(in crate::data::load::formats::dicom) fn read<T: Voxel>(
+        &self,
+        attempt: Attempt<'_>,
+        frame: usize,
+        raster: Raster,
+        voxels: &mut [T],
+        control: &LoadControl,
+    ) -> Result<(), LoadError> {
+        let size = self.shape.bytes_of_frame();
+        let beyond = || attempt.bad_input("Number of Frames", "it has fewer frames than it says", HELP_COPY);
+        match &self.kept {
+            Kept::Plain { offset, endian, is_swapped } => {
+                let start = size.checked_mul(frame as u64).and_then(|start| start.checked_add(*offset));
+                let mut input = Input::open(attempt)?;
+                input.seek(start.ok_or_else(beyond)?).map_err(|error| attempt.io(error))?;
+                let raster = Raster { endian: *endian, ..raster };
+                let at_once = if self.shape.is_planar { voxels.len() } else { PIXELS_AT_ONCE };
+                let mut block = Vec::new();
+                for voxels in voxels.chunks_mut(at_once.max(1)) {
+                    control.check()?;
+                    // A last byte of a picture of odd size belongs to a pair with the next.
+                    let bytes = (voxels.len() * self.shape.bytes_of_pair()).div_ceil(2);
+                    block.resize(bytes + usize::from(*is_swapped && !bytes.is_multiple_of(2)), 0);
+                    input.reader.read_exact(&mut block).map_err(|error| attempt.io(error))?;
+                    if *is_swapped {
+                        block.as_chunks_mut::<2>().0.iter_mut().for_each(|pair| pair.swap(0, 1));
+                    }
+                    raster.write(&block, voxels);
+                }
+            }
+            Kept::Inflated(bytes) => {
+                let size = usize::try_from(size).map_err(|_too_large| beyond())?;
+                let bytes = bytes.chunks_exact(size.max(1)).nth(frame).ok_or_else(beyond)?;
+                Raster { endian: Endian::Little, ..raster }.write(bytes, voxels);
+            }
+            Kept::Packed { codec, frames } => {
+                let fragments = frames.get(frame).ok_or_else(beyond)?;
+                let packed = fetch(attempt, fragments)?;
+                let wrong = |why| {
+                    attempt.bad_input(
+                        &format!("Pixel Data, frame {frame}"),
+                        why,
+                        "convert it with `gdcmconv --raw in.dcm out.dcm`, or copy it again",
+                    )
+                };
+                let Unpacked { bytes, shape } = unpack(*codec, packed, self.shape).map_err(wrong)?;
+                if (bytes.len() as u64) < shape.bytes_of_frame() {
+                    return Err(wrong(format!("a picture has {} of {size} bytes", bytes.len())));
+                }
+                Raster { shape, endian: Endian::Little, ..raster }.write(&bytes, voxels);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Deflate makes at most so many bytes of one.
+const MOST_DEFLATED: u64 = 1032;
+
+/// Checks that a file has room for the frames that it announces, before any of them is made room for.
+pub(in crate::data::load::formats::dicom) fn check_room(
+    attempt: Attempt<'_>,
+    header: &Header,
+    shape: &Shape,
+) -> Result<(), LoadError> {
+    let Some(pixels) = header.pixels else { return Ok(()) };
+    let count = header.frame_count();
+    match pixels.length {
+        // A fragment begins with 8 bytes.
+        None if count <= header.len.saturating_sub(pixels.offset) / 8 => Ok(()),
+        None => Err(attempt.bad_input(
+            "Number of Frames",
+            format!("the file has no room for the {count} frames that it announces"),
+            HELP_COPY,
+        )),
+        Some(length) => {
+            let expected = shape.bytes_of_frame().max(1).checked_mul(count);
+            let most =
+                if header.syntax.is_deflated { header.len.saturating_mul(MOST_DEFLATED) } else { length };
+            if expected.is_some_and(|expected| expected <= most) {
+                Ok(())
+            } else {
+                Err(truncated(attempt, shape, count, length))
+            }
+        }
+    }
+}
+
+fn truncated(attempt: Attempt<'_>, shape: &Shape, count: u64, found: u64) -> LoadError {
+    let expected = u128::from(shape.bytes_of_frame()) * u128::from(count);
+    let (columns, rows) = (shape.columns, shape.rows);
+    attempt.bad_input(
+        "Pixel Data",
+        format!(
+            "the data are truncated: {expected} bytes expected for {count} frames of {columns} x {rows} pixels, \
+             {found} found"
+        ),
+        HELP_COPY,
+    )
+}
+
+/// The bytes of pieces, one after the other. They lie in the file, as has been checked.
+fn fetch(attempt: Attempt<'_>, fragments: &[Fragment]) -> Result<Vec<u8>, LoadError> {
+    let mut packed = Vec::new();
+    let mut input = Input::open(attempt)?;
+    for fragment in fragments {
+        input.seek(fragment.offset).map_err(|error| attempt.io(error))?;
+        let length = u64::from(fragment.length);
+        input.reader.by_ref().take(length).read_to_end(&mut packed).map_err(|error| attempt.io(error))?;
+    }
+    Ok(packed)
+}
+
+/// The numbers of a table of where frames begin.
+fn starts(bytes: &[u8]) -> Vec<u64> {
+    bytes.as_chunks().0.iter().map(|&word| u64::from(u32::from_le_bytes(word))).collect()
+}
+
+/// Which pieces make which frame: one all, each its own, or as the table says, which counts from the first piece's item on.
+fn in_frames(fragments: Vec<Fragment>, table: &[u64], count: u64) -> Option<Vec<Vec<Fragment>>> {
+    if count == 1 && !fragments.is_empty() {
+        return Some(vec![fragments]);
+    }
+    if fragments.len() as u64 == count {
+        return Some(fragments.into_iter().map(|fragment| vec![fragment]).collect());
+    }
+    // Each piece has an item's tag and length before it.
+    let first = fragments.first()?.offset;
+    let mut frames: Vec<Vec<Fragment>> = Vec::new();
+    for fragment in fragments {
+        let start = fragment.offset - first;
+        if table.get(frames.len()) == Some(&start) {
+            frames.push(Vec::new());
+        }
+        frames.last_mut()?.push(fragment);
+    }
+    (frames.len() as u64 == count).then_some(frames)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_make_frames() {
+        let piece = |offset| Fragment { offset, length: 8 };
+        let three = vec![piece(100), piece(116), piece(132)];
+        assert_eq!(in_frames(three.clone(), &[], 1).map(|frames| frames[0].len()), Some(3));
+        assert_eq!(in_frames(three.clone(), &[], 3).map(|frames| frames.len()), Some(3));
+        let two = in_frames(three.clone(), &[0, 16], 2).unwrap();
+        assert_eq!(two, [vec![piece(100)], vec![piece(116), piece(132)]]);
+        for (table, count) in [(&[][..], 2), (&[0, 17], 2), (&[16, 0], 2), (&[0, 16], 4), (&[], 0)] {
+            assert_eq!(in_frames(three.clone(), table, count), None, "{table:?} {count}");
+        }
+        assert_eq!(in_frames(Vec::new(), &[], 1), None);
+    }
+}

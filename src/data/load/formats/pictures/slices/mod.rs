@@ -1,0 +1,216 @@
+//! Slices of a volume in files of their own: pictures that are numbered, and single ones.
+//!
+//! PNG (<https://www.w3.org/TR/png-3/>), JPEG (ITU-R T.81), BMP and TIFF. Nothing says how far apart slices are.
+
+mod groups;
+mod picture;
+#[cfg(test)]
+mod tests;
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::pile::read_pile;
+use super::tiff;
+use crate::data::attempt::{Attempt, Extent, quoted};
+use crate::data::load::reading::input::{Input, stem};
+use crate::data::load::reading::number::Part;
+use crate::data::load::reading::placement::{Parts, Placement};
+use crate::data::load::reading::reader::{Reader, Source, Start};
+use crate::data::load::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
+use crate::data::{Hints, Volume, plain};
+use groups::{Group, groups};
+use picture::{Header, Kind, look};
+
+/// Series of which the sizes are looked up for the list of them: as many as a screen has lines for.
+const MOST_LOOKED_UP: usize = 24;
+
+/// A picture as a volume of one slice.
+pub(in crate::data::load) const READER: Reader = Reader {
+    name: "PNG, JPEG, BMP",
+    endings: &[".png", ".jpg", ".jpeg", ".bmp"],
+    recognises: |start| Kind::of(start.stored()).is_some_and(|kind| kind != Kind::Tiff),
+    load: load_one,
+};
+
+fn load_one(source: Source<'_>) -> Result<Volume, LoadError> {
+    let Source { path, start, options, control, .. } = source;
+    let attempt = Attempt { what: "read the picture", path };
+    let Some(kind) = Kind::of(start.stored()) else {
+        return Err(attempt.bad_input("header", "it does not begin as pictures do", "copy the file again"));
+    };
+    volume(attempt, kind, &[path.to_owned()], stem(path), Vec::new(), options, control)
+}
+
+/// Loads the volume whose slices are among the files of a folder, in natural order; `None` where none is a picture.
+///
+/// # Errors
+/// [`LoadError::Several`] where there are several volumes, `BadInput` for slices that do not go together or are broken.
+pub(in crate::data::load) fn load(
+    attempt: Attempt<'_>,
+    files: &[PathBuf],
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Result<Option<Volume>, LoadError> {
+    let mut pictures = Vec::new();
+    for path in files {
+        control.check()?;
+        if let Some(kind) = Kind::of_file(of_slice(path))? {
+            pictures.push((path.as_path(), kind));
+        }
+    }
+    if pictures.iter().all(|&(_, kind)| kind == Kind::Tiff)
+        && let Some(set) = tiff_set(&pictures, control)?
+    {
+        return load_tiff(set, options, control).map(Some);
+    }
+    let mut groups = groups(pictures.iter().copied());
+    let mut remarks = Vec::new();
+    if options.choice.series.is_none() {
+        leave_out_strays(&mut groups, &mut remarks);
+    }
+    if groups.is_empty() {
+        return Ok(None);
+    }
+    let is_one = groups.len() == 1;
+    let offers = offers(&groups, &pictures, options, control);
+    let group = groups.swap_remove(attempt.chosen(&options.choice, Dimension::Series, offers)?);
+    let members: Vec<PathBuf> = group.files.iter().map(|&file| pictures[file].0.to_owned()).collect();
+    if group.kind == Kind::Tiff
+        && let [one] = members.as_slice()
+    {
+        return load_tiff(one, options, control).map(Some);
+    }
+    remarks.extend(group.gap);
+    let folder = attempt.path.file_name().unwrap_or_default().to_string_lossy();
+    let name = if is_one && !folder.is_empty() { plain(&folder, 120) } else { plain(&group.name, 120) };
+    volume(attempt, group.kind, &members, name, remarks, options, control).map(Some)
+}
+
+fn of_slice(path: &Path) -> Attempt<'_> {
+    Attempt { what: "read the slice", path }
+}
+
+/// Beside the slices of one volume, single pictures are previews and the like.
+fn leave_out_strays(groups: &mut Vec<Group>, remarks: &mut Vec<String>) {
+    // Of fewer nobody could tell which are the strays.
+    const FEWEST_SLICES: usize = 3;
+    let is_stray = |group: &Group| group.files.len() == 1;
+    let stacks = groups.iter().filter(|group| !is_stray(group)).count();
+    let is_clear = stacks == 1 && groups.iter().any(|group| group.files.len() >= FEWEST_SLICES);
+    if is_clear && groups.len() > 1 {
+        remarks.push(format!("{} single pictures beside the slices are left out", groups.len() - 1));
+        groups.retain(|group| !is_stray(group));
+    }
+}
+
+/// What is offered where there are several volumes.
+fn offers(
+    groups: &[Group],
+    pictures: &[(&Path, Kind)],
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Vec<Offer> {
+    let dims = |group: &Group| {
+        let &first = group.files.first()?;
+        let (path, kind) = *pictures.get(first)?;
+        let (Header { size: [width, height], .. }, _) =
+            look(of_slice(path), kind, options, control, false).ok()?;
+        Some([width, height, group.files.len() as u64])
+    };
+    let is_long = groups.len() > MOST_LOOKED_UP || groups.len() == 1;
+    groups
+        .iter()
+        .enumerate()
+        .map(|(at, group)| Offer {
+            key: at.to_string(),
+            name: plain(&group.name, 80),
+            dims: if is_long { None } else { dims(group) },
+        })
+        .collect()
+}
+
+/// The file that says how all belong together, if the first does: it is read in place of all.
+fn tiff_set<'a>(pictures: &[(&'a Path, Kind)], control: &LoadControl) -> Result<Option<&'a Path>, LoadError> {
+    let [(first, _), (second, _), ..] = *pictures else { return Ok(None) };
+    let name = second.file_name().unwrap_or_default().to_string_lossy();
+    let is_set = tiff::Picture::open(of_slice(first), control)?.names(&name);
+    Ok(is_set.then_some(first))
+}
+
+fn load_tiff(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let attempt = of_slice(path);
+    let mut input = Input::open(attempt)?;
+    let start = Start::of(&mut input).map_err(|error| attempt.io(error))?;
+    (tiff::READER.load)(Source { path, input, start, options, control })
+}
+
+/// The volume of slices of one kind.
+fn volume(
+    attempt: Attempt<'_>,
+    kind: Kind,
+    files: &[PathBuf],
+    name: String,
+    remarks: Vec<String>,
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Result<Volume, LoadError> {
+    let look_at = |path: &PathBuf, is_decoded| look(of_slice(path), kind, options, control, is_decoded);
+    let headers: Vec<Header> = files
+        .par_iter()
+        .map(|path| look_at(path, false).map(|(header, _)| header))
+        .collect::<Result<_, _>>()?;
+    let (Some(&model), Some(first)) = (headers.first(), files.first()) else {
+        return Err(attempt.bad_input("files", "there is no slice", "name one file"));
+    };
+    for (header, path) in headers.iter().zip(files) {
+        check(attempt, [(&model, first), (header, path)])?;
+    }
+    let stored = model.stored;
+    let dims = [model.size[0], model.size[1], files.len() as u64];
+    let extent = Extent::checked(attempt, "files", dims, stored.voxel_type(), options.memory_budget_bytes)?;
+    let samples = read_pile(attempt, &stored, extent, control, |range| {
+        files[range]
+            .par_iter()
+            .map(|path| {
+                let (header, bytes) = look_at(path, true)?;
+                check(attempt, [(&model, first), (&header, path)])?;
+                Ok(bytes)
+            })
+            .collect()
+    })?;
+    let mut placement = Placement::unknown();
+    placement.remarks = remarks;
+    if stored.part == Part::Luminance {
+        placement.remarks.push("colours are shown as their luminance".to_owned());
+    }
+    Parts { name, dims: extent.dims, placement, samples, hints: Hints::default() }.volume(attempt)
+}
+
+/// Two slices must be alike, and each file hold one.
+fn check(attempt: Attempt<'_>, slices: [(&Header, &PathBuf); 2]) -> Result<(), LoadError> {
+    let [(model, _), (header, _)] = slices;
+    let [first, path] =
+        slices.map(|(_, path)| quoted(&path.file_name().unwrap_or_default().to_string_lossy()));
+    if header.pages > 1 {
+        return Err(attempt.bad_input(
+            "files",
+            format!("{path} alone holds {} slices", header.pages),
+            "name that file, or choose another series with --series",
+        ));
+    }
+    if header.size == model.size && header.stored == model.stored {
+        return Ok(());
+    }
+    let say = |header: &Header| {
+        let [width, height] = header.size;
+        let Header { stored, .. } = header;
+        format!("{width} x {height} pixels of {} x {} bits", stored.components, stored.number.bytes() * 8)
+    };
+    Err(attempt.bad_input(
+        "files",
+        format!("{path} has {}, {first} has {}", say(header), say(model)),
+        "put slices of one size and type into a folder of their own",
+    ))
+}

@@ -1,0 +1,185 @@
+//! A slice in a file of its own: PNG, JPEG, BMP or TIFF.
+
+use std::io::{self, BufReader, Read as _};
+
+use image::error::{ImageError, LimitErrorKind};
+use image::{ColorType, ImageDecoder as _, ImageFormat, ImageReader, Limits};
+
+use super::super::tiff;
+use crate::data::attempt::{Attempt, human_bytes};
+use crate::data::load::reading::input::{Input, Witness};
+use crate::data::load::reading::number::{Number, Part, Stored};
+use crate::data::load::reading::samples::reserve;
+use crate::data::load::{Endian, LoadControl, LoadError, LoadOptions};
+use crate::data::plain;
+
+/// Bytes by which pictures are told.
+pub(super) const MARK_BYTES: usize = 32;
+
+/// Headers of BMP are so long (`BITMAPCOREHEADER` to `BITMAPV5HEADER`): "BM" alone may begin a text.
+const BMP_HEADERS: [u8; 7] = [12, 40, 52, 56, 64, 108, 124];
+
+const HELP: &str = "copy the file again, or save it anew as PNG or TIFF";
+
+/// A format of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) enum Kind {
+    Png,
+    Jpeg,
+    Bmp,
+    Tiff,
+}
+
+impl Kind {
+    /// By how a file begins.
+    pub(super) fn of(start: &[u8]) -> Option<Self> {
+        let is_bmp = || {
+            let header = start.get(14..18);
+            start.starts_with(b"BM")
+                && header.is_some_and(|header| BMP_HEADERS.contains(&header[0]) && header[1..] == [0; 3])
+        };
+        if start.starts_with(b"\x89PNG\r\n\x1a\n") {
+            Some(Self::Png)
+        } else if start.starts_with(&[0xFF, 0xD8, 0xFF]) {
+            Some(Self::Jpeg)
+        } else if tiff::is_tiff(start) {
+            Some(Self::Tiff)
+        } else {
+            is_bmp().then_some(Self::Bmp)
+        }
+    }
+
+    /// The format of a file, if it is a picture.
+    ///
+    /// # Errors
+    /// `Io` where it cannot be read.
+    pub(super) fn of_file(attempt: Attempt<'_>) -> Result<Option<Self>, LoadError> {
+        let input = Input::open(attempt)?;
+        let mut start = Vec::new();
+        // No buffer of the whole size for a look at a few bytes.
+        let mut file = input.reader.into_inner();
+        let read = file.by_ref().take(MARK_BYTES as u64).read_to_end(&mut start);
+        read.map_err(|error| attempt.io(error))?;
+        Ok(Self::of(&start))
+    }
+
+    fn format(self) -> Option<ImageFormat> {
+        match self {
+            Self::Png => Some(ImageFormat::Png),
+            Self::Jpeg => Some(ImageFormat::Jpeg),
+            Self::Bmp => Some(ImageFormat::Bmp),
+            Self::Tiff => None,
+        }
+    }
+}
+
+/// What is known of a picture before it is decoded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Header {
+    /// Width and height.
+    pub(super) size: [u64; 2],
+    /// How its numbers are stored once it is decoded.
+    pub(super) stored: Stored,
+    /// Pages that could be slices.
+    pub(super) pages: usize,
+}
+
+/// Looks at a picture, and where `decoded` is asked for decodes it.
+///
+/// # Errors
+/// `BadInput` for a broken file, or one whose numbers are not read; `Limit` over the budget.
+pub(super) fn look(
+    attempt: Attempt<'_>,
+    kind: Kind,
+    options: &LoadOptions,
+    control: &LoadControl,
+    is_decoded: bool,
+) -> Result<(Header, Vec<u8>), LoadError> {
+    control.check()?;
+    if let Some(format) = kind.format() {
+        return look_at_image(attempt, format, options, is_decoded);
+    }
+    let picture = tiff::Picture::open(attempt, control)?;
+    let (size, pages) = (picture.size(), picture.pages);
+    let header = Header { size, stored: picture.stored(attempt, options)?, pages };
+    let bytes = if is_decoded { picture.decode(attempt, control)? } else { Vec::new() };
+    Ok((header, bytes))
+}
+
+fn look_at_image(
+    attempt: Attempt<'_>,
+    format: ImageFormat,
+    options: &LoadOptions,
+    is_decoded: bool,
+) -> Result<(Header, Vec<u8>), LoadError> {
+    let input = Input::open(attempt)?;
+    let budget = options.memory_budget_bytes;
+    let too_large = |bytes: u64| {
+        attempt.limit(
+            "size",
+            format!(
+                "the picture needs {}, {} are allowed",
+                human_bytes(bytes.into()),
+                human_bytes(budget.into())
+            ),
+            "close other programs, or load a smaller picture",
+        )
+    };
+    // JPEG is read whole before it is decoded.
+    if input.len > budget {
+        return Err(too_large(input.len));
+    }
+    let witness = Witness::of(attempt, &input)?;
+    let fault = |error: ImageError| match error {
+        ImageError::Limits(limit) if limit.kind() != LimitErrorKind::DimensionError => attempt.limit(
+            "size",
+            format!("the picture needs more than the {} that are allowed", human_bytes(budget.into())),
+            "close other programs, or load a smaller picture",
+        ),
+        ImageError::IoError(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+            attempt.bad_input("data", "the picture is truncated: the file ends too early", HELP)
+        }
+        error => attempt.bad_input("data", plain(&format!("the picture is broken: {error}"), 200), HELP),
+    };
+    let mut reader: ImageReader<BufReader<_>> = ImageReader::with_format(input.reader, format);
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(budget);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(fault)?;
+    let (width, height) = decoder.dimensions();
+    let (number, components) = match decoder.color_type() {
+        ColorType::L8 => (Number::U8, 1),
+        ColorType::La8 => (Number::U8, 2),
+        ColorType::Rgb8 => (Number::U8, 3),
+        ColorType::Rgba8 => (Number::U8, 4),
+        ColorType::L16 => (Number::U16, 1),
+        ColorType::La16 => (Number::U16, 2),
+        ColorType::Rgb16 => (Number::U16, 3),
+        ColorType::Rgba16 => (Number::U16, 4),
+        other => return Err(attempt.bad_input("data", format!("its colours are {other:?}"), HELP)),
+    };
+    let Some(part) = Part::chosen(options.choice.component, components, true) else {
+        let said = options.choice.component.unwrap_or(0);
+        return Err(attempt.bad_input(
+            "--component",
+            format!("component {said} is not among its {components}"),
+            "give a number from 0, or leave it out",
+        ));
+    };
+    // Decoders give numbers in the order of this machine.
+    let endian = if cfg!(target_endian = "big") { Endian::Big } else { Endian::Little };
+    let stored = Stored { number, endian, components, part };
+    let header = Header { size: [width.into(), height.into()], stored, pages: 1 };
+    let total = decoder.total_bytes();
+    if total > budget {
+        return Err(too_large(total));
+    }
+    let mut bytes = Vec::new();
+    if is_decoded {
+        let count = usize::try_from(total).ok();
+        bytes = count.and_then(|count| reserve(count).ok()).ok_or_else(|| too_large(total))?;
+        bytes.resize(bytes.capacity().min(count.unwrap_or(0)), 0);
+        decoder.read_image(&mut bytes).map_err(fault)?;
+    }
+    witness.vouch(attempt, Ok((header, bytes)))
+}

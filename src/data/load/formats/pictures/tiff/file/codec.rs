@@ -1,0 +1,157 @@
+//! The compressions of TIFF: from the bytes of a strip or tile to those that were compressed.
+
+use std::io::Read;
+
+use flate2::read::ZlibDecoder;
+use ruzstd::decoding::StreamingDecoder;
+use weezl::{BitOrder, LzwStatus, decode};
+
+use crate::data::load::LoadControl;
+use crate::data::load::reading::samples::{BLOCK_BYTES, Fault, fill};
+
+/// The largest window of Zstandard that every decoder is to allow (RFC 8878, 3.1.1.1.2).
+const ZSTD_WINDOW_BYTES: u64 = 8 << 20;
+
+/// How the bytes of a part are compressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Codec {
+    None,
+    Lzw,
+    Deflate,
+    PackBits,
+    Zstd,
+}
+
+impl Codec {
+    /// By the number that the tag "Compression" has.
+    pub(super) fn of(compression: u64) -> Option<Self> {
+        Some(match compression {
+            1 => Self::None,
+            5 => Self::Lzw,
+            // Adobe's number, and an older one.
+            8 | 32946 => Self::Deflate,
+            32773 => Self::PackBits,
+            50000 => Self::Zstd,
+            _ => return None,
+        })
+    }
+
+    /// Fills `out` as far as the compressed bytes go; how far that is. What would come after is not looked at.
+    pub(super) fn expand(self, packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
+        match self {
+            Self::None => fill(&mut &packed[..], out, control),
+            Self::Lzw => expand_lzw(packed, out, control),
+            Self::Deflate => fill(&mut ZlibDecoder::new(packed), out, control),
+            Self::PackBits => fill(&mut PackBits { packed, left: 0, repeated: None }, out, control),
+            Self::Zstd => {
+                let window = (out.len() as u64).next_power_of_two().max(ZSTD_WINDOW_BYTES);
+                let decoder = StreamingDecoder::new_with_max_window_size(packed, window);
+                fill(&mut decoder.map_err(|error| Fault::Io(std::io::Error::other(error)))?, out, control)
+            }
+        }
+    }
+}
+
+/// LZW as TIFF has it: the highest bits first, and codes that grow one early (TIFF 6.0, section 13).
+fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
+    let mut decoder = decode::Configuration::with_tiff_size_switch(BitOrder::Msb, 8)
+        .with_yield_on_full_buffer(true)
+        .build();
+    let mut filled = 0;
+    while filled < out.len() {
+        control.check().map_err(Fault::Stopped)?;
+        let end = out.len().min(filled + BLOCK_BYTES);
+        let step = decoder.decode_bytes(packed, &mut out[filled..end]);
+        packed = packed.get(step.consumed_in..).unwrap_or_default();
+        filled += step.consumed_out;
+        match step.status {
+            Ok(LzwStatus::Ok) if step.consumed_in > 0 || step.consumed_out > 0 => {}
+            Ok(_) => break,
+            Err(error) => return Err(Fault::Io(std::io::Error::other(error))),
+        }
+    }
+    Ok(filled)
+}
+
+/// Runs of bytes (TIFF 6.0, section 9).
+struct PackBits<'a> {
+    packed: &'a [u8],
+    /// Bytes of the run that are still to come.
+    left: usize,
+    repeated: Option<u8>,
+}
+
+impl Read for PackBits<'_> {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+        while self.left == 0 {
+            let Some((&head, rest)) = self.packed.split_first() else { return Ok(0) };
+            self.packed = rest;
+            match head as i8 {
+                // Says nothing.
+                -128 => {}
+                count @ 0.. => (self.left, self.repeated) = (count as usize + 1, None),
+                count => {
+                    let Some((&byte, rest)) = self.packed.split_first() else { return Ok(0) };
+                    self.packed = rest;
+                    (self.left, self.repeated) = (1 + count.unsigned_abs() as usize, Some(byte));
+                }
+            }
+        }
+        let mut count = self.left.min(out.len());
+        if let Some(byte) = self.repeated {
+            out[..count].fill(byte);
+        } else {
+            count = count.min(self.packed.len());
+            let (run, rest) = self.packed.split_at(count);
+            out[..count].copy_from_slice(run);
+            self.packed = rest;
+        }
+        self.left -= count;
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn expanded(codec: Codec, packed: &[u8], most: usize) -> Result<Vec<u8>, Fault> {
+        let mut out = vec![0; most];
+        let count = codec.expand(packed, &mut out, &LoadControl::new())?;
+        out.truncate(count);
+        Ok(out)
+    }
+
+    #[test]
+    fn runs_are_repeated_and_others_taken() {
+        // The example of TIFF 6.0, page 42.
+        let packed =
+            [0xFE, 0xAA, 0x02, 0x80, 0x00, 0x2A, 0x80, 0xFD, 0xAA, 0x03, 0x80, 0x00, 0x2A, 0x22, 0xF7, 0xAA];
+        let mut whole =
+            vec![0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0xAA, 0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0x22];
+        whole.extend([0xAA; 10]);
+        assert_eq!(expanded(Codec::PackBits, &packed, 100).unwrap(), whole);
+        assert_eq!(expanded(Codec::PackBits, &packed, 5).unwrap(), whole[..5]);
+        assert_eq!(expanded(Codec::PackBits, &packed[..4], 100).unwrap(), whole[..4], "cut off in a run");
+        assert_eq!(expanded(Codec::PackBits, &[0xFE], 100).unwrap(), [0u8; 0]);
+    }
+
+    #[test]
+    fn no_codec_gives_more_than_asked_for_and_all_bear_nonsense() {
+        let bytes: Vec<u8> = (0..4000u32).map(|at| (at * at % 251) as u8).collect();
+        let mut lzw = weezl::encode::Encoder::with_tiff_size_switch(BitOrder::Msb, 8);
+        let lzw = lzw.encode(&bytes).unwrap();
+        let zstd = ruzstd::encoding::compress_to_vec(&bytes[..], ruzstd::encoding::CompressionLevel::Fastest);
+        for (codec, packed) in [(Codec::None, bytes.clone()), (Codec::Lzw, lzw), (Codec::Zstd, zstd)] {
+            assert_eq!(expanded(codec, &packed, 4000).unwrap(), bytes, "{codec:?}");
+            assert_eq!(expanded(codec, &packed, 70).unwrap(), bytes[..70], "{codec:?}");
+            let rest = expanded(codec, &packed[..packed.len() / 2], 4000);
+            assert!(rest.is_err() || rest.is_ok_and(|rest| rest.len() < 4000), "{codec:?}");
+        }
+        for codec in [Codec::Lzw, Codec::Deflate, Codec::PackBits, Codec::Zstd] {
+            // An error or few bytes: both end.
+            let _either = expanded(codec, &bytes, 100_000);
+            let _nothing = expanded(codec, &[], 10);
+        }
+    }
+}

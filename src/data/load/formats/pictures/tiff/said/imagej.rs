@@ -1,0 +1,185 @@
+//! What `ImageJ` says of its stacks: lines of `name=value` in the description of the first page.
+//!
+//! After what `ImageJ` itself writes (its class `FileSaver`). Stacks over 4 GiB have one page for all slices, which
+//! follow each other in the file. Of channels, slices and time steps the channels follow each other first.
+
+use super::super::fault::HELP;
+use super::super::file::Tiff;
+use super::super::file::directory::MOST_PAGES;
+use super::super::file::page::{Offsets, Page, tag};
+use super::super::plain::usable;
+use super::super::stack::{Slice, Stack, Steps};
+use super::length::millimetres;
+use crate::data::Hints;
+use crate::data::attempt::Attempt;
+use crate::data::load::reading::input::stem;
+use crate::data::load::reading::placement::Placement;
+use crate::data::load::{Choice, LoadError};
+
+/// Most channels that `ImageJ` shows together.
+const MOST_CHANNELS: usize = 7;
+
+/// The lines of a description.
+struct Said<'a>(&'a str);
+
+impl<'a> Said<'a> {
+    fn text(&self, name: &str) -> Option<&'a str> {
+        self.0.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix('=')).map(str::trim)
+    }
+
+    fn number(&self, name: &str) -> Option<f64> {
+        self.text(name)?.parse().ok().filter(|number: &f64| number.is_finite())
+    }
+
+    fn count(&self, name: &str) -> Option<usize> {
+        self.text(name)?.parse().ok().filter(|&count| count > 0)
+    }
+}
+
+/// Whether a description is one of `ImageJ`'s.
+pub(in super::super) fn is_imagej(description: &str) -> bool {
+    description.starts_with("ImageJ=")
+}
+
+/// The stack of a file with such a description.
+pub(in super::super) fn stack(
+    attempt: Attempt<'_>,
+    tiff: &mut Tiff,
+    description: &str,
+    choice: &Choice,
+) -> Result<Stack, LoadError> {
+    let said = Said(description);
+    let images = said.count("images");
+    if let (Some(images), &[page]) = (images, tiff.pages.as_slice())
+        && images > 1
+        && page.is_bare()
+    {
+        tiff.pages = contiguous(attempt, tiff, &page, images)?;
+    }
+    let mut remarks = Vec::new();
+    let pages = usable(tiff, &mut remarks);
+    let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
+        return Err(attempt.bad_input("pages", "there is none", HELP));
+    };
+    let (channels, frames) = (said.count("channels").unwrap_or(1), said.count("frames").unwrap_or(1));
+    let slices = said.count("slices");
+    let others = channels.checked_mul(frames);
+    // Old versions say no more than how many there are in all.
+    let slices = slices.or_else(|| others.map(|others| (pages.len() / others).max(1))).unwrap_or(1);
+    let is_whole = others.and_then(|others| others.checked_mul(slices)).is_some_and(|all| all <= pages.len());
+    let (channels, slices, frames) = if is_whole {
+        // Programs that write its files without saying which axis is which make slices channels.
+        let is_depth = channels > MOST_CHANNELS && [slices, frames] == [1, 1] && choice.channel.is_none();
+        if is_depth {
+            remarks.push(format!("{channels} channels of one slice each are taken as slices"));
+        }
+        if is_depth { (1, channels, 1) } else { (channels, slices, frames) }
+    } else {
+        remarks.push(format!(
+            "{channels} channels of {slices} slices at {frames} times are said, and there are {} pages: all are taken as \
+             slices",
+            pages.len()
+        ));
+        (1, pages.len(), 1)
+    };
+    let dims = [first.width, first.height, slices as u64];
+    let chosen = Steps { dims, channels, channel_names: Vec::new(), frames }.chosen(attempt, choice)?;
+    let mut placement = place(tiff, &said);
+    placement.remarks.splice(0..0, remarks);
+    chosen.remark(&mut placement);
+    let page_of = |[frame, slice]: [usize; 2]| pages[(frame * slices + slice) * channels + chosen.channel];
+    Ok(Stack {
+        name: stem(attempt.path),
+        slices: chosen
+            .slices(slices, frames)
+            .into_iter()
+            .map(|place| Slice { file: 0, page: page_of(place) })
+            .collect(),
+        beside: Vec::new(),
+        sample: None,
+        placement,
+        hints: hints(&said, channels),
+        scale: scale(&said),
+    })
+}
+
+/// Pages for slices that follow each other in a file that has a page for the first alone.
+fn contiguous(
+    attempt: Attempt<'_>,
+    tiff: &mut Tiff,
+    page: &Page,
+    images: usize,
+) -> Result<Vec<Page>, LoadError> {
+    let broken = |why: String| attempt.bad_input("images", why, HELP);
+    let offset = match page.offsets {
+        Offsets::At(at) => at,
+        Offsets::Listed(entry) => entry
+            .whole(&mut tiff.bytes)
+            .map_err(|error| super::super::fault::unreadable(attempt, "first page", error))?,
+    };
+    let slice = page.bytes().ok_or_else(|| broken("its slices cannot be so large".to_owned()))?;
+    let end = slice.checked_mul(images as u64).and_then(|bytes| bytes.checked_add(offset));
+    if images > MOST_PAGES || end.is_none_or(|end| end > tiff.bytes.len()) {
+        return Err(broken(format!(
+            "the data are truncated: {images} slices of {slice} bytes expected, {} bytes found",
+            tiff.bytes.len().saturating_sub(offset)
+        )));
+    }
+    let at = |image: usize| Page {
+        part: [page.width, page.height],
+        offsets: Offsets::At(offset + image as u64 * slice),
+        counts: None,
+        ..*page
+    };
+    Ok((0..images).map(at).collect())
+}
+
+/// How far apart voxels are.
+fn place(tiff: &mut Tiff, said: &Said<'_>) -> Placement {
+    let per_unit = |number: Option<f64>| {
+        number.filter(|number| number.is_finite() && *number > 0.0).map(|number| 1.0 / number)
+    };
+    let across = per_unit(tiff.said(tag::X_RESOLUTION));
+    let down = per_unit(tiff.said(tag::Y_RESOLUTION));
+    let deep = said.number("spacing");
+    // What is 1 of the unit is not written.
+    let lengths = [across.unwrap_or(1.0), down.or(across).unwrap_or(1.0), deep.unwrap_or(1.0)];
+    match said.text("unit").and_then(millimetres) {
+        Some(unit) if across.is_some() => {
+            let mut placement = Placement::spaced(lengths.map(|length| length * unit));
+            if deep.is_none() {
+                placement
+                    .remarks
+                    .push("no distance of slices is written: 1 of its unit, as ImageJ takes it".to_owned());
+            }
+            placement
+        }
+        // Pixels, or something unknown: no more than how much longer one side is than another.
+        _ if deep.is_some() => {
+            Placement { is_scale_known: false, ..Placement::spaced([lengths[0], lengths[1], lengths[2]]) }
+        }
+        _ => Placement::unknown(),
+    }
+}
+
+/// What values mean: stored ones times the first, plus the second. `ImageJ` has signed numbers of 16 bits in this way.
+fn scale(said: &Said<'_>) -> [f64; 2] {
+    // 0 is a straight line; curves are for densities of films.
+    match (said.text("cf"), said.number("c0"), said.number("c1")) {
+        (Some("0"), Some(intercept), Some(slope)) => [slope, intercept],
+        _ => [1.0, 0.0],
+    }
+}
+
+fn hints(said: &Said<'_>, channels: usize) -> Hints {
+    let mut hints = Hints::default();
+    // Of several channels they are those of the first.
+    if let (1, Some(low), Some(high)) = (channels, said.number("min"), said.number("max")) {
+        hints.set_window(low, high);
+    }
+    // What it calls values that mean nothing in particular.
+    if let Some(unit) = said.text("vunit").filter(|unit| !unit.eq_ignore_ascii_case("gray value")) {
+        hints.set_unit(unit);
+    }
+    hints
+}

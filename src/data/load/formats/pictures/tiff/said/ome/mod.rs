@@ -1,0 +1,249 @@
+//! What OME-TIFF says of its images: XML in the description of the first page.
+//!
+//! After the definition at <https://docs.openmicroscopy.org/ome-model/latest/ome-tiff/specification.html>. Pages may lie in
+//! several files beside each other; all of them, or one file of XML, say which.
+
+mod pages;
+
+use std::path::PathBuf;
+
+use roxmltree::{Document, Node};
+
+use super::super::fault::HELP;
+use super::super::file::Tiff;
+use super::super::file::page::Meaning;
+use super::super::stack::{Slice, Stack, Steps};
+use super::length::millimetres;
+use crate::data::attempt::{Attempt, quoted};
+use crate::data::load::reading::beside;
+use crate::data::load::reading::placement::Placement;
+use crate::data::load::{Choice, Dimension, LoadError, Offer};
+use crate::data::{Hints, Modality, plain};
+use pages::Pages;
+
+/// Bytes of XML that are read at most: of ten thousand files it has a few million.
+pub(in super::super) const MOST_XML_BYTES: u64 = 64 << 20;
+
+/// Most elements and texts of it.
+const MOST_NODES: u32 = 4 << 20;
+
+/// Whether a description is OME's XML.
+pub(in super::super) fn is_ome(description: &str) -> bool {
+    // After a byte order mark, a declaration and a comment, which writers put there.
+    let head: String = description.chars().take(2000).collect();
+    head.trim_start_matches('\u{feff}').trim_start().starts_with('<')
+        && (head.contains("<OME") || head.contains(":OME"))
+}
+
+fn parsed<'a>(attempt: Attempt<'_>, xml: &'a str) -> Result<Document<'a>, LoadError> {
+    let options = roxmltree::ParsingOptions { nodes_limit: MOST_NODES, ..Default::default() };
+    Document::parse_with_options(xml.trim_start_matches('\u{feff}'), options).map_err(|error| {
+        attempt.bad_input("description", plain(&format!("its OME-XML is broken: {error}"), 200), HELP)
+    })
+}
+
+fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+    children(node, name).next()
+}
+
+pub(super) fn children<'a, 'i>(node: Node<'a, 'i>, name: &str) -> impl Iterator<Item = Node<'a, 'i>> {
+    node.children().filter(move |child| child.tag_name().name() == name)
+}
+
+/// A number of an attribute.
+pub(super) fn number<T: std::str::FromStr>(node: Node<'_, '_>, name: &str) -> Option<T> {
+    node.attribute(name)?.trim().parse().ok()
+}
+
+/// Voxels, channels and time steps of an image.
+pub(super) struct Sizes {
+    pub(super) dims: [u64; 3],
+    /// Channels of pages: where one has colours, it is one.
+    pub(super) channels: usize,
+    pub(super) frames: usize,
+    /// Which of z, channel and time go on first, by their letters in `DimensionOrder`.
+    pub(super) order: [char; 3],
+}
+
+impl Sizes {
+    /// # Errors
+    /// `BadInput` for sizes that cannot be.
+    fn of(attempt: Attempt<'_>, pixels: Node<'_, '_>, samples: usize) -> Result<Self, LoadError> {
+        let size = |name: &str| {
+            number::<u64>(pixels, name).filter(|size| (1..=1 << 31).contains(size)).ok_or_else(|| {
+                let said = quoted(pixels.attribute(name).unwrap_or_default());
+                attempt.bad_input(name, format!("{said} is no size"), HELP)
+            })
+        };
+        let dims = [size("SizeX")?, size("SizeY")?, size("SizeZ")?];
+        // The count of channels is of their numbers: a colour is three.
+        let channels = (size("SizeC")? as usize).div_ceil(samples.max(1));
+        let letters: Vec<char> = pixels.attribute("DimensionOrder").unwrap_or("XYZCT").chars().collect();
+        let order = match letters.as_slice() {
+            &['X', 'Y', a, b, c] if ['Z', 'C', 'T'].iter().all(|letter| [a, b, c].contains(letter)) => {
+                [a, b, c]
+            }
+            _ => {
+                let said = quoted(pixels.attribute("DimensionOrder").unwrap_or_default());
+                return Err(attempt.bad_input("DimensionOrder", format!("{said} is no order"), HELP));
+            }
+        };
+        Ok(Self { dims, channels, frames: size("SizeT")? as usize, order })
+    }
+}
+
+/// The stack of a file with such a description.
+pub(in super::super) fn stack(
+    attempt: Attempt<'_>,
+    tiff: &Tiff,
+    description: &str,
+    choice: &Choice,
+) -> Result<Stack, LoadError> {
+    let document = parsed(attempt, description)?;
+    let root = document.root_element();
+    // The XML proper may be in a file of its own, which all files of a set name.
+    if let Some(name) = child(root, "BinaryOnly").and_then(|node| node.attribute("MetadataFile")) {
+        let path = beside::resolve(attempt, "MetadataFile", name)?;
+        let companion = Attempt { what: "read the OME-XML of the volume", path: &path };
+        let xml = companion_text(companion)?;
+        let document = parsed(companion, &xml)?;
+        return of_root(attempt, tiff, document.root_element(), choice);
+    }
+    of_root(attempt, tiff, root, choice)
+}
+
+fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
+    use std::io::Read as _;
+    let input = crate::data::load::reading::input::Input::open(attempt)?;
+    let mut text = String::new();
+    input.reader.take(MOST_XML_BYTES).read_to_string(&mut text).map_err(|error| attempt.io(error))?;
+    Ok(text)
+}
+
+fn of_root(
+    attempt: Attempt<'_>,
+    tiff: &Tiff,
+    root: Node<'_, '_>,
+    choice: &Choice,
+) -> Result<Stack, LoadError> {
+    let Some(first) = tiff.pages.first() else {
+        return Err(attempt.bad_input("pages", "there is none", HELP));
+    };
+    let images: Vec<(Node<'_, '_>, Node<'_, '_>)> =
+        children(root, "Image").filter_map(|image| Some((image, child(image, "Pixels")?))).collect();
+    let named = |image: Node<'_, '_>| image.attribute("Name").unwrap_or_default().to_owned();
+    let offers: Vec<Offer> = images
+        .iter()
+        .enumerate()
+        .map(|(at, &(image, pixels))| {
+            let size = |name| number(pixels, name).unwrap_or(0);
+            Offer::numbered(at, &named(image), [size("SizeX"), size("SizeY"), size("SizeZ")])
+        })
+        .collect();
+    if offers.is_empty() {
+        return Err(attempt.bad_input("description", "its OME-XML has no image", HELP));
+    }
+    let (image, pixels) = images[attempt.chosen(choice, Dimension::Series, offers)?];
+    let sizes = Sizes::of(attempt, pixels, first.samples)?;
+    let inside = if first.meaning == Meaning::Channels { first.samples } else { 1 };
+    let channels = sizes.channels.saturating_mul(inside);
+    let steps = Steps {
+        dims: sizes.dims,
+        channels,
+        channel_names: children(pixels, "Channel")
+            .map(|channel| channel.attribute("Name").unwrap_or_default().to_owned())
+            .collect(),
+        frames: sizes.frames,
+    };
+    if channels.saturating_mul(sizes.frames) > super::super::file::directory::MOST_PAGES {
+        return Err(attempt.bad_input("SizeC, SizeT", "so many channels and times cannot be", HELP));
+    }
+    let chosen = steps.chosen(attempt, choice)?;
+    let slices = usize::try_from(sizes.dims[2]).unwrap_or(usize::MAX);
+    if slices > super::super::file::directory::MOST_PAGES {
+        return Err(attempt.bad_input("SizeZ", format!("{slices} slices cannot be"), HELP));
+    }
+    let channel = chosen.channel / inside;
+    let wanted: Vec<[usize; 3]> = chosen
+        .slices(slices, sizes.frames)
+        .into_iter()
+        .map(|[frame, slice]| [slice, channel, frame])
+        .collect();
+    let pages = Pages::of(attempt, root, pixels, &sizes, tiff.pages.len())?;
+    let (slices, beside) = pages.find(attempt, &wanted)?;
+    let mut placement = place(pixels);
+    check_size(attempt, tiff, &slices, sizes.dims)?;
+    chosen.remark(&mut placement);
+    let name = match named(image) {
+        name if name.trim().is_empty() => crate::data::load::reading::input::stem(attempt.path),
+        name => plain(name.trim(), 120),
+    };
+    Ok(Stack {
+        name,
+        slices,
+        beside,
+        sample: (inside > 1).then_some(chosen.channel % inside),
+        placement,
+        hints: hints(root, image, pixels, channel),
+        scale: [1.0, 0.0],
+    })
+}
+
+/// Pages must be as large as the XML says; those of other files are compared to the first when they are read.
+fn check_size(
+    attempt: Attempt<'_>,
+    tiff: &Tiff,
+    slices: &[Slice],
+    [width, height, _]: [u64; 3],
+) -> Result<(), LoadError> {
+    let own = slices.iter().find(|slice| slice.file == 0).and_then(|slice| tiff.pages.get(slice.page));
+    match own {
+        Some(page) if [page.width, page.height] != [width, height] => Err(attempt.bad_input(
+            "SizeX, SizeY",
+            format!(
+                "pages of {width} x {height} pixels are said, they have {} x {}",
+                page.width, page.height
+            ),
+            HELP,
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn place(pixels: Node<'_, '_>) -> Placement {
+    let length = |axis: &str| {
+        let length = number::<f64>(pixels, &format!("PhysicalSize{axis}"))?;
+        // The model's own default.
+        let unit = pixels.attribute(format!("PhysicalSize{axis}Unit").as_str()).unwrap_or("µm");
+        Some(length * millimetres(unit)?).filter(|length| length.is_finite() && *length > 0.0)
+    };
+    match (length("X"), length("Y"), length("Z")) {
+        (Some(x), Some(y), Some(z)) => Placement::spaced([x, y, z]),
+        _ => Placement::unknown(),
+    }
+}
+
+/// What is said of how it was recorded.
+fn hints(root: Node<'_, '_>, image: Node<'_, '_>, pixels: Node<'_, '_>, channel: usize) -> Hints {
+    let mut hints = Hints::default();
+    let channels: Vec<Node<'_, '_>> = children(pixels, "Channel").collect();
+    // Wavelengths, dyes and objectives are of light alone.
+    const OF_LIGHT: [&str; 4] = ["EmissionWavelength", "ExcitationWavelength", "Fluor", "IlluminationType"];
+    let is_light = channels.iter().any(|channel| OF_LIGHT.iter().any(|name| channel.has_attribute(*name)))
+        || child(image, "ObjectiveSettings").is_some()
+        || children(root, "Instrument").any(|instrument| child(instrument, "Objective").is_some());
+    if is_light {
+        hints.modality = Modality::LightMicroscopy;
+    }
+    let said =
+        |name: &str| channels.get(channel).and_then(|channel| channel.attribute(name)).unwrap_or_default();
+    let words = [said("Name"), said("Fluor"), said("AcquisitionMode")];
+    let words: Vec<&str> = words.into_iter().filter(|word| !word.trim().is_empty()).collect();
+    hints.set_acquisition(&words.join(", "));
+    hints
+}
+
+/// A file of a set.
+pub(super) fn beside_of(attempt: Attempt<'_>, name: &str) -> Result<PathBuf, LoadError> {
+    beside::resolve(attempt, "FileName", name)
+}

@@ -1,0 +1,265 @@
+//! Which pages of which files are the slices of a volume, and their voxels.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::fault::HELP;
+use super::file::Tiff;
+use super::file::page::{Meaning, Page};
+use crate::data::attempt::{Attempt, Extent};
+use crate::data::load::formats::pictures::pile::read_pile;
+use crate::data::load::reading::input::{Input, Witness};
+use crate::data::load::reading::number::{Part, Stored};
+use crate::data::load::reading::placement::{Parts, Placement};
+use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
+use crate::data::{Hints, Volume};
+
+/// A page of one of several files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Slice {
+    /// 0 is the file that is opened, others are those of [`Stack::beside`].
+    pub(super) file: usize,
+    pub(super) page: usize,
+}
+
+/// A volume, before its voxels are read.
+pub(super) struct Stack {
+    pub(super) name: String,
+    pub(super) slices: Vec<Slice>,
+    /// Files besides the one that is opened.
+    pub(super) beside: Vec<PathBuf>,
+    /// The sample that is meant, where those of a page are channels.
+    pub(super) sample: Option<usize>,
+    pub(super) placement: Placement,
+    pub(super) hints: Hints,
+    /// What values are multiplied by, and what is added then.
+    pub(super) scale: [f64; 2],
+}
+
+/// Channels and time steps that a file has.
+pub(super) struct Steps {
+    pub(super) dims: [u64; 3],
+    pub(super) channels: usize,
+    pub(super) channel_names: Vec<String>,
+    pub(super) frames: usize,
+}
+
+/// What of them is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Chosen {
+    pub(super) channel: usize,
+    pub(super) frame: usize,
+    /// Each time step is one slice, and all of them together are shown as a volume.
+    pub(super) is_time_depth: bool,
+}
+
+impl Steps {
+    /// Asks what is meant where there are several.
+    pub(super) fn chosen(&self, attempt: Attempt<'_>, choice: &Choice) -> Result<Chosen, LoadError> {
+        let [width, height, slices] = self.dims;
+        // A recording of one slice over time is a volume only with time as its depth.
+        let is_time_depth = slices == 1 && self.frames > 1 && choice.frame.is_none();
+        let dims = [width, height, if is_time_depth { self.frames as u64 } else { slices }];
+        let offers = |count: usize| {
+            let name = |at: usize| self.channel_names.get(at).map_or("", String::as_str);
+            (0..count).map(move |at| Offer::numbered(at, name(at), dims)).collect()
+        };
+        let channel = attempt.chosen(choice, Dimension::Channel, offers(self.channels))?;
+        let frame = if is_time_depth {
+            0
+        } else {
+            let frames = (0..self.frames).map(|at| Offer::numbered(at, "", dims)).collect();
+            attempt.chosen(choice, Dimension::Frame, frames)?
+        };
+        Ok(Chosen { channel, frame, is_time_depth })
+    }
+}
+
+impl Chosen {
+    /// The time step and the slice of each slice of the volume.
+    pub(super) fn slices(&self, slices: usize, frames: usize) -> Vec<[usize; 2]> {
+        if self.is_time_depth {
+            (0..frames).map(|frame| [frame, 0]).collect()
+        } else {
+            (0..slices).map(|slice| [self.frame, slice]).collect()
+        }
+    }
+
+    /// What is to be said of it: nobody knows how far apart times are.
+    pub(super) fn remark(&self, placement: &mut Placement) {
+        if self.is_time_depth {
+            let remark = "each time step is one slice: they are stacked in the order of time";
+            placement.remarks.push(remark.to_owned());
+            let axes = placement.world_from_index.matrix3;
+            let flat = Placement::spaced([1.0, axes.y_axis.length() / axes.x_axis.length(), 1.0]);
+            placement.world_from_index = flat.world_from_index;
+            placement.is_scale_known = false;
+        }
+    }
+}
+
+/// The files of a stack: the first, and one of the others at a time.
+struct Files<'a> {
+    attempt: Attempt<'a>,
+    first: Tiff,
+    beside: &'a [PathBuf],
+    open: Option<(usize, Tiff, Witness)>,
+    control: &'a LoadControl,
+}
+
+impl Files<'_> {
+    /// Does something with one of the files.
+    fn with<T>(
+        &mut self,
+        number: usize,
+        what: impl FnOnce(Attempt<'_>, &mut Tiff) -> Result<T, LoadError>,
+    ) -> Result<T, LoadError> {
+        let Some(at) = number.checked_sub(1) else { return what(self.attempt, &mut self.first) };
+        let path: &Path = self.beside.get(at).map_or(self.attempt.path, PathBuf::as_path);
+        let attempt = Attempt { what: self.attempt.what, path };
+        let (tiff, witness) = match self.open.take() {
+            Some((open, tiff, witness)) if open == number => (tiff, witness),
+            _ => {
+                let input = Input::open(attempt)?;
+                let witness = Witness::of(attempt, &input)?;
+                (Tiff::open(attempt, input, self.control)?, witness)
+            }
+        };
+        let (_, tiff, witness) = self.open.insert((number, tiff, witness));
+        let done = what(attempt, tiff);
+        witness.vouch(attempt, done)
+    }
+}
+
+impl Stack {
+    /// Reads the voxels.
+    ///
+    /// # Errors
+    /// `BadInput` where pages are broken, not there, or differ; `Limit` over the budget.
+    pub(super) fn volume(
+        self,
+        attempt: Attempt<'_>,
+        tiff: Tiff,
+        options: &LoadOptions,
+        control: &LoadControl,
+    ) -> Result<Volume, LoadError> {
+        let Self { name, slices, beside, sample, mut placement, mut hints, scale: [slope, intercept] } = self;
+        let mut files = Files { attempt, first: tiff, beside: &beside, open: None, control };
+        let Some(&first) = slices.first() else {
+            return Err(attempt.bad_input("pages", "there is none", HELP));
+        };
+        let model = files.with(first.file, |attempt, tiff| page_of(attempt, tiff, first.page))?;
+        let sample = sample.or_else(|| chosen_sample(&model, options));
+        let stored = stored(attempt, &model, sample, options)?;
+        let dims = [model.width, model.height, slices.len() as u64];
+        let extent =
+            Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.memory_budget_bytes)?;
+        check_page_bytes(attempt, &model, options)?;
+        if model.meaning == Meaning::Color && matches!(stored.part, Part::Luminance) {
+            placement.remarks.push("colours are shown as their luminance".to_owned());
+        }
+        if model.is_inverted {
+            placement.remarks.push(if matches!(model.format, 1 | 4) {
+                "the lowest values stand for white: values are turned around".to_owned()
+            } else {
+                "the lowest values stand for white: values are shown as they are".to_owned()
+            });
+        }
+        let samples = read_pile(attempt, &stored, extent, control, |range: Range<usize>| {
+            let mut packed = Vec::new();
+            for &Slice { file, page } in &slices[range.clone()] {
+                packed.push(files.with(file, |attempt, tiff| {
+                    let found = page_of(attempt, tiff, page)?;
+                    if !found.is_like(&model) {
+                        return Err(unlike(attempt, page, &found, &model));
+                    }
+                    // Where samples lie beside each other all are fetched, and one is taken later.
+                    tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
+                })?);
+            }
+            let slices = slices[range].par_iter().zip(packed.par_iter());
+            slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect()
+        })?;
+        let samples = crate::data::load::reading::number::rescaled(samples, slope, intercept);
+        if let Some([low, high]) = hints.window.take() {
+            hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
+        }
+        Parts { name, dims: extent.dims, placement, samples, hints }.volume(attempt)
+    }
+}
+
+fn page_of(attempt: Attempt<'_>, tiff: &Tiff, number: usize) -> Result<Page, LoadError> {
+    let count = tiff.pages.len();
+    tiff.pages.get(number).copied().ok_or_else(|| {
+        let field = format!("page {number}");
+        attempt.bad_input(&field, format!("the file has only {count} pages"), HELP)
+    })
+}
+
+/// The sample that is fetched alone, where the user has named a component.
+fn chosen_sample(page: &Page, options: &LoadOptions) -> Option<usize> {
+    options.choice.component.filter(|_| page.meaning != Meaning::Channels)
+}
+
+/// How the numbers of unpacked pages are stored.
+///
+/// # Errors
+/// `BadInput` for pages of kinds that are not read, and for a component that there is not.
+pub(super) fn stored(
+    attempt: Attempt<'_>,
+    page: &Page,
+    sample: Option<usize>,
+    options: &LoadOptions,
+) -> Result<Stored, LoadError> {
+    page.check(attempt, "first page")?;
+    let Some(number) = page.number() else {
+        return Err(attempt.bad_input("first page", "its numbers are of a kind that is not read", HELP));
+    };
+    let component = sample.or(options.choice.component).or(match page.meaning {
+        Meaning::Channels => Some(0),
+        _ => None,
+    });
+    let is_color = page.meaning != Meaning::Channels;
+    let Some(part) = Part::chosen(component, page.samples, is_color) else {
+        return Err(attempt.bad_input(
+            "--component",
+            format!("component {} is not among its {}", component.unwrap_or(0), page.samples),
+            "give a number from 0, or leave it out",
+        ));
+    };
+    // A sample that lies by itself is fetched by itself.
+    let is_alone = page.is_planar && sample.is_some();
+    let (components, part) = if is_alone { (1, Part::Component(0)) } else { (page.samples, part) };
+    Ok(Stored { number, endian: Endian::Little, components, part })
+}
+
+/// A page is unpacked as a whole.
+pub(super) fn check_page_bytes(
+    attempt: Attempt<'_>,
+    page: &Page,
+    options: &LoadOptions,
+) -> Result<(), LoadError> {
+    if page.bytes().is_some_and(|bytes| bytes <= options.memory_budget_bytes) {
+        return Ok(());
+    }
+    Err(attempt.limit(
+        "first page",
+        format!("a page of {} x {} pixels of {} numbers is too large", page.width, page.height, page.samples),
+        "close other programs, or load a smaller or cropped picture",
+    ))
+}
+
+/// Two pages that are no slices of one volume.
+fn unlike(attempt: Attempt<'_>, number: usize, page: &Page, model: &Page) -> LoadError {
+    let say = |page: &Page| {
+        let Page { width, height, bits, samples, .. } = page;
+        format!("{width} x {height} pixels of {samples} x {bits} bits")
+    };
+    attempt.bad_input(
+        &format!("page {number}"),
+        format!("it has {}, the first page {}", say(page), say(model)),
+        "save the pages of one size in a file of their own",
+    )
+}

@@ -1,0 +1,198 @@
+//! Numbers of all types, however they are stored.
+
+use std::io::Write as _;
+
+use super::writer::{LITTLE, Leaf, SHORT, Writer};
+use super::{assert_refused, load_bytes, load_chosen, samples_of};
+use crate::data::Samples;
+use crate::data::load::formats::pictures::tiff::file::page::tag;
+use crate::data::load::{Choice, Endian, LoadErrorKind};
+
+const WRITERS: [Writer; 4] = [
+    LITTLE,
+    Writer { endian: Endian::Big, is_big: false },
+    Writer { endian: Endian::Little, is_big: true },
+    Writer { endian: Endian::Big, is_big: true },
+];
+
+/// Twelve pixels, 4 x 3, in the order of a writer.
+macro_rules! pixels {
+    ($writer:expr, $values:expr) => {
+        $values
+            .iter()
+            .flat_map(|value| match $writer.endian {
+                Endian::Little => value.to_le_bytes().to_vec(),
+                Endian::Big => value.to_be_bytes().to_vec(),
+            })
+            .collect::<Vec<u8>>()
+    };
+}
+
+#[test]
+fn all_types_in_both_orders_and_sizes_of_places() {
+    for writer in WRITERS {
+        macro_rules! check {
+            ($type:ty, $format:expr, $value:expr, $variant:ident, $expected:expr) => {
+                let values: Vec<$type> = (0..12).map($value).collect();
+                let leaf = writer.leaf([4, 3], 8 * size_of::<$type>() as u64, &pixels!(writer, values));
+                let leaf = leaf.with(tag::SAMPLE_FORMAT, SHORT, &[$format]);
+                let expected = values.iter().map($expected).collect();
+                assert_eq!(samples_of(&writer.file(&[leaf])), Samples::$variant(expected));
+            };
+        }
+        check!(i8, 2, |at| at * 10 - 3, I8, |&value| value);
+        check!(i16, 2, |at| at * 1000 - 3, I16, |&value| value);
+        check!(i32, 2, |at| at * 100_000 - 3, I32, |&value| value);
+        check!(i64, 2, |at| at * 100_000 - 3, I32, |&value| i32::try_from(value).unwrap());
+        check!(f32, 3, |at: u8| f32::from(at) * 0.3 - 1.0, F32, |&value| value);
+        check!(f64, 3, |at: u8| f64::from(at) * 0.3 - 1.0, F64, |&value| value);
+        check!(u8, 1, |at| 200 + at, U8, |&value| value);
+        check!(u16, 1, |at| 60_000 + at, U16, |&value| value);
+        check!(u32, 1, |at| 4_000_000_000 + at, U32, |&value| value);
+        check!(u64, 1, |at| (1 << 40) + at, F64, |&value| value as f64);
+        let halves: Vec<half::f16> = (0..12u8).map(|at| half::f16::from_f32(f32::from(at) / 4.0)).collect();
+        let leaf = writer.leaf([4, 3], 16, &pixels!(writer, halves)).with(tag::SAMPLE_FORMAT, SHORT, &[3]);
+        let expected = halves.iter().map(|half| half.to_f32()).collect();
+        assert_eq!(samples_of(&writer.file(&[leaf])), Samples::F32(expected));
+    }
+}
+
+fn packed(compression: u64, bytes: &[u8]) -> Vec<u8> {
+    match compression {
+        5 => {
+            let mut encoder = weezl::encode::Encoder::with_tiff_size_switch(weezl::BitOrder::Msb, 8);
+            encoder.encode(bytes).unwrap()
+        }
+        8 | 32946 => {
+            let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
+            encoder.write_all(bytes).unwrap();
+            encoder.finish().unwrap()
+        }
+        32773 => bytes.chunks(100).flat_map(|run| [&[run.len() as u8 - 1], run].concat()).collect(),
+        50000 => ruzstd::encoding::compress_to_vec(bytes, ruzstd::encoding::CompressionLevel::Fastest),
+        _ => bytes.to_vec(),
+    }
+}
+
+/// Rows of 16-bit numbers as differences, in the order of a writer.
+fn differences(writer: Writer, rows: &[u16], width: usize, samples: usize) -> Vec<u8> {
+    let mut out = Vec::new();
+    for row in rows.chunks(width * samples) {
+        let at = |at: usize| row[at].wrapping_sub(if at < samples { 0 } else { row[at - samples] });
+        let row: Vec<u16> = (0..row.len()).map(at).collect();
+        out.extend(pixels!(writer, row));
+    }
+    out
+}
+
+/// Rows of floating point numbers as bytes by weight, as differences.
+fn by_weight(rows: &[f32], width: usize) -> Vec<u8> {
+    let mut out = Vec::new();
+    for row in rows.chunks(width) {
+        let bytes: Vec<u8> =
+            (0..4).flat_map(|weight| row.iter().map(move |value| value.to_be_bytes()[weight])).collect();
+        out.extend(
+            (0..bytes.len()).map(|at| bytes[at].wrapping_sub(if at == 0 { 0 } else { bytes[at - 1] })),
+        );
+    }
+    out
+}
+
+#[test]
+fn all_compressions_with_strips_and_tiles_and_predictors() {
+    // 5 x 4 pixels: the last strip of 3 rows has one, tiles of 4 x 3 reach beyond on two sides.
+    let value = |x: u16, y: u16| 40_000u16.wrapping_add(x * 1_003).wrapping_add(y * 20_011);
+    let all: Vec<u16> = (0..20).map(|at| value(at % 5, at / 5)).collect();
+    let tile = |x0: u16, y0: u16| -> Vec<u16> {
+        (0..12)
+            .map(|at| (x0 + at % 4, y0 + at / 4))
+            .map(|(x, y)| if x < 5 && y < 4 { value(x, y) } else { 7 })
+            .collect()
+    };
+    for writer in WRITERS {
+        for compression in [1, 5, 8, 32946, 32773, 50000] {
+            for predictor in [1, 2] {
+                let part = |values: &[u16], width| {
+                    let bytes = if predictor == 2 {
+                        differences(writer, values, width, 1)
+                    } else {
+                        pixels!(writer, values)
+                    };
+                    packed(compression, &bytes)
+                };
+                let leaf = || {
+                    let leaf = writer.leaf([5, 4], 16, &[]);
+                    leaf.with(tag::COMPRESSION, SHORT, &[compression]).with(
+                        tag::PREDICTOR,
+                        SHORT,
+                        &[predictor],
+                    )
+                };
+                let strips = vec![part(&all[..15], 5), part(&all[15..], 5)];
+                let tiles = [[0, 0], [4, 0], [0, 3], [4, 3]].map(|[x, y]| part(&tile(x, y), 4)).to_vec();
+                for leaf in [leaf().with_rows_per_strip(3, strips), leaf().with_tiles([4, 3], tiles)] {
+                    let found = samples_of(&writer.file(&[leaf]));
+                    assert_eq!(found, Samples::U16(all.clone()), "{compression} {predictor}");
+                }
+            }
+        }
+        let floats: Vec<f32> = (0..6).map(|at| at as f32 * -0.37).collect();
+        let leaf = writer.leaf([3, 2], 32, &packed(8, &by_weight(&floats, 3)));
+        let leaf = leaf.with(tag::SAMPLE_FORMAT, SHORT, &[3]).with(tag::COMPRESSION, SHORT, &[8]).with(
+            tag::PREDICTOR,
+            SHORT,
+            &[3],
+        );
+        assert_eq!(samples_of(&writer.file(&[leaf])), Samples::F32(floats));
+    }
+}
+
+/// Two pixels of red, green, blue.
+fn colors(photometric: u64, samples: u64) -> Leaf {
+    LITTLE
+        .leaf([2, 1], 8, &[255, 0, 0, 10, 20, 30])
+        .with(tag::BITS, SHORT, &[8; 3])
+        .with(tag::PHOTOMETRIC, SHORT, &[photometric])
+        .with(tag::SAMPLES, SHORT, &[samples])
+}
+
+#[test]
+fn colours_are_luminance_or_a_component() {
+    let planar = colors(2, 3).with(tag::PLANAR, SHORT, &[2]);
+    let planar = planar.with_parts(vec![vec![255, 10], vec![0, 20], vec![0, 30]]);
+    for leaf in [colors(2, 3), planar] {
+        let file = LITTLE.file(&[leaf]);
+        let volume = load_bytes(&file).unwrap();
+        assert_eq!(*volume.samples(), Samples::U8(vec![54, 19]));
+        assert!(volume.remarks().iter().any(|remark| remark.contains("luminance")));
+        let choice = Choice { component: Some(2), ..Choice::default() };
+        let volume = load_chosen(&file, choice).unwrap();
+        assert_eq!((volume.samples(), volume.remarks().len()), (&Samples::U8(vec![0, 30]), 0));
+        let choice = Choice { component: Some(3), ..Choice::default() };
+        assert_refused(load_chosen(&file, choice), LoadErrorKind::BadInput, &["component 3", "its 3"]);
+    }
+    // Numbers that are no colours are channels.
+    let file = LITTLE.file(&[colors(1, 3)]);
+    assert_refused(load_bytes(&file), LoadErrorKind::BadInput, &["3 channels", "--channel"]);
+    let choice = Choice { channel: Some(1), ..Choice::default() };
+    assert_eq!(*load_chosen(&file, choice).unwrap().samples(), Samples::U8(vec![0, 20]));
+    // Grey and its opacity.
+    let leaf = LITTLE.leaf([2, 1], 8, &[7, 255, 9, 0]).with(tag::SAMPLES, SHORT, &[2]);
+    let file = LITTLE.file(&[leaf.with(tag::EXTRA_SAMPLES, SHORT, &[2])]);
+    assert_eq!(samples_of(&file), Samples::U8(vec![7, 9]));
+}
+
+#[test]
+fn white_is_turned_around_and_few_bits_are_widened() {
+    let white = |bits, pixels: &[u8]| LITTLE.leaf([2, 1], bits, pixels).with(tag::PHOTOMETRIC, SHORT, &[0]);
+    let volume = load_bytes(&LITTLE.file(&[white(8, &[0, 200])])).unwrap();
+    assert_eq!(*volume.samples(), Samples::U8(vec![255, 55]));
+    assert!(volume.remarks()[0].contains("white"));
+    let bits = samples_of(&LITTLE.file(&[white(1, &[0b1000_0000])]));
+    assert_eq!(bits, Samples::U8(vec![0, 1]));
+    let reversed = LITTLE.leaf([2, 1], 1, &[0b0000_0001]).with(tag::FILL_ORDER, SHORT, &[2]);
+    assert_eq!(samples_of(&LITTLE.file(&[reversed])), Samples::U8(vec![1, 0]));
+    let twelve = LITTLE.leaf([3, 2], 12, &[0xAB, 0xC1, 0x23, 0, 0x10, 0, 0x10, 2, 0, 0x30]);
+    let expected = vec![0xABC, 0x123, 1, 1, 2, 3];
+    assert_eq!(samples_of(&LITTLE.file(&[twelve])), Samples::U16(expected));
+}

@@ -1,0 +1,146 @@
+//! OME-TIFF: which page is which slice, and how large voxels are.
+
+use super::writer::{LITTLE, Leaf};
+use super::{assert_refused, load_bytes, load_chosen, load_with};
+use crate::data::load::formats::pictures::tiff::file::page::tag;
+use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::{Modality, Volume};
+
+fn page(value: u8) -> Leaf {
+    LITTLE.leaf([2, 1], 8, &[value, value])
+}
+
+fn file(xml: &str, count: u8) -> Vec<u8> {
+    let pages: Vec<Leaf> = (0..count)
+        .map(|at| if at == 0 { page(0).with_text(tag::DESCRIPTION, xml) } else { page(at) })
+        .collect();
+    LITTLE.file(&pages)
+}
+
+fn image(name: &str, pixels: &str, inside: &str) -> String {
+    format!(
+        "<Image ID=\"i\" Name=\"{name}\"><Pixels SizeX=\"2\" SizeY=\"1\" Type=\"uint8\" {pixels}>{inside}</Pixels></Image>"
+    )
+}
+
+fn document(images: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?><OME xmlns=\"http://www.openmicroscopy.org/Schemas/OME/2016-06\" \
+         UUID=\"urn:uuid:own\">{images}</OME>"
+    )
+}
+
+fn firsts(volume: &Volume) -> Vec<f64> {
+    (0..volume.dims()[2]).map(|z| volume.value(0, 0, z)).collect()
+}
+
+#[test]
+fn pages_are_in_the_order_that_is_said() {
+    for (order, expected) in [
+        ("XYZCT", [9.0, 10.0, 11.0]),
+        ("XYZTC", [9.0, 10.0, 11.0]),
+        ("XYCZT", [7.0, 9.0, 11.0]),
+        ("XYCTZ", [3.0, 7.0, 11.0]),
+        ("XYTZC", [7.0, 9.0, 11.0]),
+        ("XYTCZ", [3.0, 7.0, 11.0]),
+    ] {
+        let pixels = format!("DimensionOrder=\"{order}\" SizeZ=\"3\" SizeC=\"2\" SizeT=\"2\"");
+        for data in ["", "<TiffData/>", "<TiffData IFD=\"0\" PlaneCount=\"12\"/>"] {
+            let bytes = file(&document(&image("a", &pixels, data)), 12);
+            let choice = Choice { channel: Some(1), frame: Some(1), ..Choice::default() };
+            assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), expected, "{order} {data}");
+        }
+    }
+    let pixels = "DimensionOrder=\"XYZZT\" SizeZ=\"1\" SizeC=\"1\" SizeT=\"1\"";
+    let refused = load_bytes(&file(&document(&image("a", pixels, "")), 1));
+    assert_refused(refused, LoadErrorKind::BadInput, &["XYZZT", "DimensionOrder"]);
+}
+
+#[test]
+fn sizes_channels_and_light_are_understood() {
+    let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"2\" SizeC=\"2\" SizeT=\"1\" PhysicalSizeX=\"0.5\" \
+                  PhysicalSizeY=\"500\" PhysicalSizeYUnit=\"nm\" PhysicalSizeZ=\"2\" PhysicalSizeZUnit=\"µm\"";
+    let channels =
+        "<Channel ID=\"c0\" Name=\"DAPI\" EmissionWavelength=\"460\"/><Channel ID=\"c1\" Name=\"GFP\"/>";
+    let bytes = file(&document(&image("cells", pixels, channels)), 4);
+    assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &["0 \"DAPI\" (2 x 1 x 2)", "1 \"GFP\""]);
+    let volume = load_chosen(&bytes, Choice { channel: Some(1), ..Choice::default() }).unwrap();
+    assert_eq!((firsts(&volume), volume.name()), (vec![2.0, 3.0], "cells"));
+    assert!((volume.spacing_mm() - glam::DVec3::new(0.5e-3, 0.5e-3, 2e-3)).length() < 1e-12);
+    assert_eq!(volume.hints().modality, Modality::LightMicroscopy);
+    assert_eq!(volume.hints().acquisition(), Some("GFP"));
+    let flat = "DimensionOrder=\"XYZCT\" SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"1\" PhysicalSizeY=\"1\"";
+    let volume = load_bytes(&file(&document(&image("", flat, "")), 2)).unwrap();
+    assert!(volume.has_unknown_scale() && volume.hints().is_empty() && volume.name() == "stack");
+}
+
+#[test]
+fn several_images_are_series() {
+    let pixels = |z: u8| format!("DimensionOrder=\"XYZCT\" SizeZ=\"{z}\" SizeC=\"1\" SizeT=\"1\"");
+    let first = image("one", &pixels(2), "<TiffData IFD=\"0\" PlaneCount=\"2\"/>");
+    let second = image("two", &pixels(3), "<TiffData IFD=\"2\" PlaneCount=\"3\"/>");
+    let bytes = file(&document(&(first + &second)), 5);
+    assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &["2 series", "\"two\" (2 x 1 x 3)"]);
+    for key in ["1", "two"] {
+        let choice = Choice { series: Some(key.to_owned()), ..Choice::default() };
+        assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [2.0, 3.0, 4.0]);
+    }
+}
+
+#[test]
+fn pages_may_lie_in_files_beside() {
+    let folder = tempfile::tempdir().unwrap();
+    let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\"";
+    let data = |z: u8, file: &str, mark: &str| {
+        format!(
+            "<TiffData FirstZ=\"{z}\" IFD=\"{z}\"><UUID FileName=\"{file}\">urn:uuid:{mark}</UUID></TiffData>"
+        )
+    };
+    let set = |last: &str| {
+        let all = data(0, "old_name.ome.tif", "own") + &data(1, "b.tif", "b") + &data(2, last, "c");
+        document(&image("set", pixels, &all))
+    };
+    let path = folder.path().join("a.ome.tif");
+    let write = |xml: &str| std::fs::write(&path, file(xml, 1)).unwrap();
+    for name in ["b.tif", "c.tif"] {
+        std::fs::write(folder.path().join(name), LITTLE.file(&[page(30), page(31), page(32)])).unwrap();
+    }
+    write(&set("c.tif"));
+    assert_eq!(firsts(&load_with(&path, Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
+    // The folder says the same.
+    assert_eq!(firsts(&load_with(folder.path(), Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
+    write(&set("missing.tif"));
+    assert_refused(load_with(&path, Choice::default()), LoadErrorKind::Io, &["missing.tif"]);
+    write(&set("../c.tif"));
+    assert_refused(load_with(&path, Choice::default()), LoadErrorKind::BadInput, &["../c.tif", "FileName"]);
+    // XML in a file of its own.
+    std::fs::write(folder.path().join("set.companion.ome"), set("c.tif")).unwrap();
+    write(
+        "<?xml version=\"1.0\"?><OME UUID=\"urn:uuid:own\"><BinaryOnly MetadataFile=\"set.companion.ome\"/></OME>",
+    );
+    assert_eq!(firsts(&load_with(&path, Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
+}
+
+#[test]
+fn lies_are_told() {
+    let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\"";
+    for (xml, words) in [
+        (document(""), "no image"),
+        ("<OME><Image></OME>".to_owned(), "OME-XML is broken"),
+        (document(&image("a", "SizeZ=\"0\" SizeC=\"1\" SizeT=\"1\"", "")), "no size"),
+        (document(&image("a", "SizeZ=\"9999999\" SizeC=\"1\" SizeT=\"1\"", "")), "9999999 slices"),
+        (document(&image("a", "SizeZ=\"1\" SizeC=\"9999\" SizeT=\"9999\"", "")), "cannot be"),
+        (document(&image("a", pixels, "<TiffData IFD=\"0\"/>")), "no page for slice 1 of 3"),
+        (document(&image("a", pixels, "<TiffData FirstZ=\"3\"/>")), "beyond"),
+        (document(&image("a", pixels, "<TiffData IFD=\"7\" PlaneCount=\"3\"/>")), "only 2 pages"),
+        (
+            document(
+                &image("a", "SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\"", "").replace("SizeX=\"2\"", "SizeX=\"3\""),
+            ),
+            "pages of 3 x 1",
+        ),
+        ("<!DOCTYPE OME [<!ENTITY a \"b\">]><OME>&a;</OME>".to_owned(), "OME-XML is broken"),
+    ] {
+        assert_refused(load_bytes(&file(&xml, 2)), LoadErrorKind::BadInput, &[words]);
+    }
+}

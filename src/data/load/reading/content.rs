@@ -1,0 +1,99 @@
+//! What a file holds, read forwards: as it is stored, or inflated where it is compressed as a whole.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+
+use flate2::bufread::MultiGzDecoder;
+
+use super::input::Input;
+use super::number::Stored;
+use super::samples::{Fault, fill, skip_bytes};
+use super::{LoadControl, LoadError};
+use crate::data::Samples;
+use crate::data::attempt::{Attempt, Extent};
+
+/// The content of a file.
+pub(in crate::data::load) struct Content {
+    form: Form,
+    /// Bytes before the next one.
+    at: u64,
+}
+
+enum Form {
+    Stored(Input),
+    Inflated(Box<MultiGzDecoder<BufReader<File>>>),
+}
+
+impl Content {
+    /// The content of a file that is open at its beginning.
+    pub(in crate::data::load) fn of(input: Input, is_gzip: bool) -> Self {
+        let form = if is_gzip {
+            Form::Inflated(Box::new(MultiGzDecoder::new(input.reader)))
+        } else {
+            Form::Stored(input)
+        };
+        Self { form, at: 0 }
+    }
+
+    /// Checks that so many bytes follow a place, as far as this shows without inflating them all.
+    pub(in crate::data::load) fn check_room(
+        &self,
+        attempt: Attempt<'_>,
+        field: &str,
+        start: u64,
+        bytes: u128,
+    ) -> Result<(), LoadError> {
+        let Form::Stored(input) = &self.form else { return Ok(()) };
+        let found = input.len.saturating_sub(start);
+        if u128::from(found) >= bytes {
+            return Ok(());
+        }
+        Err(attempt.bad_input(
+            field,
+            format!("the data are truncated: {bytes} bytes expected from byte {start} on, {found} found"),
+            "check the header, or copy the file again",
+        ))
+    }
+
+    /// Goes forward to a byte.
+    pub(in crate::data::load) fn go_to(&mut self, position: u64, control: &LoadControl) -> Result<(), Fault> {
+        if let Form::Stored(input) = &mut self.form {
+            self.at = position;
+            return input.seek(position).map_err(Fault::Io);
+        }
+        let skip = position.saturating_sub(self.at);
+        if skip_bytes(self, skip, control).map_err(Fault::of_stream)? < skip {
+            return Err(Fault::Short { got: 0 });
+        }
+        Ok(())
+    }
+
+    /// Reads the voxels that come next.
+    pub(in crate::data::load) fn voxels(
+        &mut self,
+        stored: &Stored,
+        extent: Extent,
+        control: &LoadControl,
+    ) -> Result<Samples, Fault> {
+        stored.read(self, extent, control).map_err(Fault::of_stream)
+    }
+
+    /// Makes a decoder look at the checksum, which comes after the last byte. What follows the voxels is nobody's business.
+    pub(in crate::data::load) fn finish(&mut self, control: &LoadControl) -> Result<(), Fault> {
+        match &mut self.form {
+            Form::Stored(_) => Ok(()),
+            Form::Inflated(_) => fill(self, &mut [0], control).map_err(Fault::of_stream).map(drop),
+        }
+    }
+}
+
+impl Read for Content {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = match &mut self.form {
+            Form::Stored(input) => input.reader.read(buffer),
+            Form::Inflated(decoder) => decoder.read(buffer),
+        }?;
+        self.at += count as u64;
+        Ok(count)
+    }
+}

@@ -1,0 +1,147 @@
+//! Regular files, opened only after a look at what they are.
+
+use std::fs::{self, File, FileType};
+use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
+use std::path::Path;
+use std::time::SystemTime;
+
+use super::{LoadControl, LoadError};
+use crate::data::attempt::Attempt;
+use crate::data::plain;
+
+/// A regular file open for reading, at its beginning.
+#[derive(Debug)]
+pub(crate) struct Input {
+    /// The content of the file.
+    pub(crate) reader: BufReader<File>,
+    /// Length of the file in bytes when it was opened.
+    pub(crate) len: u64,
+}
+
+impl Input {
+    /// Opens a regular file; a symbolic link may lead to it.
+    ///
+    /// # Errors
+    /// `Io` when it is not there, not readable, or a directory, pipe, socket or device. Those are
+    /// never opened: opening a pipe blocks, and a device may have no end.
+    pub(crate) fn open(attempt: Attempt<'_>) -> Result<Self, LoadError> {
+        let io = |error| attempt.io(error);
+        let refuse = |file_type: FileType| {
+            if file_type.is_dir() {
+                attempt.not_a_file("it is a directory", "name one file")
+            } else {
+                attempt.not_a_file(
+                    "it is a pipe, socket or device, not a regular file",
+                    "copy it to a file first",
+                )
+            }
+        };
+        let file_type = fs::metadata(attempt.path).map_err(io)?.file_type();
+        if !file_type.is_file() {
+            return Err(refuse(file_type));
+        }
+        let file = File::open(attempt.path).map_err(io)?;
+        // The name may mean something else by now; the open file cannot.
+        let metadata = file.metadata().map_err(io)?;
+        if !metadata.is_file() {
+            return Err(refuse(metadata.file_type()));
+        }
+        Ok(Self { reader: BufReader::with_capacity(256 << 10, file), len: metadata.len() })
+    }
+
+    /// Goes to byte `position`.
+    pub(crate) fn seek(&mut self, position: u64) -> io::Result<()> {
+        self.reader.seek(SeekFrom::Start(position)).map(drop)
+    }
+
+    /// Skips `lines` lines; their bytes, or `None` when the file ends before that.
+    ///
+    /// Nothing is collected, so that a file without line ends costs no memory.
+    pub(crate) fn skip_lines(
+        &mut self,
+        attempt: Attempt<'_>,
+        lines: u64,
+        control: &LoadControl,
+    ) -> Result<Option<u64>, LoadError> {
+        let mut left = lines;
+        let mut skipped = 0;
+        while left > 0 {
+            control.check()?;
+            let block = self.reader.fill_buf().map_err(|error| attempt.io(error))?;
+            if block.is_empty() {
+                return Ok(None);
+            }
+            let used = match block.iter().position(|&byte| byte == b'\n') {
+                Some(end) => {
+                    left -= 1;
+                    end + 1
+                }
+                None => block.len(),
+            };
+            self.reader.consume(used);
+            skipped += used as u64;
+        }
+        Ok(Some(skipped))
+    }
+}
+
+/// Remembers a file as it was when it was opened: what is read while somebody writes it would be neither what was there
+/// nor what will be.
+#[derive(Debug)]
+pub(crate) struct Witness {
+    file: File,
+    before: (u64, Option<SystemTime>),
+}
+
+/// Length and, where the system knows it, the time of the last write.
+fn state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
+    file.metadata().map(|metadata| (metadata.len(), metadata.modified().ok()))
+}
+
+impl Witness {
+    /// Looks at an input that nothing has been read from.
+    pub(crate) fn of(attempt: Attempt<'_>, input: &Input) -> Result<Self, LoadError> {
+        let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((state(&file)?, file)));
+        seen.map(|(before, file)| Self { file, before }).map_err(|error| attempt.io(error))
+    }
+
+    /// What was read, unless the file has changed meanwhile.
+    ///
+    /// # Errors
+    /// `Io` when it has, whatever reading it led to, unless that was given up.
+    pub(crate) fn vouch<T>(&self, attempt: Attempt<'_>, read: Result<T, LoadError>) -> Result<T, LoadError> {
+        if matches!(read, Err(LoadError::Cancelled)) {
+            return read;
+        }
+        if state(&self.file).map_err(|error| attempt.io(error))? == self.before {
+            return read;
+        }
+        Err(attempt.not_a_file(
+            "the file has changed while it was being read",
+            "open it again when whatever writes it has finished",
+        ))
+    }
+}
+
+/// Whether a file that begins like this is a gzip file (RFC 1952: magic, then method 8).
+pub(crate) fn is_gzip(magic: &[u8]) -> bool {
+    magic.starts_with(&[0x1f, 0x8b, 8])
+}
+
+/// The file name without that of the endings (lower case, longest first) which it has, in any case.
+pub(in crate::data::load) fn bare_name(path: &Path, endings: &[&str]) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let lower = name.to_lowercase();
+    let ending = endings.iter().find(|ending| lower.ends_with(**ending) && lower.len() > ending.len());
+    // Lower case can have another length: then the name is kept whole.
+    let kept = ending.and_then(|ending| name.get(..name.len().saturating_sub(ending.len())));
+    kept.unwrap_or(&name).to_owned()
+}
+
+/// The file name without its last extension, and without `.gz` behind that, for a volume that has no other name.
+pub(crate) fn stem(path: &Path) -> String {
+    let is_zipped = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
+    let unzipped = path.file_stem().filter(|_| is_zipped).map_or(path, Path::new);
+    let stem = unzipped.file_stem().unwrap_or(path.as_os_str());
+    plain(&stem.to_string_lossy(), 120)
+}

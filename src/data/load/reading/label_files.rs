@@ -1,0 +1,176 @@
+//! Names and colours of labels in a text file beside a label map: as ITK-SNAP writes them ("label descriptions"), or
+//! `FreeSurfer` (colour tables: <https://surfer.nmr.mgh.harvard.edu/fswiki/LabelsClutsAnnotationFiles>).
+//!
+//! Nothing names such a file: it is called like the volume.
+
+use std::path::Path;
+
+use super::beside;
+use super::input::bare_name;
+use crate::data::attempt::Attempt;
+use crate::data::{Hints, Labels, Meaning, Samples, read_small};
+
+/// Endings of such files, the surest first.
+const ENDINGS: [&str; 4] = [".ctab", ".label", ".lut", ".txt"];
+
+/// Says what labels are called where a file beside a volume tells, and with that that they are labels: only where
+/// all values are whole.
+pub(in crate::data::load) fn add(
+    attempt: Attempt<'_>,
+    endings: &[&str],
+    samples: &Samples,
+    hints: &mut Hints,
+) {
+    if !is_whole(samples) {
+        return;
+    }
+    let labels = told_beside(attempt, endings);
+    if !labels.is_empty() {
+        hints.labels = labels;
+        hints.meaning = Meaning::Labels;
+    }
+}
+
+/// What a file says that is called like the volume (without one of the volume's `endings`) and lies beside it; nothing
+/// where there is none, or where it is something else.
+fn told_beside(attempt: Attempt<'_>, endings: &[&str]) -> Labels {
+    let stem = bare_name(attempt.path, endings);
+    let folder = attempt.path.parent().unwrap_or(Path::new(""));
+    let found = ENDINGS.iter().find_map(|ending| {
+        let name = format!("{stem}{ending}");
+        // Looked for first: that there is none is usual.
+        if !folder.join(&name).is_file() {
+            return None;
+        }
+        let path = beside::resolve(attempt, "labels", &name).ok()?;
+        table(&String::from_utf8_lossy(&read_small(&path).ok()?))
+    });
+    found.unwrap_or_default()
+}
+
+/// Whether no value has a fraction.
+fn is_whole(samples: &Samples) -> bool {
+    match samples {
+        Samples::F32(values) => values.iter().all(|value| value.fract() == 0.0),
+        Samples::F64(values) => values.iter().all(|value| value.fract() == 0.0),
+        _ => true,
+    }
+}
+
+/// The labels of a table. `None` for any other text: a line that is no entry shows that.
+fn table(text: &str) -> Option<Labels> {
+    let mut labels = Labels::default();
+    for line in text.trim_start_matches('\u{feff}').lines() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let (number, name, color) = snap_entry(line).or_else(|| freesurfer_entry(line))?;
+        labels.insert(number, name, Some(color));
+    }
+    (!labels.is_empty()).then_some(labels)
+}
+
+/// `IDX R G B A VIS MSH "LABEL"`.
+fn snap_entry(line: &str) -> Option<(i64, &str, [f32; 3])> {
+    let (numbers, rest) = line.split_once('"')?;
+    let (name, after) = rest.rsplit_once('"')?;
+    let words: Vec<&str> = numbers.split_whitespace().take(8).collect();
+    let [index, red, green, blue, opacity, visible, mesh] = words[..] else { return None };
+    let are_numbers = [opacity, visible, mesh].iter().all(|word| word.parse::<f64>().is_ok());
+    let entry = (index.parse().ok()?, name, color([red, green, blue])?);
+    (are_numbers && after.trim().is_empty()).then_some(entry)
+}
+
+/// `No. Name R G B A`; a name may have spaces, and A be missing.
+fn freesurfer_entry(line: &str) -> Option<(i64, &str, [f32; 3])> {
+    let (number, rest) = line.split_once(char::is_whitespace)?;
+    let number = number.parse().ok()?;
+    let (mut name, mut numbers) = (rest.trim_start(), Vec::new());
+    while let Some((before, word)) = name.rsplit_once(char::is_whitespace) {
+        if numbers.len() == 4 || word.parse::<u8>().is_err() {
+            break;
+        }
+        numbers.insert(0, word);
+        name = before.trim_end();
+    }
+    let &[red, green, blue, ..] = &numbers[..] else { return None };
+    // Rows of numbers alone are something else.
+    name.contains(char::is_alphabetic).then_some(())?;
+    Some((number, name, color([red, green, blue])?))
+}
+
+/// sRGB in bytes as parts of 1.
+fn color(words: [&str; 3]) -> Option<[f32; 3]> {
+    let mut color = [0.0; 3];
+    for (part, word) in color.iter_mut().zip(words) {
+        *part = f32::from(word.parse::<u8>().ok()?) / 255.0;
+    }
+    Some(color)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Label;
+
+    fn label(name: &str, color: [u8; 3]) -> Label {
+        Label { name: name.to_owned(), color: Some(color.map(|part| f32::from(part) / 255.0)) }
+    }
+
+    #[test]
+    fn both_layouts_are_read() {
+        let snap = "################\n# ITK-SnAP Label Description File\n\
+                    \x20   0     0    0    0        0  0  0    \"Clear Label\"\r\n\
+                    \x20  12   255    0   10        0.5  1  1    \"Left \"big\" one\"\n";
+        let labels = table(snap).unwrap();
+        assert_eq!(labels.get(0), Some(&label("Clear Label", [0; 3])));
+        assert_eq!(labels.get(12), Some(&label("Left \"big\" one", [255, 0, 10])));
+        let freesurfer = "\u{feff}#No. Label Name:  R   G   B   A\n\n0   Unknown   0   0   0   0\n\
+                          2   Left-Cerebral-White-Matter   245 245 245 0\n\
+                          7   of two words   1 2 3\n 8 area 4 5 6 7 0\n";
+        let labels = table(freesurfer).unwrap();
+        assert_eq!(labels.len(), 4);
+        assert_eq!(labels.get(2), Some(&label("Left-Cerebral-White-Matter", [245; 3])));
+        assert_eq!(labels.get(7), Some(&label("of two words", [1, 2, 3])));
+        assert_eq!(labels.get(8), Some(&label("area 4", [5, 6, 7])));
+    }
+
+    #[test]
+    fn other_text_is_no_table() {
+        for text in [
+            "",
+            "# nothing but words about it",
+            "1 2 3",
+            "1 2 3 4",
+            "a scan of 12 May, 3 4 5 6",
+            "1 2 3 4 5 6",
+            "1 Bone 256 0 0",
+            "1 Bone 255 0 0 0\nand more",
+            "1 255 0 0 1 1 \"too few\"",
+            "1 255 0 0 1 1 1 \"open",
+            "x Bone 255 0 0 0",
+            "1 Bone 0 -1 0",
+        ] {
+            assert_eq!(table(text), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_called_like_the_volume_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("seg.nii.gz");
+        let attempt = Attempt { what: "test", path: &path };
+        let endings = [".nii.gz", ".nii"];
+        let mut hints = Hints::default();
+        add(attempt, &endings, &Samples::U8(vec![1]), &mut hints);
+        assert!(hints.is_empty());
+        std::fs::write(folder.path().join("seg.label"), "no table").unwrap();
+        std::fs::write(folder.path().join("seg.txt"), "1 Bone 255 0 0 0").unwrap();
+        add(attempt, &endings, &Samples::F32(vec![1.5]), &mut hints);
+        assert!(hints.is_empty(), "values with fractions are no labels");
+        add(attempt, &endings, &Samples::F32(vec![1.0]), &mut hints);
+        assert_eq!(hints.meaning, Meaning::Labels);
+        assert_eq!(hints.labels.get(1), Some(&label("Bone", [255, 0, 0])));
+    }
+}

@@ -1,0 +1,13 @@
+//! What readers of all formats share: files, numbers, places, and what stands beside a file.
+
+pub(super) mod beside;
+pub(super) mod content;
+pub(super) mod input;
+pub(super) mod label_files;
+pub(super) mod number;
+pub(super) mod placement;
+pub(super) mod reader;
+pub(super) mod samples;
+pub(super) mod text_numbers;
+
+use super::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};

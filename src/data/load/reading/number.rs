@@ -1,0 +1,362 @@
+//! Numbers as files have them to voxels as volumes have them: also of types that volumes have not, and of several
+//! numbers for each voxel.
+
+use std::io::Read;
+
+use super::samples::{BLOCK_BYTES, Fault, Layout, Sample, fill, read_binary, reserve};
+use super::{Choice, Endian, LoadControl, LoadError};
+use crate::data::attempt::{Attempt, Extent};
+use crate::data::{Samples, VoxelType};
+
+/// A number type of files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::data::load) enum Number {
+    U8,
+    I8,
+    U16,
+    I16,
+    U32,
+    I32,
+    U64,
+    I64,
+    F16,
+    F32,
+    F64,
+}
+
+impl Number {
+    /// That of voxels as they are.
+    pub(in crate::data::load) const fn of(voxel_type: VoxelType) -> Self {
+        match voxel_type {
+            VoxelType::U8 => Self::U8,
+            VoxelType::I8 => Self::I8,
+            VoxelType::U16 => Self::U16,
+            VoxelType::I16 => Self::I16,
+            VoxelType::U32 => Self::U32,
+            VoxelType::I32 => Self::I32,
+            VoxelType::F32 => Self::F32,
+            VoxelType::F64 => Self::F64,
+        }
+    }
+
+    /// Size of one in bytes.
+    pub(in crate::data::load) const fn bytes(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 | Self::F16 => 2,
+            Self::U32 | Self::I32 | Self::F32 => 4,
+            Self::U64 | Self::I64 | Self::F64 => 8,
+        }
+    }
+
+    /// The type of the voxels that they become, at most: whole numbers of 64 bits that need no more take 32.
+    pub(in crate::data::load) const fn voxel_type(self) -> VoxelType {
+        match self {
+            Self::U8 => VoxelType::U8,
+            Self::I8 => VoxelType::I8,
+            Self::U16 => VoxelType::U16,
+            Self::I16 => VoxelType::I16,
+            Self::U32 => VoxelType::U32,
+            Self::I32 => VoxelType::I32,
+            Self::F16 | Self::F32 => VoxelType::F32,
+            Self::U64 | Self::I64 | Self::F64 => VoxelType::F64,
+        }
+    }
+
+    /// Whether voxels have the type as it is.
+    const fn is_kept(self) -> bool {
+        !matches!(self, Self::U64 | Self::I64 | Self::F16)
+    }
+
+    fn is_wide_integer(self) -> bool {
+        matches!(self, Self::U64 | Self::I64)
+    }
+
+    /// The value of some bytes, as many as one has.
+    pub(in crate::data::load) fn value(self, bytes: &[u8], endian: Endian) -> f64 {
+        match self {
+            Self::U8 => f64::from(u8::from_bytes(bytes, endian)),
+            Self::I8 => f64::from(i8::from_bytes(bytes, endian)),
+            Self::U16 => f64::from(u16::from_bytes(bytes, endian)),
+            Self::I16 => f64::from(i16::from_bytes(bytes, endian)),
+            Self::U32 => f64::from(u32::from_bytes(bytes, endian)),
+            Self::I32 => f64::from(i32::from_bytes(bytes, endian)),
+            Self::U64 => u64::from_bytes(bytes, endian) as f64,
+            Self::I64 => i64::from_bytes(bytes, endian) as f64,
+            Self::F16 => half::f16::from_bits(u16::from_bytes(bytes, endian)).to_f64(),
+            Self::F32 => f64::from(f32::from_bytes(bytes, endian)),
+            Self::F64 => f64::from_bytes(bytes, endian),
+        }
+    }
+}
+
+/// What of the several numbers of a voxel is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::data::load) enum Part {
+    /// One of them, from 0.
+    Component(usize),
+    /// The length of a vector.
+    Magnitude,
+    /// How light a colour is, as a standard for television weighs red, green and blue (ITU-R BT.709). What comes after
+    /// them, as opacity does, does not count.
+    Luminance,
+}
+
+/// How the voxels of a file are stored: one after the other, x fastest, the numbers of one beside each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::data::load) struct Stored {
+    pub(in crate::data::load) number: Number,
+    pub(in crate::data::load) endian: Endian,
+    /// Numbers of each voxel.
+    pub(in crate::data::load) components: usize,
+    pub(in crate::data::load) part: Part,
+}
+
+impl Stored {
+    /// Voxels of a number each.
+    pub(in crate::data::load) fn scalar(number: Number, endian: Endian) -> Self {
+        Self { number, endian, components: 1, part: Part::Component(0) }
+    }
+
+    /// The type of the voxels that are read, at most.
+    pub(in crate::data::load) fn voxel_type(&self) -> VoxelType {
+        match (self.part, self.number) {
+            (Part::Component(_), number) => number.voxel_type(),
+            (Part::Luminance, Number::U8 | Number::U16) => self.number.voxel_type(),
+            (Part::Magnitude | Part::Luminance, _) => VoxelType::F32,
+        }
+    }
+
+    /// Bytes of a voxel in the file.
+    pub(in crate::data::load) fn bytes_of_voxel(&self) -> u64 {
+        self.number.bytes() as u64 * self.components as u64
+    }
+
+    /// Reads all voxels of a grid; what follows them is left alone.
+    pub(in crate::data::load) fn read(
+        &self,
+        reader: &mut impl Read,
+        extent: Extent,
+        control: &LoadControl,
+    ) -> Result<Samples, Fault> {
+        let layout = Layout { extent, voxel_type: self.voxel_type(), endian: self.endian };
+        if self.components == 1 && self.number.is_kept() {
+            return read_binary(reader, &layout, control);
+        }
+        control.start(extent.bytes);
+        let size = self.number.bytes();
+        let endian = self.endian;
+        macro_rules! of_component {
+            ($variant:ident, $type:ty, $at:expr) => {
+                self.read_voxels(reader, &layout, control, |voxel| {
+                    <$type>::from_bytes(&voxel[$at * size..($at + 1) * size], endian)
+                })
+                .map(Samples::$variant)
+            };
+        }
+        let part_of = |voxel: &[u8]| {
+            self.part.of(|at| self.number.value(&voxel[at * size..][..size], endian), self.components)
+        };
+        let read = match (self.part, self.number) {
+            (Part::Component(at), Number::U8) => of_component!(U8, u8, at),
+            (Part::Component(at), Number::I8) => of_component!(I8, i8, at),
+            (Part::Component(at), Number::U16) => of_component!(U16, u16, at),
+            (Part::Component(at), Number::I16) => of_component!(I16, i16, at),
+            (Part::Component(at), Number::U32) => of_component!(U32, u32, at),
+            (Part::Component(at), Number::I32) => of_component!(I32, i32, at),
+            (Part::Component(at), Number::F32) => of_component!(F32, f32, at),
+            (Part::Component(_), Number::F64 | Number::U64 | Number::I64) => {
+                self.read_voxels(reader, &layout, control, part_of).map(Samples::F64)
+            }
+            (Part::Luminance, Number::U8) => self
+                .read_voxels(reader, &layout, control, |voxel| part_of(voxel).round() as u8)
+                .map(Samples::U8),
+            (Part::Luminance, Number::U16) => self
+                .read_voxels(reader, &layout, control, |voxel| part_of(voxel).round() as u16)
+                .map(Samples::U16),
+            _ => self.read_voxels(reader, &layout, control, |voxel| part_of(voxel) as f32).map(Samples::F32),
+        };
+        read.map(|samples| if self.number.is_wide_integer() { narrowed(samples) } else { samples })
+    }
+
+    fn read_voxels<T>(
+        &self,
+        reader: &mut impl Read,
+        layout: &Layout,
+        control: &LoadControl,
+        voxel_of: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<T>, Fault> {
+        let (count, bytes) = (layout.extent.voxels, self.number.bytes() * self.components);
+        let mut values = reserve(count)?;
+        let at_once = (BLOCK_BYTES / bytes).max(1);
+        let mut block = vec![0; at_once.min(count) * bytes];
+        while values.len() < count {
+            let want = block.len().min((count - values.len()) * bytes);
+            let got = fill(reader, &mut block[..want], control)?;
+            values.extend(block[..got].chunks_exact(bytes).map(&voxel_of));
+            control.advance((got / bytes * layout.voxel_type.bytes()) as u64);
+            if got < want {
+                return Err(Fault::Short { got: (values.len() * layout.voxel_type.bytes()) as u64 });
+            }
+        }
+        Ok(values)
+    }
+}
+
+impl Part {
+    /// What is shown of vectors or colours of so many components: the component that the user has named, or what all of
+    /// them make. `None` where there is no such component.
+    pub(in crate::data::load) fn chosen(
+        component: Option<usize>,
+        components: usize,
+        is_color: bool,
+    ) -> Option<Self> {
+        match component {
+            Some(at) => (at < components).then_some(Self::Component(at)),
+            None if components == 1 => Some(Self::Component(0)),
+            None if is_color && components >= 3 => Some(Self::Luminance),
+            // Grey and its opacity.
+            None if is_color => Some(Self::Component(0)),
+            None => Some(Self::Magnitude),
+        }
+    }
+
+    /// As [`Self::chosen`], with the error for a component that is not there.
+    pub(in crate::data::load) fn asked(
+        attempt: Attempt<'_>,
+        choice: &Choice,
+        components: usize,
+        is_color: bool,
+    ) -> Result<Self, LoadError> {
+        Self::chosen(choice.component, components, is_color).ok_or_else(|| {
+            attempt.bad_input(
+                "--component",
+                format!("voxels have {components} components, and the first of them is 0"),
+                format!("give a number from 0 to {}", components.saturating_sub(1)),
+            )
+        })
+    }
+
+    /// What the user is told where not all of a voxel is seen.
+    pub(in crate::data::load) fn remark(self) -> Option<&'static str> {
+        match self {
+            Self::Component(_) => None,
+            Self::Magnitude => Some("vectors are shown as their length"),
+            Self::Luminance => Some("colours are shown as their luminance"),
+        }
+    }
+
+    /// What is shown of a voxel with such components.
+    pub(in crate::data::load) fn of(self, component: impl Fn(usize) -> f64, components: usize) -> f64 {
+        match self {
+            Self::Component(at) => component(at),
+            Self::Magnitude => (0..components).map(|at| component(at).powi(2)).sum::<f64>().sqrt(),
+            Self::Luminance => 0.2126 * component(0) + 0.7152 * component(1) + 0.0722 * component(2),
+        }
+    }
+}
+
+/// Whole numbers in 32 bits where they need no more.
+fn narrowed(samples: Samples) -> Samples {
+    let Samples::F64(values) = &samples else { return samples };
+    let within = |low: f64, high: f64| values.iter().all(|&value| (low..=high).contains(&value));
+    if within(f64::from(i32::MIN), f64::from(i32::MAX)) {
+        Samples::I32(values.iter().map(|&value| value as i32).collect())
+    } else if within(0.0, f64::from(u32::MAX)) {
+        Samples::U32(values.iter().map(|&value| value as u32).collect())
+    } else {
+        samples
+    }
+}
+
+/// Values as a file means them: times a slope, and an intercept added. They stay whole numbers where that is exact.
+pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f64) -> Samples {
+    let is_said = slope.is_finite() && intercept.is_finite() && slope != 0.0;
+    if !is_said || (slope, intercept) == (1.0, 0.0) {
+        return samples;
+    }
+    let is_integer = !matches!(samples, Samples::F32(_) | Samples::F64(_));
+    let is_wide = matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
+    let values = (0..samples.len()).map(|voxel| samples.value(voxel).mul_add(slope, intercept));
+    let ends =
+        samples.finite_range().map(|(range, _)| [range.low, range.high].map(|v| v.mul_add(slope, intercept)));
+    if let Some(ends) = ends
+        && is_integer
+        && slope.fract() == 0.0
+        && intercept.fract() == 0.0
+    {
+        let within = |low: f64, high: f64| ends.iter().all(|end| (low..=high).contains(end));
+        if within(0.0, 255.0) {
+            return Samples::U8(values.map(|value| value as u8).collect());
+        } else if within(f64::from(i16::MIN), f64::from(i16::MAX)) {
+            return Samples::I16(values.map(|value| value as i16).collect());
+        } else if within(0.0, f64::from(u16::MAX)) {
+            return Samples::U16(values.map(|value| value as u16).collect());
+        } else if within(f64::from(i32::MIN), f64::from(i32::MAX)) {
+            return Samples::I32(values.map(|value| value as i32).collect());
+        }
+    }
+    if is_wide {
+        Samples::F64(values.collect())
+    } else {
+        Samples::F32(values.map(|value| value as f32).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn read(stored: Stored, bytes: &[u8], voxels: u64) -> Samples {
+        let attempt = Attempt { what: "test", path: Path::new("t") };
+        let extent = Extent::checked(attempt, "sizes", [voxels, 1, 1], stored.voxel_type(), 1 << 20).unwrap();
+        stored.read(&mut &bytes[..], extent, &LoadControl::new()).unwrap()
+    }
+
+    #[test]
+    fn numbers_of_other_types_become_voxels() {
+        let wide = [-5i64, 7, 1 << 20].map(i64::to_be_bytes).concat();
+        assert_eq!(
+            read(Stored::scalar(Number::I64, Endian::Big), &wide, 3),
+            Samples::I32(vec![-5, 7, 1 << 20])
+        );
+        let wider = [3u64, 1 << 31].map(u64::to_le_bytes).concat();
+        let stored = Stored::scalar(Number::U64, Endian::Little);
+        assert_eq!(read(stored, &wider, 2), Samples::U32(vec![3, 1 << 31]));
+        let widest = [3u64, 1 << 40].map(u64::to_le_bytes).concat();
+        assert_eq!(read(stored, &widest, 2), Samples::F64(vec![3.0, (1u64 << 40) as f64]));
+        let halves = [0.5f32, -2.0].map(|value| half::f16::from_f32(value).to_le_bytes()).concat();
+        assert_eq!(
+            read(Stored::scalar(Number::F16, Endian::Little), &halves, 2),
+            Samples::F32(vec![0.5, -2.0])
+        );
+    }
+
+    #[test]
+    fn a_voxel_of_several_numbers_is_one_of_them_or_what_they_make() {
+        let colors = [255u8, 255, 255, 0, 0, 0, 0, 255, 0];
+        let stored = |part| Stored { number: Number::U8, endian: Endian::Little, components: 3, part };
+        assert_eq!(read(stored(Part::Luminance), &colors, 3), Samples::U8(vec![255, 0, 182]));
+        assert_eq!(read(stored(Part::Component(1)), &colors, 3), Samples::U8(vec![255, 0, 255]));
+        let vectors = [3.0f32, 4.0].map(f32::to_be_bytes).concat();
+        let vector =
+            Stored { number: Number::F32, endian: Endian::Big, components: 2, part: Part::Magnitude };
+        assert_eq!(read(vector, &vectors, 1), Samples::F32(vec![5.0]));
+        assert_eq!(Part::chosen(Some(3), 3, true), None);
+        assert_eq!(Part::chosen(None, 2, true), Some(Part::Component(0)), "grey and its opacity");
+    }
+
+    #[test]
+    fn values_are_rescaled_and_stay_whole_where_they_can() {
+        let bytes = Samples::U8(vec![0, 200]);
+        assert_eq!(rescaled(bytes.clone(), 1.0, -1024.0), Samples::I16(vec![-1024, -824]));
+        assert_eq!(rescaled(bytes.clone(), 0.5, 0.0), Samples::F32(vec![0.0, 100.0]));
+        for (slope, intercept) in [(1.0, 0.0), (0.0, 5.0), (f64::NAN, 0.0), (2.0, f64::INFINITY)] {
+            assert_eq!(rescaled(bytes.clone(), slope, intercept), bytes, "{slope} {intercept}");
+        }
+        let words = Samples::U16(vec![0, 65535]);
+        assert_eq!(rescaled(words, 1.0, -32768.0), Samples::I16(vec![-32768, 32767]));
+    }
+}

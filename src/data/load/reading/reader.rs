@@ -1,0 +1,202 @@
+//! What a format is told by, and what its reader is given.
+
+use std::io::{self, BufReader, Read, Seek as _};
+use std::path::Path;
+
+use flate2::bufread::MultiGzDecoder;
+
+use super::input::{Input, is_gzip};
+use super::number::{Part, Stored};
+use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
+use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
+use crate::data::attempt::{Attempt, Extent};
+use crate::data::{Samples, Volume};
+
+/// Bytes of a file's beginning that are looked at: a header of NIfTI-2 has 540, DICOM's mark ends at 132.
+const START_BYTES: usize = 1024;
+
+/// Most volumes that a file may offer by their numbers: more than any list can be chosen from.
+const MOST_OFFERS: u64 = 1 << 16;
+
+/// What may follow the voxels that are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::data::load) enum After {
+    /// Anything.
+    More,
+    /// The end of the content. Of compressed content the checksum is then looked at as well.
+    End,
+}
+
+/// A format.
+pub(in crate::data::load) struct Reader {
+    /// What messages and menus call it.
+    pub(in crate::data::load) name: &'static str,
+    /// Endings of its files, in lower case and with their dots.
+    pub(in crate::data::load) endings: &'static [&'static str],
+    /// Whether a file that begins like this is one, whatever it is called.
+    pub(in crate::data::load) recognises: fn(&Start) -> bool,
+    /// Reads such a file.
+    pub(in crate::data::load) load: fn(Source<'_>) -> Result<Volume, LoadError>,
+}
+
+/// A file to be read.
+pub(in crate::data::load) struct Source<'a> {
+    pub(in crate::data::load) path: &'a Path,
+    /// Open at its beginning.
+    pub(in crate::data::load) input: Input,
+    pub(in crate::data::load) start: Start,
+    pub(in crate::data::load) options: &'a LoadOptions,
+    pub(in crate::data::load) control: &'a LoadControl,
+}
+
+impl Source<'_> {
+    /// What the file holds from its beginning: inflated where it is compressed as a whole.
+    ///
+    /// Whoever reads it takes no more than was announced: a compressed file may hold anything.
+    pub(in crate::data::load) fn content(&mut self) -> Box<dyn Read + '_> {
+        if self.start.is_gzip() {
+            Box::new(BufReader::new(MultiGzDecoder::new(&mut self.input.reader)))
+        } else {
+            Box::new(&mut self.input.reader)
+        }
+    }
+
+    /// Reads the voxels of a grid, which begin at byte `at` of the content. Of what is not compressed there must be enough
+    /// before anything is allocated.
+    ///
+    /// # Errors
+    /// `BadInput` for data that are too short, too long or broken, with `help`; `Limit` where the memory is not there.
+    pub(in crate::data::load) fn voxels(
+        &mut self,
+        attempt: Attempt<'_>,
+        at: u64,
+        (stored, extent): (&Stored, Extent),
+        after: After,
+        help: &str,
+    ) -> Result<Samples, LoadError> {
+        let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
+        let needed = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
+        let control = self.control;
+        if !self.start.is_gzip() {
+            let found = self.input.len.saturating_sub(at);
+            let [x, y, z] = extent.dims;
+            let grid = format!("for {x} x {y} x {z} voxels of {}", layout.voxel_type.name());
+            if found < needed {
+                let why = format!("the data are truncated: {needed} bytes expected {grid}, {found} found");
+                return Err(attempt.bad_input("data", why, help));
+            }
+            if found > needed && after == After::End {
+                let why = format!("there are {found} bytes where {needed} were expected {grid}");
+                return Err(attempt.bad_input("data", why, help));
+            }
+            self.input.seek(at).map_err(|error| attempt.io(error))?;
+        }
+        let skip = if self.start.is_gzip() { at } else { 0 };
+        // One byte more than needed tells "too much" from "enough", and no bomb gets further.
+        let mut content = self.content().take(skip.saturating_add(needed).saturating_add(1));
+        let mut read = || {
+            if skip_bytes(&mut content, skip, control)? < skip {
+                return Err(Fault::Short { got: 0 });
+            }
+            let samples = stored.read(&mut content, extent, control)?;
+            if after == After::End && fill(&mut content, &mut [0], control)? > 0 {
+                return Err(Fault::Long);
+            }
+            Ok(samples)
+        };
+        read().map_err(|fault| {
+            let fault = match fault {
+                Fault::Io(error) if is_corruption(&error) => Fault::Corrupt(error),
+                fault => fault,
+            };
+            fault.into_error(attempt, &layout, "bytes", help)
+        })
+    }
+
+    /// Which of so many volumes of a dimension is meant, each with a name that may be empty.
+    ///
+    /// # Errors
+    /// As [`Attempt::chosen`]; `Limit` for more than anybody can choose from.
+    pub(in crate::data::load) fn numbered(
+        &self,
+        attempt: Attempt<'_>,
+        dimension: Dimension,
+        count: u64,
+        dims: [u64; 3],
+        name: impl Fn(usize) -> String,
+    ) -> Result<usize, LoadError> {
+        if count > MOST_OFFERS {
+            return Err(attempt.limit(
+                dimension.option(),
+                format!("it holds {count} {}, {MOST_OFFERS} are allowed", dimension.plural()),
+                "check the header, or write fewer into one file",
+            ));
+        }
+        let offers = (0..count as usize).map(|at| Offer::numbered(at, &name(at), dims)).collect();
+        attempt.chosen(&self.options.choice, dimension, offers)
+    }
+
+    /// What is shown of voxels of several numbers.
+    ///
+    /// # Errors
+    /// `BadInput` where the user has named a component that there is not.
+    pub(in crate::data::load) fn part(
+        &self,
+        attempt: Attempt<'_>,
+        components: usize,
+        is_color: bool,
+    ) -> Result<Part, LoadError> {
+        Part::chosen(self.options.choice.component, components, is_color).ok_or_else(|| {
+            attempt.bad_input(
+                "--component",
+                format!("its voxels have {components} components"),
+                format!("give a number from 0 to {}", components.saturating_sub(1)),
+            )
+        })
+    }
+}
+
+/// How a file begins.
+pub(in crate::data::load) struct Start {
+    stored: Vec<u8>,
+    /// What the file holds, where it is compressed as a whole.
+    inflated: Option<Vec<u8>>,
+}
+
+impl Start {
+    /// Looks at a file, and goes back to its beginning.
+    pub(in crate::data::load) fn of(input: &mut Input) -> io::Result<Self> {
+        let mut stored = Vec::with_capacity(START_BYTES);
+        input.reader.by_ref().take(START_BYTES as u64).read_to_end(&mut stored)?;
+        input.reader.rewind()?;
+        let inflated = is_gzip(&stored).then(|| {
+            let mut found = Vec::new();
+            // What is broken, or cut off where the look ends, says what it says until there.
+            let mut decoder = MultiGzDecoder::new(&mut input.reader).take(START_BYTES as u64);
+            let _how_far = decoder.read_to_end(&mut found);
+            found
+        });
+        input.reader.rewind()?;
+        Ok(Self { stored, inflated })
+    }
+
+    /// The first bytes of what the file holds, inflated where it is compressed.
+    pub(in crate::data::load) fn bytes(&self) -> &[u8] {
+        self.inflated.as_ref().unwrap_or(&self.stored)
+    }
+
+    /// The first bytes of the file.
+    pub(in crate::data::load) fn stored(&self) -> &[u8] {
+        &self.stored
+    }
+
+    /// Whether the file is compressed as a whole.
+    pub(in crate::data::load) fn is_gzip(&self) -> bool {
+        self.inflated.is_some()
+    }
+
+    /// Whether the content has some bytes at a place.
+    pub(in crate::data::load) fn has(&self, bytes: &[u8], at: usize) -> bool {
+        self.bytes().get(at..).is_some_and(|rest| rest.starts_with(bytes))
+    }
+}

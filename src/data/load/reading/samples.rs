@@ -1,0 +1,314 @@
+//! Bytes and numbers in text to typed voxels, block by block.
+//!
+//! Only the voxels themselves and one block are in memory at a time. Allocation is fallible: a
+//! header that lies about its size gets an error, not an abort.
+
+use std::io::{self, BufRead, Read};
+
+use flate2::bufread::MultiGzDecoder;
+
+use super::{Endian, LoadControl, LoadError};
+use crate::data::attempt::{Attempt, quoted};
+use crate::data::attempt::{Extent, human_bytes};
+use crate::data::{Samples, VoxelType};
+use crate::fault;
+
+/// Bytes that are read and decoded at a time, and between two looks at `cancel`.
+pub(in crate::data::load) const BLOCK_BYTES: usize = 1 << 20;
+
+/// The longest number in a text file, in bytes. A full decimal f64 needs about 25.
+const LONGEST_NUMBER: usize = 400;
+
+/// How voxels are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Layout {
+    pub(crate) extent: Extent,
+    pub(crate) voxel_type: VoxelType,
+    pub(crate) endian: Endian,
+}
+
+/// What can go wrong between a file and its voxels.
+#[derive(Debug)]
+pub(crate) enum Fault {
+    /// The data end after so many bytes (or numbers) of voxels.
+    Short { got: u64 },
+    /// There are more voxels than announced.
+    Long,
+    /// The compressed stream is broken.
+    Corrupt(io::Error),
+    /// Some text is not a number of the voxel type.
+    NotANumber { text: String },
+    /// The memory for the voxels is not there.
+    NoMemory,
+    /// The file could not be read.
+    Io(io::Error),
+    /// `cancel` was set.
+    Stopped(LoadError),
+}
+
+impl Fault {
+    /// The fault, of which it is known that a decoder lies between the file and what was read.
+    pub(in crate::data::load) fn of_stream(self) -> Self {
+        match self {
+            Self::Io(error) if is_corruption(&error) => Self::Corrupt(error),
+            fault => fault,
+        }
+    }
+
+    /// The error to report, with `help` for sizes that do not fit.
+    pub(crate) fn into_error(
+        self,
+        attempt: Attempt<'_>,
+        layout: &Layout,
+        unit: &str,
+        help: &str,
+    ) -> LoadError {
+        let [x, y, z] = layout.extent.dims;
+        let name = layout.voxel_type.name();
+        let announced = if unit == "bytes" { layout.extent.bytes } else { layout.extent.voxels as u64 };
+        let grid = format!("{x} x {y} x {z} voxels of {name}");
+        match self {
+            Self::Short { got } => attempt.bad_input(
+                "data",
+                format!("the data are truncated: {announced} {unit} expected for {grid}, {got} found"),
+                help,
+            ),
+            Self::Long => attempt.bad_input(
+                "data",
+                format!("there is more data than the {announced} {unit} expected for {grid}"),
+                help,
+            ),
+            Self::Corrupt(error) => attempt.bad_input(
+                "data",
+                match error.kind() {
+                    io::ErrorKind::UnexpectedEof => {
+                        "the gzip data are truncated: they end too early".to_owned()
+                    }
+                    _ => format!("the gzip data are broken: {error}"),
+                },
+                "copy or download the file again",
+            ),
+            Self::NotANumber { text } => attempt.bad_input(
+                "data",
+                format!("a number of type {name} was expected, {} was found", quoted(&text)),
+                "check the type and that the data are plain numbers",
+            ),
+            Self::NoMemory => attempt.limit(
+                "data",
+                format!(
+                    "the memory for {grid} is not there: {}",
+                    human_bytes(u128::from(layout.extent.bytes))
+                ),
+                "close other programs or load a smaller volume",
+            ),
+            Self::Io(error) => attempt.io(error),
+            Self::Stopped(error) => error,
+        }
+    }
+}
+
+/// One voxel's number type: how it is read.
+pub(in crate::data::load) trait Sample: Copy {
+    fn from_bytes(bytes: &[u8], endian: Endian) -> Self;
+    fn from_text(text: &str) -> Option<Self>;
+}
+
+macro_rules! sample {
+    ($($type:ty),*) => { $(
+        impl Sample for $type {
+            fn from_bytes(bytes: &[u8], endian: Endian) -> Self {
+                // Blocks hold whole voxels: the chunk always has the right length.
+                let mut array = [0; size_of::<Self>()];
+                array.copy_from_slice(bytes);
+                match endian {
+                    Endian::Little => Self::from_le_bytes(array),
+                    Endian::Big => Self::from_be_bytes(array),
+                }
+            }
+
+            fn from_text(text: &str) -> Option<Self> {
+                text.parse().ok()
+            }
+        }
+    )* };
+}
+sample!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
+
+/// Reads all voxels with one of the two generic readers below.
+macro_rules! read_as {
+    ($voxel_type:expr, $read:ident($($argument:expr),*)) => {
+        match $voxel_type {
+            VoxelType::U8 => $read($($argument),*).map(Samples::U8),
+            VoxelType::I8 => $read($($argument),*).map(Samples::I8),
+            VoxelType::U16 => $read($($argument),*).map(Samples::U16),
+            VoxelType::I16 => $read($($argument),*).map(Samples::I16),
+            VoxelType::U32 => $read($($argument),*).map(Samples::U32),
+            VoxelType::I32 => $read($($argument),*).map(Samples::I32),
+            VoxelType::F32 => $read($($argument),*).map(Samples::F32),
+            VoxelType::F64 => $read($($argument),*).map(Samples::F64),
+        }
+    };
+}
+
+/// Reads binary voxels; what follows them is left alone.
+pub(crate) fn read_binary(
+    reader: &mut impl Read,
+    layout: &Layout,
+    control: &LoadControl,
+) -> Result<Samples, Fault> {
+    control.start(layout.extent.bytes);
+    read_as!(layout.voxel_type, read_blocks(reader, layout, control))
+}
+
+/// Inflates binary voxels after `skip` inflated bytes; nothing may follow them.
+pub(crate) fn read_gzip(
+    reader: impl BufRead,
+    skip: u64,
+    layout: &Layout,
+    control: &LoadControl,
+) -> Result<Samples, Fault> {
+    // One byte more than needed tells "too much" from "enough", and no bomb gets further.
+    let most = skip.saturating_add(layout.extent.bytes).saturating_add(1);
+    let mut inflated = MultiGzDecoder::new(reader).take(most);
+    let skipped = skip_bytes(&mut inflated, skip, control).map_err(Fault::of_stream)?;
+    if skipped < skip {
+        return Err(Fault::Short { got: 0 });
+    }
+    let samples = read_binary(&mut inflated, layout, control).map_err(Fault::of_stream)?;
+    // Also makes the decoder look at the checksum, which comes after the last byte.
+    match fill(&mut inflated, &mut [0], control).map_err(Fault::of_stream)? {
+        0 => Ok(samples),
+        _ => Err(Fault::Long),
+    }
+}
+
+/// Reads voxels written as decimal numbers with white space between them, to the end of the file.
+pub(crate) fn read_text(
+    reader: &mut impl Read,
+    layout: &Layout,
+    control: &LoadControl,
+) -> Result<Samples, Fault> {
+    control.start(layout.extent.bytes);
+    read_as!(layout.voxel_type, read_numbers(reader, layout, control))
+}
+
+/// Whether a decoder complains about the data (and not the disk about the file).
+pub(in crate::data::load) fn is_corruption(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
+    )
+}
+
+/// Blocks that were read, for faults on purpose.
+static BLOCKS: fault::Count = fault::Count::new();
+
+/// Fills `block` as far as the reader goes; the number of bytes read.
+pub(in crate::data::load) fn fill(
+    reader: &mut impl Read,
+    block: &mut [u8],
+    control: &LoadControl,
+) -> Result<usize, Fault> {
+    let mut filled = 0;
+    while filled < block.len() {
+        control.check().map_err(Fault::Stopped)?;
+        if fault::is_due(&BLOCKS, fault::Fault::ReadError) {
+            return Err(Fault::Io(io::Error::other("a fault was asked for")));
+        }
+        match reader.read(&mut block[filled..]) {
+            Ok(0) => break,
+            Ok(n) => filled += n,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(Fault::Io(error)),
+        }
+    }
+    Ok(filled)
+}
+
+/// Reads and forgets up to `count` bytes; how many there were.
+pub(in crate::data::load) fn skip_bytes(
+    reader: &mut impl Read,
+    count: u64,
+    control: &LoadControl,
+) -> Result<u64, Fault> {
+    let mut block = vec![0; BLOCK_BYTES.min(usize::try_from(count).unwrap_or(BLOCK_BYTES))];
+    let mut skipped = 0;
+    while skipped < count {
+        let want = block.len().min(usize::try_from(count - skipped).unwrap_or(block.len()));
+        let got = fill(reader, &mut block[..want], control)?;
+        skipped += got as u64;
+        if got < want {
+            break;
+        }
+    }
+    Ok(skipped)
+}
+
+fn read_blocks<T: Sample>(
+    reader: &mut impl Read,
+    layout: &Layout,
+    control: &LoadControl,
+) -> Result<Vec<T>, Fault> {
+    let count = layout.extent.voxels;
+    let bytes = size_of::<T>();
+    let mut values = reserve(count)?;
+    let mut block = vec![0; BLOCK_BYTES.min(count.saturating_mul(bytes))];
+    while values.len() < count {
+        let want = block.len().min((count - values.len()) * bytes);
+        let got = fill(reader, &mut block[..want], control)?;
+        values.extend(block[..got].chunks_exact(bytes).map(|voxel| T::from_bytes(voxel, layout.endian)));
+        control.advance(got as u64);
+        if got < want {
+            let whole = (values.len() * bytes) as u64;
+            return Err(Fault::Short { got: whole + (got % bytes) as u64 });
+        }
+    }
+    Ok(values)
+}
+
+fn read_numbers<T: Sample>(
+    reader: &mut impl Read,
+    layout: &Layout,
+    control: &LoadControl,
+) -> Result<Vec<T>, Fault> {
+    let count = layout.extent.voxels;
+    let mut values: Vec<T> = reserve(count)?;
+    let mut block = vec![0; BLOCK_BYTES];
+    // A number that a block's end has cut waits at the front of the next block.
+    let mut carried = 0;
+    loop {
+        let got = carried + fill(reader, &mut block[carried..], control)?;
+        let at_end = got < block.len();
+        let last = block[..got].iter().rposition(u8::is_ascii_whitespace);
+        let whole = if at_end { got } else { last.unwrap_or(0) };
+        if got - whole > LONGEST_NUMBER {
+            let text = String::from_utf8_lossy(&block[whole..got]).into_owned();
+            return Err(Fault::NotANumber { text });
+        }
+        let before = values.len();
+        for word in block[..whole].split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
+            let text = String::from_utf8_lossy(word);
+            let value = T::from_text(&text).ok_or_else(|| Fault::NotANumber { text: text.into_owned() })?;
+            if values.len() == count {
+                return Err(Fault::Long);
+            }
+            values.push(value);
+        }
+        control.advance(((values.len() - before) * size_of::<T>()) as u64);
+        if at_end {
+            break;
+        }
+        block.copy_within(whole..got, 0);
+        carried = got - whole;
+    }
+    if values.len() < count { Err(Fault::Short { got: values.len() as u64 }) } else { Ok(values) }
+}
+
+/// An empty vector with room for `count` values, or an error where the memory is not there.
+pub(in crate::data::load) fn reserve<T>(count: usize) -> Result<Vec<T>, Fault> {
+    let mut values = Vec::new();
+    match values.try_reserve_exact(count) {
+        Ok(()) => Ok(values),
+        Err(_) => Err(Fault::NoMemory),
+    }
+}
