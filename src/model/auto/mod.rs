@@ -15,12 +15,10 @@ mod palette;
 mod reveal;
 #[cfg(test)]
 mod robustness;
-mod skin;
 mod threshold;
 mod transfer;
 mod treated;
 mod view;
-mod visibility;
 mod visible;
 
 pub use self::floor::{floor_color, wants_floor};
@@ -117,7 +115,7 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
             let bones = (domain == Domain::Bone).then(|| settings.transfer.clone());
             let settings = visible::or_another(settings, volume, histogram, kind);
             if bones.is_some_and(|bones| bones == settings.transfer) {
-                skin::added(settings, volume, water)
+                reveal::with_skin(settings, volume, water)
             } else {
                 settings
             }

@@ -1,14 +1,18 @@
 //! Sees to it that a first look hides no material: where one lies within another and next to nothing of it is seen, the
 //! outer one becomes a veil.
 
+mod skin;
+mod visibility;
+
 use std::ops::Range;
 
 use super::isosurfaces::Isosurfaces;
 use super::threshold::otsu;
-use super::visibility::Cells;
-use super::{above, transfer};
+use super::{above, frame, transfer};
 use crate::data::{Histogram, Volume};
 use crate::model::{Settings, TransferFunction};
+pub(super) use skin::added as with_skin;
+use visibility::Cells;
 
 /// What share of the object's voxels another material takes: not a few specks, nor nearly all.
 const OF_VOXELS: std::ops::RangeInclusive<f64> = 0.01..=0.7;

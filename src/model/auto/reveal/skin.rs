@@ -10,7 +10,7 @@ use crate::model::{Rig, Settings};
 const LEAST_KEPT: f64 = 0.75;
 
 /// The settings with a body around the bones that they show, and framed with it, unless that would hide them.
-pub(super) fn added(settings: Settings, volume: &Volume, water: f64) -> Settings {
+pub(in crate::model::auto) fn added(settings: Settings, volume: &Volume, water: f64) -> Settings {
     let Some(first_bone) = settings.transfer.points.first() else { return settings };
     let Some(cells) = Cells::of(volume, settings.opacity_unit) else { return settings };
     let with_skin = transfer::with_skin(&settings.transfer, water);
