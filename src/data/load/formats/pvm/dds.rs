@@ -65,7 +65,11 @@ fn differences(bits: &mut Bits<'_>, most: u64) -> Result<(Vec<u8>, usize), Fault
     let mut bytes: Vec<u8> = Vec::new();
     let mut last = 0u8;
     loop {
-        let run = bits.take(7)? as usize;
+        let run = match bits.take(7) {
+            // Some files lack the end of the last run. What is missing besides is seen when voxels are counted.
+            Err(Fault::Short { .. }) => 0,
+            run => run? as usize,
+        };
         if run == 0 {
             return Ok((bytes, interleaved));
         }
@@ -144,7 +148,6 @@ impl Bits<'_> {
                 self.block.truncate(got);
                 self.at = 0;
             }
-            // The run that ends it is there: what is cut off is not padded.
             let byte = *self.block.get(self.at).ok_or(Fault::Short { got: 0 })?;
             self.at += 1;
             self.held = self.held << 8 | u64::from(byte);

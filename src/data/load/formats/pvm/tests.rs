@@ -98,6 +98,11 @@ fn every_version_is_read_packed_or_not() {
             assert_eq!(volume.hints().modality == Modality::Ct, is_told);
         }
     }
+    // Without the run that ends it: 7 bits and what fills up the last 32.
+    let whole = [b"PVM\n4 3 2\n1\n", &bytes[..24]].concat();
+    let endless = packed(&whole, 1, 4, usize::MAX);
+    let cut = endless.iter().rposition(|&byte| byte != 0).unwrap() + 1;
+    assert_eq!(*loaded(&endless[..cut]).unwrap().samples(), Samples::U8(bytes[..24].to_vec()));
     let colors = loaded(b"PVM\n1 2 1\n3\n\x09\x09\x09\x00\xff\x00").unwrap();
     assert_eq!(*colors.samples(), Samples::U8(vec![9, 182]));
     assert_eq!(colors.remarks().len(), 1);
