@@ -52,6 +52,48 @@ fn transfer(path: &Path) -> bool {
     import(path, &bytes, range()).is_ok()
 }
 
+/// Images of VTK in its two forms, with their values in the ways that they are written.
+fn vtk(voxels: &[u8]) -> [(&'static str, Vec<u8>); 4] {
+    let image = |root: &str, array: &str, end: &[u8]| {
+        let head = format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" header_type=\"UInt32\" {root}>\n<ImageData \
+             WholeExtent=\"0 5 0 4 0 3\" Origin=\"0 0 0\" Spacing=\"1 1 1.5\">\n<Piece Extent=\"0 5 0 4 0 3\">\n\
+             <PointData Scalars=\"a\">\n<DataArray type=\"UInt8\" Name=\"a\" {array}</DataArray>\n</PointData>\n\
+             </Piece>\n</ImageData>\n"
+        );
+        [head.as_bytes(), end, b"</VTKFile>\n"].concat()
+    };
+    let compressed = {
+        let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(voxels).expect("it is in memory");
+        encoder.finish().expect("it is in memory")
+    };
+    let words = [1, voxels.len() as u32, 0, compressed.len() as u32].map(u32::to_le_bytes).concat();
+    let appended =
+        [b"<AppendedData encoding=\"raw\">\n_".as_slice(), &words, &compressed, b"</AppendedData>\n"]
+            .concat();
+    // A length of 120 and as many bytes: 1 2, 39 times 1 2 3, and 1.
+    let coded = format!("format=\"binary\">eAAAAAEC{}AQ==", "AQID".repeat(39));
+    let head = |coding: &str| {
+        format!(
+            "# vtk DataFile Version 3.0\na title\n{coding}\nDATASET STRUCTURED_POINTS\nDIMENSIONS 6 5 4\nSPACING 1 1 1.5\n\
+             ORIGIN 0 0 0\nPOINT_DATA 120\n"
+        )
+    };
+    let bytes = head("BINARY") + "SCALARS a unsigned_char 1\nLOOKUP_TABLE default\n";
+    let numbers = voxels.iter().map(u8::to_string).collect::<Vec<_>>().join(" ");
+    let text = head("ASCII") + "FIELD FieldData 1\na 1 120 float\n" + &numbers + "\n";
+    [
+        (
+            "appended.vti",
+            image("compressor=\"vtkZLibDataCompressor\"", "format=\"appended\" offset=\"0\">", &appended),
+        ),
+        ("coded.vti", image("byte_order=\"LittleEndian\"", &coded, b"")),
+        ("bytes.vtk", [bytes.as_bytes(), voxels, b"\n"].concat()),
+        ("text.vtk", text.into_bytes()),
+    ]
+}
+
 /// One of each kind.
 pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     let mut found = Vec::new();
@@ -70,6 +112,20 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     };
     add("plain.nrrd", [header("raw").into_bytes(), voxels.clone()].concat(), volume as fn(&Path) -> bool);
     add("zipped.nrrd", [header("gzip").into_bytes(), zipped.clone()].concat(), volume);
+    let packed = {
+        let mut encoder = bzip2::write::BzEncoder::new(Vec::new(), bzip2::Compression::fast());
+        encoder.write_all(&voxels).expect("it is in memory");
+        encoder.finish().expect("it is in memory")
+    };
+    add("packed.nrrd", [header("bzip2").into_bytes(), packed].concat(), volume);
+    // A picture in colours, in hexadecimal digits.
+    let digits: Vec<_> = voxels.iter().map(|voxel| format!("{voxel:02x}\n")).collect();
+    let digits = header("hex").replace("encoding", "space: RAS\nkinds: RGB-color domain domain\nencoding")
+        + &digits.concat();
+    add("digits.nrrd", digits.replace("sizes: 6", "sizes: 3").replace("5 4", "5 8").into_bytes(), volume);
+    for (name, bytes) in vtk(&voxels) {
+        add(name, bytes, volume);
+    }
     add("bare_6x5x4_uint8.raw", voxels, volume);
     add("bare_6x5x4_uint8.raw.gz", zipped, volume);
 
