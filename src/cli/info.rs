@@ -50,6 +50,10 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
         "range": [low, high],
         "robust_range": [shown.low, shown.high],
+        "has_unknown_scale": volume.has_unknown_scale(),
+        "is_anatomical": volume.is_anatomical(),
+        "world_from_index": volume.world_from_index().to_cols_array(),
+        "remarks": volume.remarks(),
         "non_finite_voxels": volume.non_finite_voxels(),
         "kind": kind(&volume.kind().kind),
         "kind_why": volume.kind().why,
@@ -68,7 +72,8 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let [nx, ny, nz] = volume.dims();
     print_line(volume.name())?;
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
-    print_line(&format!("  spacing      {} × {} × {} mm", spacing.x, spacing.y, spacing.z))?;
+    let unit = if volume.has_unknown_scale() { "(nobody knows of what)" } else { "mm" };
+    print_line(&format!("  spacing      {} × {} × {} {unit}", spacing.x, spacing.y, spacing.z))?;
     print_line(&format!("  values       {low} … {high}"))?;
     print_line(&format!("  robust       {} … {}", shown.low, shown.high))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
@@ -76,6 +81,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().why))?;
     for line in hint_lines(volume.hints()) {
         print_line(&line)?;
+    }
+    for remark in volume.remarks() {
+        print_line(&format!("  note         {remark}"))?;
     }
     for line in label_lines(&volume) {
         print_line(&line)?;
@@ -112,6 +120,7 @@ fn hints(hints: &Hints) -> Value {
         "unit": hints.unit(),
         "is_rescaled": hints.is_rescaled,
         "padding": hints.padding,
+        "window": hints.window,
         "acquisition": hints.acquisition(),
         "labels": labels,
     })
@@ -130,6 +139,7 @@ fn hint_lines(hints: &Hints) -> Vec<String> {
     add("unit", hints.unit());
     add("rescaled", hints.is_rescaled.then_some("yes"));
     add("padding", hints.padding.map(|value| value.to_string()).as_deref());
+    add("window", hints.window.map(|[low, high]| format!("{low} … {high}")).as_deref());
     add("acquisition", hints.acquisition());
     lines
 }

@@ -53,7 +53,13 @@ fn transfer(path: &Path) -> bool {
 }
 
 /// Files of other programs, which take a program to write: `found/NAME/far` is one that is valid.
-const KEPT: [&str; 30] = [
+const KEPT: [&str; 36] = [
+    "packed.nrrd",
+    "digits.nrrd",
+    "appended.vti",
+    "coded.vti",
+    "bytes.vtk",
+    "text.vtk",
     "plain.nii",
     "second.nii.gz",
     "plain.mha",

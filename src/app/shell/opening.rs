@@ -296,6 +296,9 @@ impl App {
         if let Some(before) = too_many {
             self.messages.note(text::opening::averaged(before, volume.dims()));
         }
+        for remark in volume.remarks() {
+            self.messages.note(remark.clone());
+        }
         self.defaults = settings.clone();
         let is_kept = self.keeps_look && self.volume.is_some();
         if is_kept {

@@ -8,6 +8,7 @@ use eframe::egui;
 use crate::app::text;
 use crate::app::text::files::Question;
 use crate::app::worker::task::Work;
+use crate::data::load::endings;
 use crate::data::{ValueRange, ValueRanges, read_small};
 use crate::export::PictureFormat;
 use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, export, import};
@@ -94,7 +95,9 @@ impl Files {
         type Pending = std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
         let pending: Pending = match purpose {
             Purpose::OpenVolume | Purpose::VolumeOfLook => {
-                let filters = ["nrrd", "nhdr", "raw", "gz"];
+                // Filters know what follows the last dot.
+                let filters: Vec<&str> =
+                    endings().into_iter().filter_map(|ending| ending.rsplit('.').next()).collect();
                 let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
                 Box::pin(dialog.add_filter(text::files::ALL_FILES, &["*"]).pick_file())
             }

@@ -9,8 +9,10 @@ use eframe::egui;
 
 use super::task::Work;
 use crate::app::text;
-use crate::data::load::{self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout};
-use crate::data::{self, Dataset};
+use crate::data::load::{
+    self, Dimension, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout,
+};
+use crate::data::{self, Dataset, Volume};
 use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted};
 use crate::model::{SceneAxis, Settings};
@@ -280,10 +282,31 @@ struct Opening {
     phase: Arc<AtomicU8>,
 }
 
+/// Opens a volume; of several the first, of which the user is told.
+fn open_first(source: &Path, mut options: LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let mut told = Vec::new();
+    loop {
+        match data::open(source, &options, control) {
+            Err(LoadError::Several { dimension, offers, .. })
+                if told.len() < Dimension::COUNT && !offers.is_empty() =>
+            {
+                let first = &offers[0];
+                told.push(text::opening::one_of_several(first, offers.len(), dimension));
+                options.choice = options.choice.with(dimension, &first.key);
+            }
+            Ok(volume) if !told.is_empty() => {
+                let remarks = volume.remarks().iter().cloned().chain(told).collect();
+                return Ok(volume.with_remarks(remarks));
+            }
+            opened => return opened,
+        }
+    }
+}
+
 fn open(opening: Opening) -> Outcome {
     let Opening { source, reading, up, options, context, shaders, control, phase } = opening;
     may_panic(Place::Loader);
-    let volume = match data::open(&source, &options, &control) {
+    let volume = match open_first(&source, options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
         Err(err) => {

@@ -14,7 +14,7 @@ use self::look::{Named, Proposed, proposal};
 use self::overlay::Overlay;
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
-use crate::data::load::{Endian, LoadControl, LoadOptions, RawFormat};
+use crate::data::load::{Choice, Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, KindName, ValueRanges, Volume, VoxelType, open};
 use crate::gpu::{Context, fitted, small_volume};
 use crate::model::auto::Wishes;
@@ -44,6 +44,21 @@ pub(super) struct LoadArgs {
     /// RAW input: bytes before the voxels
     #[arg(long, value_name = "BYTES")]
     offset: Option<u64>,
+    /// Vectors and colours: the component that is shown, from 0, instead of their length or luminance
+    #[arg(long, value_name = "N")]
+    component: Option<usize>,
+    /// Several time steps: the one that is shown, from 0
+    #[arg(long, value_name = "N")]
+    frame: Option<usize>,
+    /// Several channels: the one that is shown, from 0
+    #[arg(long, value_name = "N")]
+    channel: Option<usize>,
+    /// Several series in a folder: the one that is shown, by its number or name
+    #[arg(long, value_name = "NAME")]
+    series: Option<String>,
+    /// Several arrays in a file: the one that is shown
+    #[arg(long, value_name = "NAME")]
+    array: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -84,7 +99,14 @@ impl LoadArgs {
             EndianArg::Big => Endian::Big,
         });
         let raw = RawFormat { dims, voxel_type, spacing_mm, endian, offset: self.offset };
-        Ok(LoadOptions { raw, reduce: usize::from(self.reduce), ..LoadOptions::default() })
+        let choice = Choice {
+            component: self.component,
+            frame: self.frame,
+            channel: self.channel,
+            series: self.series.clone(),
+            array: self.array.clone(),
+        };
+        Ok(LoadOptions { raw, choice, reduce: usize::from(self.reduce), ..LoadOptions::default() })
     }
 
     /// Loads a volume, and opens the adapter.

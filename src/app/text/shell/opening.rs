@@ -1,5 +1,6 @@
 //! Opening volumes and looks, and the window's title.
 
+use crate::data::load::{Dimension, Offer};
 use std::fmt::Display;
 use std::path::Path;
 
@@ -60,6 +61,12 @@ pub(crate) fn not_shown(source: &Path) -> String {
 pub(crate) fn averaged(before: [usize; 3], after: [usize; 3]) -> String {
     let [before, after] = [before, after].map(crate::app::text::panels::data::dimensions);
     format!("{before} voxels are shown as {after}: the graphics adapter cannot hold more")
+}
+
+/// A file holds several volumes, of which the first is shown.
+pub(crate) fn one_of_several(first: &Offer, count: usize, dimension: Dimension) -> String {
+    let (plural, option) = (dimension.plural(), dimension.option());
+    format!("The first of {count} {plural} is shown: {first}. Start with {option} for another one")
 }
 
 /// The system is out of threads.

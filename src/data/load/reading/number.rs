@@ -3,7 +3,7 @@
 
 use std::io::Read;
 
-use super::samples::{BLOCK_BYTES, Fault, Layout, Sample, fill, read_binary, reserve};
+use super::samples::{BLOCK_BYTES, Fault, Layout, Sample as _, fill, read_binary, reserve};
 use super::{Choice, Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, VoxelType};

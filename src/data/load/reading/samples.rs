@@ -1,11 +1,9 @@
-//! Bytes and numbers in text to typed voxels, block by block.
+//! Bytes to typed voxels, block by block.
 //!
 //! Only the voxels themselves and one block are in memory at a time. Allocation is fallible: a
 //! header that lies about its size gets an error, not an abort.
 
-use std::io::{self, BufRead, Read};
-
-use flate2::bufread::MultiGzDecoder;
+use std::io::{self, Read};
 
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, quoted};
@@ -15,9 +13,6 @@ use crate::fault;
 
 /// Bytes that are read and decoded at a time, and between two looks at `cancel`.
 pub(in crate::data::load) const BLOCK_BYTES: usize = 1 << 20;
-
-/// The longest number in a text file, in bytes. A full decimal f64 needs about 25.
-const LONGEST_NUMBER: usize = 400;
 
 /// How voxels are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,7 +105,6 @@ impl Fault {
 /// One voxel's number type: how it is read.
 pub(in crate::data::load) trait Sample: Copy {
     fn from_bytes(bytes: &[u8], endian: Endian) -> Self;
-    fn from_text(text: &str) -> Option<Self>;
 }
 
 macro_rules! sample {
@@ -125,16 +119,12 @@ macro_rules! sample {
                     Endian::Big => Self::from_be_bytes(array),
                 }
             }
-
-            fn from_text(text: &str) -> Option<Self> {
-                text.parse().ok()
-            }
         }
     )* };
 }
 sample!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
 
-/// Reads all voxels with one of the two generic readers below.
+/// Reads all voxels with the generic reader below.
 macro_rules! read_as {
     ($voxel_type:expr, $read:ident($($argument:expr),*)) => {
         match $voxel_type {
@@ -158,38 +148,6 @@ pub(crate) fn read_binary(
 ) -> Result<Samples, Fault> {
     control.start(layout.extent.bytes);
     read_as!(layout.voxel_type, read_blocks(reader, layout, control))
-}
-
-/// Inflates binary voxels after `skip` inflated bytes; nothing may follow them.
-pub(crate) fn read_gzip(
-    reader: impl BufRead,
-    skip: u64,
-    layout: &Layout,
-    control: &LoadControl,
-) -> Result<Samples, Fault> {
-    // One byte more than needed tells "too much" from "enough", and no bomb gets further.
-    let most = skip.saturating_add(layout.extent.bytes).saturating_add(1);
-    let mut inflated = MultiGzDecoder::new(reader).take(most);
-    let skipped = skip_bytes(&mut inflated, skip, control).map_err(Fault::of_stream)?;
-    if skipped < skip {
-        return Err(Fault::Short { got: 0 });
-    }
-    let samples = read_binary(&mut inflated, layout, control).map_err(Fault::of_stream)?;
-    // Also makes the decoder look at the checksum, which comes after the last byte.
-    match fill(&mut inflated, &mut [0], control).map_err(Fault::of_stream)? {
-        0 => Ok(samples),
-        _ => Err(Fault::Long),
-    }
-}
-
-/// Reads voxels written as decimal numbers with white space between them, to the end of the file.
-pub(crate) fn read_text(
-    reader: &mut impl Read,
-    layout: &Layout,
-    control: &LoadControl,
-) -> Result<Samples, Fault> {
-    control.start(layout.extent.bytes);
-    read_as!(layout.voxel_type, read_numbers(reader, layout, control))
 }
 
 /// Whether a decoder complains about the data (and not the disk about the file).
@@ -264,44 +222,6 @@ fn read_blocks<T: Sample>(
         }
     }
     Ok(values)
-}
-
-fn read_numbers<T: Sample>(
-    reader: &mut impl Read,
-    layout: &Layout,
-    control: &LoadControl,
-) -> Result<Vec<T>, Fault> {
-    let count = layout.extent.voxels;
-    let mut values: Vec<T> = reserve(count)?;
-    let mut block = vec![0; BLOCK_BYTES];
-    // A number that a block's end has cut waits at the front of the next block.
-    let mut carried = 0;
-    loop {
-        let got = carried + fill(reader, &mut block[carried..], control)?;
-        let at_end = got < block.len();
-        let last = block[..got].iter().rposition(u8::is_ascii_whitespace);
-        let whole = if at_end { got } else { last.unwrap_or(0) };
-        if got - whole > LONGEST_NUMBER {
-            let text = String::from_utf8_lossy(&block[whole..got]).into_owned();
-            return Err(Fault::NotANumber { text });
-        }
-        let before = values.len();
-        for word in block[..whole].split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
-            let text = String::from_utf8_lossy(word);
-            let value = T::from_text(&text).ok_or_else(|| Fault::NotANumber { text: text.into_owned() })?;
-            if values.len() == count {
-                return Err(Fault::Long);
-            }
-            values.push(value);
-        }
-        control.advance(((values.len() - before) * size_of::<T>()) as u64);
-        if at_end {
-            break;
-        }
-        block.copy_within(whole..got, 0);
-        carried = got - whole;
-    }
-    if values.len() < count { Err(Fault::Short { got: values.len() as u64 }) } else { Ok(values) }
 }
 
 /// An empty vector with room for `count` values, or an error where the memory is not there.

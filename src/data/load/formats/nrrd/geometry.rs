@@ -1,4 +1,4 @@
-//! Which axes are the volume's and where they lie in the world.
+//! Which axes are the volume's, what the others hold, and where the volume lies in the world.
 //!
 //! `dimension`, `sizes`, `kinds`, `spacings`, `space`, `space dimension`, `space directions`,
 //! `space origin`, `units` and `space units`. The world is right-anterior-superior millimetres.
@@ -6,15 +6,19 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::LoadError;
+use super::super::placement::Placement;
 use super::header::Header;
 use super::space::{directions, flips, is_anatomical, mm_per_unit, origin};
 use crate::data::attempt::{Attempt, quoted};
-use crate::data::attempt::{is_usable_affine, is_usable_spacing, unlike_spacings};
 
 /// The largest dimension that NRRD allows.
 const MOST_AXES: usize = 16;
 
-const SPACING_HELP: &str = "give each spatial axis a length in millimetres above 0";
+/// Numbers for each voxel that are read at most.
+const MOST_COMPONENTS: u64 = 1 << 10;
+
+/// Axes without a kind that may hold colours: of red, green, blue and opacity.
+const MOST_COLORS: u64 = 4;
 
 /// Kinds of axes that hold components or times, not places.
 const OTHER_KINDS: [&str; 11] = [
@@ -31,21 +35,31 @@ const OTHER_KINDS: [&str; 11] = [
     "matrix",
 ];
 
-/// The volume's grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Kinds of axes that hold red, green, blue and perhaps opacity.
+const COLORS: [&str; 4] = ["rgb-color", "rgba-color", "3-color", "4-color"];
+
+/// The volume's grid, and what the file has for each of its places.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Geometry {
     /// Voxels along the three axes, not yet checked.
     pub(super) dims: [u64; 3],
-    /// Voxel indices to millimetres, right-anterior-superior.
-    pub(super) world_from_index: DAffine3,
-    /// Whether the file says so.
-    pub(super) is_anatomical: bool,
+    pub(super) placement: Placement,
+    /// Numbers beside each other that a voxel has.
+    pub(super) components: usize,
+    pub(super) is_color: bool,
+    /// Whether those numbers are time steps, and not components.
+    pub(super) are_times: bool,
+    /// Volumes behind each other.
+    pub(super) frames: u64,
+    /// Of all axes.
+    pub(super) sizes: Vec<u64>,
 }
 
 /// One axis of the array.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Axis {
     size: u64,
+    kind: String,
     /// Whether the header does not say that it holds components or times.
     spatial: bool,
     /// One step along it in the file's space, in millimetres.
@@ -56,68 +70,79 @@ struct Axis {
 
 impl Geometry {
     pub(super) fn from_header(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
-        let axes = volume_axes(attempt, axes(attempt, header)?)?;
-        let mut steps: Vec<DVec3> = Vec::new();
-        for (index, axis) in axes.iter().enumerate() {
-            steps.push(step(attempt, index, axis)?);
-        }
-        if let [a, b] = steps[..] {
-            // A picture: its one slice is as thick as its pixels are wide.
-            steps.push(a.cross(b).normalize_or_zero() * (a.length() * b.length()).sqrt());
-        }
-        let size = |axis: usize| axes.get(axis).map_or(1, |axis| axis.size);
-        let step = |axis: usize| steps.get(axis).copied().unwrap_or(DVec3::ZERO);
+        let all = axes(attempt, header)?;
+        let sizes = all.iter().map(|axis| axis.size).collect();
+        let all = volume_axes(attempt, all)?;
+        let spatial: Vec<&Axis> = all.iter().filter(|axis| axis.spatial).collect();
+        let size = |axis: usize| spatial.get(axis).map_or(1, |axis| axis.size);
+        let dims = [size(0), size(1), size(2)];
+        let placement = placement(attempt, header, &spatial)?;
 
-        let ras_from_file = DMat3::from_diagonal(flips(attempt, header)?);
-        let origin_mm = origin(attempt, header)? * mm_per_unit(header, "space units").unwrap_or(1.0);
-        let world_from_index = DAffine3 {
-            matrix3: ras_from_file * DMat3::from_cols(step(0), step(1), step(2)),
-            translation: ras_from_file * origin_mm,
-        };
-        let field = if header.get("space directions").is_some() { "space directions" } else { "spacings" };
-        let axes = world_from_index.matrix3;
-        if let Some(why) = unlike_spacings([axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length)) {
-            return Err(attempt.bad_input(field, why, "give the lengths of all axes in one unit"));
+        let before: Vec<&Axis> = all.iter().take_while(|axis| !axis.spatial).collect();
+        let behind = all.iter().rev().take_while(|axis| !axis.spatial);
+        let product = |size: u64, axis: &Axis| size.saturating_mul(axis.size);
+        let components = before.iter().fold(1, |size, axis| product(size, axis));
+        let frames = behind.fold(1, product);
+        if components > MOST_COMPONENTS {
+            return Err(attempt.limit(
+                "sizes",
+                format!(
+                    "{components} numbers for each voxel are more than the {MOST_COMPONENTS} that are read"
+                ),
+                "extract some of them (for example: unu crop)",
+            ));
         }
-        if is_usable_affine(&world_from_index) {
-            let dims = [size(0), size(1), size(2)];
-            Ok(Self { dims, world_from_index, is_anatomical: is_anatomical(header) })
-        } else {
-            Err(attempt.bad_input(
-                field,
-                "the axes are unusable: too short, too long, or in one plane",
-                "give three independent axes in millimetres",
-            ))
-        }
+        Ok(Self {
+            dims,
+            placement,
+            components: components as usize,
+            is_color: before.iter().any(|axis| COLORS.contains(&axis.kind.as_str())),
+            are_times: before.iter().any(|axis| axis.kind == "time"),
+            frames,
+            sizes,
+        })
     }
 }
 
-/// One step along an axis, in the file's space and in millimetres.
-fn step(attempt: Attempt<'_>, index: usize, axis: &Axis) -> Result<DVec3, LoadError> {
-    if let Some(direction) = axis.direction_mm {
-        return if is_usable_spacing(direction.length()) {
-            Ok(direction)
-        } else {
-            Err(attempt.bad_input(
-                "space directions",
-                format!("{direction} is not a usable step along an axis"),
-                SPACING_HELP,
-            ))
+/// Where the voxels lie.
+fn placement(attempt: Attempt<'_>, header: &Header, axes: &[&Axis]) -> Result<Placement, LoadError> {
+    let ras_from_file = DMat3::from_diagonal(flips(attempt, header)?);
+    let origin_mm = origin(attempt, header)? * mm_per_unit(header, "space units").unwrap_or(1.0);
+    let is_anatomical = is_anatomical(header);
+    let has_directions = axes.iter().any(|axis| axis.direction_mm.is_some());
+    if !has_directions && axes.iter().all(|axis| axis.spacing_mm.is_nan()) {
+        attempt.warn("no spacings: how large the voxels are is not known");
+        let world_from_index = DAffine3 { matrix3: ras_from_file, translation: DVec3::ZERO };
+        return Ok(Placement { world_from_index, is_anatomical, ..Placement::unknown() });
+    }
+    if !has_directions {
+        let spacing = |axis: usize| axes.get(axis).map(|axis| axis.spacing_mm);
+        // A picture: its one slice is as thick as its pixels are wide.
+        let thickness = || axes.iter().map(|axis| axis.spacing_mm.abs()).product::<f64>().sqrt();
+        let spacings = [0, 1, 2].map(|axis| spacing(axis).unwrap_or_else(thickness));
+        let spaced = Placement::spaced(spacings);
+        let world_from_index = DAffine3 {
+            matrix3: ras_from_file * spaced.world_from_index.matrix3,
+            translation: ras_from_file * origin_mm,
         };
+        return Ok(Placement { world_from_index, is_anatomical, ..spaced });
     }
-    let unit = DVec3::AXES[index];
-    if axis.spacing_mm.is_nan() {
-        return Ok(unit);
+    let step = |(index, axis): (usize, &&Axis)| {
+        axis.direction_mm.unwrap_or_else(|| {
+            let is_known = !axis.spacing_mm.is_nan();
+            DVec3::AXES[index] * if is_known { axis.spacing_mm } else { 1.0 }
+        })
+    };
+    let mut steps: Vec<DVec3> = axes.iter().enumerate().map(step).collect();
+    if let [a, b] = steps[..] {
+        steps.push(a.cross(b).normalize_or_zero() * (a.length() * b.length()).sqrt());
     }
-    if is_usable_spacing(axis.spacing_mm) {
-        Ok(unit * axis.spacing_mm)
-    } else {
-        Err(attempt.bad_input(
-            "spacings",
-            format!("{} is not a usable distance", axis.spacing_mm),
-            SPACING_HELP,
-        ))
-    }
+    let step = |axis: usize| steps.get(axis).copied().unwrap_or(DVec3::ZERO);
+    let placement = Placement::ras(DAffine3 {
+        matrix3: ras_from_file * DMat3::from_cols(step(0), step(1), step(2)),
+        translation: ras_from_file * origin_mm,
+    });
+    Ok(if is_anatomical { placement } else { placement.of_no_body() })
 }
 
 /// All axes of the array, as the header describes them.
@@ -138,63 +163,68 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
     let space_unit_mm = mm_per_unit(header, "space units").unwrap_or(1.0);
     // Axes with different known units are not a case that occurs: the first known one counts.
     let axis_unit_mm = mm_per_unit(header, "units").unwrap_or(space_unit_mm);
-    if directions.is_none() && spacings.is_none() {
-        attempt.warn("no spacings: the voxels are taken as 1 mm cubes");
-    }
     Ok((0..dimension)
         .map(|i| {
             let direction_mm = directions.as_ref().and_then(|all| all[i]).map(|step| step * space_unit_mm);
-            let kind_is_spatial = kinds.get(i).is_none_or(|kind| is_spatial(kind));
+            let kind = kinds.get(i).map(|kind| kind.to_lowercase()).unwrap_or_default();
+            let kind_is_spatial = !OTHER_KINDS.iter().any(|other| kind.ends_with(other));
             let spatial = kind_is_spatial && (directions.is_none() || direction_mm.is_some());
-            let spacing_mm = spacings.as_ref().map_or(1.0, |all| all[i] * axis_unit_mm);
-            if spatial && direction_mm.is_none() && spacing_mm.is_nan() {
-                attempt.warn(format_args!("the spacing of axis {i} is unknown: 1 mm is used"));
-            }
-            Axis { size: sizes[i], spatial, direction_mm, spacing_mm }
+            let spacing_mm = spacings.as_ref().map_or(f64::NAN, |all| all[i] * axis_unit_mm);
+            Axis { size: sizes[i], kind, spatial, direction_mm, spacing_mm }
         })
         .collect())
 }
 
-fn is_spatial(kind: &str) -> bool {
-    let kind = kind.to_lowercase();
-    !OTHER_KINDS.iter().any(|other| kind.ends_with(other))
-}
-
-/// The two or three axes of the volume: axes of one sample are dropped, those of components first.
-fn volume_axes(attempt: Attempt<'_>, axes: Vec<Axis>) -> Result<Vec<Axis>, LoadError> {
-    if let Some(index) = axes.iter().position(|axis| !axis.spatial && axis.size > 1) {
-        return Err(attempt.bad_input(
-            "sizes",
-            format!(
-                "axis {index} holds {} components or time steps per voxel; one is expected",
-                axes[index].size
-            ),
-            "extract one component or time step (for example: unu slice -a AXIS -p POSITION)",
-        ));
-    }
+/// The axes without those of one sample that are too many; two or three are those of space, and the others come before or
+/// behind them.
+fn volume_axes(attempt: Attempt<'_>, mut axes: Vec<Axis>) -> Result<Vec<Axis>, LoadError> {
     let dimension = axes.len();
-    let mut kept: Vec<_> = axes.into_iter().filter(|axis| axis.spatial).collect();
-    while kept.len() > 3 {
-        let Some(single) = kept.iter().position(|axis| axis.size == 1) else {
-            return Err(attempt.bad_input(
-                "dimension",
-                format!("{dimension} axes are more than the three of a volume, and none has size 1"),
-                "extract one component or time step (for example: unu slice -a AXIS -p POSITION)",
-            ));
-        };
-        kept.remove(single);
+    axes.retain(|axis| axis.spatial || axis.size != 1);
+    while axes.iter().filter(|axis| axis.spatial).count() > 3 {
+        match axes.iter().position(|axis| axis.spatial && axis.size == 1) {
+            Some(single) => drop(axes.remove(single)),
+            None => set_apart(&mut axes),
+        }
     }
-    if kept.len() < 2 {
+    let spatial = axes.iter().filter(|axis| axis.spatial).count();
+    if spatial < 2 {
         return Err(attempt.bad_input(
             "dimension",
-            format!(
-                "{} spatial axes of {dimension} are no volume; 3, or 2 for a slice, are expected",
-                kept.len()
-            ),
+            format!("{spatial} spatial axes of {dimension} are no volume; 3, or 2 for a slice, are expected"),
             "check dimension, kinds and space directions",
         ));
     }
-    Ok(kept)
+    let first = axes.iter().position(|axis| axis.spatial).unwrap_or(0);
+    let last = axes.iter().rposition(|axis| axis.spatial).unwrap_or(0);
+    if let Some(within) = axes[first..=last].iter().position(|axis| !axis.spatial) {
+        return Err(attempt.bad_input(
+            "sizes",
+            format!(
+                "{} components or time steps lie between the axes of space; before or behind them they are read",
+                axes[first + within].size
+            ),
+            "change the order of the axes (for example: unu permute)",
+        ));
+    }
+    Ok(axes)
+}
+
+/// Sets one of too many axes apart of which the header does not say what they are: that which has no spacing, or the
+/// first where it may hold colours, or else the last.
+fn set_apart(axes: &mut [Axis]) {
+    let spatial: Vec<usize> = (0..axes.len()).filter(|&at| axes[at].spatial).collect();
+    let [first, others @ .., last] = &spatial[..] else { return };
+    let is_marked = |at: usize| axes[at].direction_mm.is_none() && axes[at].spacing_mm.is_nan();
+    let is_color = || {
+        let is_large = |&at: &usize| axes[at].size > MOST_COLORS;
+        axes[*first].size <= MOST_COLORS && others.iter().all(is_large) && is_large(last)
+    };
+    let is_first = match (is_marked(*first), is_marked(*last)) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => is_color(),
+    };
+    axes[if is_first { *first } else { *last }].spatial = false;
 }
 
 /// A list of `count` numbers, if the header has the field.

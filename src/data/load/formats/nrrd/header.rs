@@ -16,6 +16,8 @@ pub(super) struct Header {
     fields: BTreeMap<String, String>,
     /// Keys with their values, as they are written; the first of several.
     keys: BTreeMap<String, String>,
+    /// The lines that follow a list of data files: their names.
+    pub(super) files: Vec<String>,
     /// Where the data begin in this file; `None` when the file ended before an empty line.
     data_start: Option<u64>,
 }
@@ -26,6 +28,7 @@ impl Header {
         let mut reader = reader.take(LONGEST_HEADER_BYTES);
         let mut line = Vec::new();
         let (mut fields, mut keys) = (BTreeMap::new(), BTreeMap::new());
+        let (mut files, mut is_list) = (Vec::new(), false);
         let mut data_start = None;
         for number in 1.. {
             line.clear();
@@ -44,23 +47,21 @@ impl Header {
             let text = text.trim_end_matches(['\n', '\r']);
             if number == 1 {
                 check_magic(attempt, text)?;
+            } else if is_list {
+                files.extend(Some(text.trim()).filter(|name| !name.is_empty()).map(str::to_owned));
             } else if text.is_empty() {
                 data_start = Some(LONGEST_HEADER_BYTES - reader.limit());
                 break;
             } else if let Some((key, value)) = key_and_value(text) {
                 keys.entry(key).or_insert(value);
             } else if !text.starts_with('#') {
-                let is_list = add_field(attempt, &mut fields, text, number)?;
-                if is_list {
-                    // File names follow, not fields; the reader of the data refuses the list.
-                    break;
-                }
+                is_list = add_field(attempt, &mut fields, text, number)?;
             }
         }
         if fields.is_empty() {
             return Err(attempt.bad_input("header", "it has no fields", "check that it is an NRRD file"));
         }
-        Ok(Self { fields, keys, data_start })
+        Ok(Self { fields, keys, files, data_start })
     }
 
     /// The value of a field, if the header has it.

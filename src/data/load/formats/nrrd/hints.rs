@@ -19,6 +19,10 @@ const RESCALE_INTERCEPT: [&str; 2] = ["RescaleIntercept", "DICOM_0028_1052"];
 /// Keys of descriptions of how the data were acquired: by hand, of the series, of the protocol.
 const ACQUISITION: [&str; 4] = ["acquisition", "SeriesDescription", "DICOM_0008_103E", "DICOM_0018_1030"];
 
+/// Keys of the greys to be shown: their middle and how far they reach (PS3.3, C.11.2.1.2).
+const WINDOW_CENTER: [&str; 2] = ["DICOM_0028_1050", "WindowCenter"];
+const WINDOW_WIDTH: [&str; 2] = ["DICOM_0028_1051", "WindowWidth"];
+
 /// The key in which DICOM names the unit of rescaled values.
 const RESCALE_TYPE: &str = "DICOM_0028_1054";
 
@@ -56,6 +60,11 @@ impl Header {
         };
         if let Some(padding) = number(&PADDING).or_else(|| number(&STORED_PADDING).map(rescaled)) {
             hints.set_padding(padding);
+        }
+        // Of several windows the first.
+        let first_number = |keys: &[&str]| first(keys).split('\\').next()?.trim().parse::<f64>().ok();
+        if let (Some(center), Some(width)) = (first_number(&WINDOW_CENTER), first_number(&WINDOW_WIDTH)) {
+            hints.set_window(center - width / 2.0, center + width / 2.0);
         }
         hints.set_acquisition(first(&ACQUISITION));
         hints

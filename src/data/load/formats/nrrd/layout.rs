@@ -1,9 +1,8 @@
 //! How the voxels are stored: `type`, `encoding`, `endian`, `line skip`, `byte skip`.
 
+use super::super::number::Number;
 use super::super::{Endian, LoadError};
 use super::header::Header;
-use super::needs_endian;
-use crate::data::VoxelType;
 use crate::data::attempt::{Attempt, quoted};
 
 /// How the numbers are written.
@@ -11,13 +10,15 @@ use crate::data::attempt::{Attempt, quoted};
 pub(super) enum Encoding {
     Raw,
     Gzip,
+    Bzip2,
+    Hex,
     Text,
 }
 
 /// How the voxels are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Storage {
-    pub(super) voxel_type: VoxelType,
+    pub(super) number: Number,
     pub(super) encoding: Encoding,
     /// `None` where it makes no difference.
     pub(super) endian: Option<Endian>,
@@ -29,18 +30,18 @@ pub(super) struct Storage {
 
 impl Storage {
     pub(super) fn from_header(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
-        let voxel_type = voxel_type(attempt, header)?;
+        let number = number(attempt, header)?;
         let encoding = encoding(attempt, header)?;
         let endian = endian(attempt, header)?;
-        if endian.is_none() && encoding != Encoding::Text && needs_endian(voxel_type) {
+        if endian.is_none() && encoding != Encoding::Text && number.bytes() > 1 {
             return Err(attempt.bad_input(
                 "endian",
-                format!("the field endian is missing and {} has more than one byte", voxel_type.name()),
+                "the field endian is missing and the type has more than one byte",
                 "add endian: little or endian: big",
             ));
         }
         Ok(Self {
-            voxel_type,
+            number,
             encoding,
             endian,
             line_skip: line_skip(attempt, header)?,
@@ -49,32 +50,28 @@ impl Storage {
     }
 }
 
-fn voxel_type(attempt: Attempt<'_>, header: &Header) -> Result<VoxelType, LoadError> {
-    const HELP: &str = "use one of uint8, int8, uint16, int16, uint32, int32, float, double";
+fn number(attempt: Attempt<'_>, header: &Header) -> Result<Number, LoadError> {
+    const HELP: &str = "use one of uint8, int8, uint16, int16, uint32, int32, uint64, int64, float, double";
     let text = header.require(attempt, "type", HELP)?;
     let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
     Ok(match words.join(" ").as_str() {
-        "signed char" | "int8" | "int8_t" => VoxelType::I8,
-        "uchar" | "unsigned char" | "uint8" | "uint8_t" => VoxelType::U8,
-        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => VoxelType::I16,
-        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => VoxelType::U16,
-        "int" | "signed int" | "int32" | "int32_t" => VoxelType::I32,
-        "uint" | "unsigned int" | "uint32" | "uint32_t" => VoxelType::U32,
-        "float" | "float32" => VoxelType::F32,
-        "double" | "float64" => VoxelType::F64,
+        "signed char" | "int8" | "int8_t" => Number::I8,
+        "uchar" | "unsigned char" | "uint8" | "uint8_t" => Number::U8,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => Number::I16,
+        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => Number::U16,
+        "int" | "signed int" | "int32" | "int32_t" => Number::I32,
+        "uint" | "unsigned int" | "uint32" | "uint32_t" => Number::U32,
+        "float" | "float32" => Number::F32,
+        "double" | "float64" => Number::F64,
         "longlong"
         | "long long"
         | "long long int"
         | "signed long long"
         | "signed long long int"
         | "int64"
-        | "int64_t"
-        | "ulonglong"
-        | "unsigned long long"
-        | "unsigned long long int"
-        | "uint64"
-        | "uint64_t"
-        | "block" => {
+        | "int64_t" => Number::I64,
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => Number::U64,
+        "block" => {
             return Err(attempt.bad_input(
                 "type",
                 format!("voxels of type {} are not read", quoted(text)),
@@ -86,21 +83,17 @@ fn voxel_type(attempt: Attempt<'_>, header: &Header) -> Result<VoxelType, LoadEr
 }
 
 fn encoding(attempt: Attempt<'_>, header: &Header) -> Result<Encoding, LoadError> {
-    const HELP: &str = "write it again with encoding raw or gzip (for example: unu save -f nrrd -e gzip)";
-    let text = header.require(attempt, "encoding", "add encoding: raw, gzip or ascii")?;
+    let text = header.require(attempt, "encoding", "add encoding: raw, gzip, bzip2, hex or ascii")?;
     match text.to_lowercase().as_str() {
         "raw" => Ok(Encoding::Raw),
         "gz" | "gzip" => Ok(Encoding::Gzip),
+        "bz2" | "bzip2" => Ok(Encoding::Bzip2),
+        "hex" => Ok(Encoding::Hex),
         "txt" | "text" | "ascii" => Ok(Encoding::Text),
-        "hex" | "bz2" | "bzip2" | "zrl" => Err(attempt.bad_input(
-            "encoding",
-            format!("raw, gzip and ascii are read, {} is not", quoted(text)),
-            HELP,
-        )),
         _ => Err(attempt.bad_input(
             "encoding",
-            format!("raw, gzip or ascii was expected, {} was found", quoted(text)),
-            HELP,
+            format!("raw, gzip, bzip2, hex or ascii was expected, {} was found", quoted(text)),
+            "write it again with encoding raw or gzip (for example: unu save -f nrrd -e gzip)",
         )),
     }
 }

@@ -1,8 +1,10 @@
-//! NRRD, "nearly raw raster data": a text header, and the voxels behind it or in a second file.
+//! NRRD, "nearly raw raster data": a text header, and the voxels behind it or in other files.
 //!
-//! After the definition at <https://teem.sourceforge.net/nrrd/format.html>, versions 1 to 5.
-//! Encodings raw, gzip and text. World space is right-anterior-superior millimetres.
+//! After the definition at <https://teem.sourceforge.net/nrrd/format.html>, versions 1 to 5. World space is
+//! right-anterior-superior millimetres. An axis that is none of space is one of components where it is the fastest,
+//! and one of time steps where it is the slowest.
 
+mod data;
 mod files;
 mod geometry;
 mod header;
@@ -13,16 +15,21 @@ mod space;
 mod tests;
 
 use super::beside;
-use super::input::{Input, Witness, stem};
+use super::input::stem;
+use super::number::{Number, Part, Stored};
+use super::placement::Parts;
 use super::reader::{Reader, Source};
-use super::samples::{Layout, read_binary, read_gzip, read_text};
-use super::{Endian, LoadControl, LoadError};
-use crate::data::attempt::Attempt;
-use crate::data::attempt::Extent;
-use crate::data::{Samples, ValueRange, Volume, VoxelType, plain};
+use super::samples::{Fault, Layout};
+use super::{Dimension, Endian, LoadError, LoadOptions, Offer};
+use crate::data::attempt::{Attempt, Extent};
+use crate::data::{Meaning, Volume, plain};
+use data::{Data, HELP, Place};
 use geometry::Geometry;
 use header::Header;
 use layout::{Encoding, Storage};
+
+/// Time steps of one file at most.
+const MOST_FRAMES: u64 = 1 << 16;
 
 /// Whether a file that begins like this is an NRRD file.
 pub(super) fn is_nrrd(magic: &[u8]) -> bool {
@@ -38,114 +45,86 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the NRRD volume", path };
     let header = Header::read(attempt, &mut input.reader)?;
     let storage = Storage::from_header(attempt, &header)?;
-    let geometry = Geometry::from_header(attempt, &header)?;
+    let mut geometry = Geometry::from_header(attempt, &header)?;
+    let hints = header.hints();
+    let is_layered = hints.meaning == Meaning::Labels && geometry.components > 1;
+    let (frame, part) = chosen(attempt, &geometry, storage.number, is_layered, options)?;
+    // Numbers in text are made little-endian, and those of one byte need no order.
+    let endian = storage.endian.filter(|_| storage.encoding != Encoding::Text).unwrap_or(Endian::Little);
+    let stored = Stored { number: storage.number, endian, components: geometry.components, part };
     let extent =
-        Extent::checked(attempt, "sizes", geometry.dims, storage.voxel_type, options.memory_budget_bytes)?;
-    // Text has no byte order and one-byte voxels need none.
-    let endian = storage.endian.unwrap_or(Endian::Little);
-    let layout = Layout { extent, voxel_type: storage.voxel_type, endian };
+        Extent::checked(attempt, "sizes", geometry.dims, stored.voxel_type(), options.memory_budget_bytes)?;
+    let bytes_of_frame = (extent.voxels as u64)
+        .checked_mul(stored.bytes_of_voxel())
+        .filter(|bytes| bytes.checked_mul(geometry.frames).is_some())
+        .ok_or_else(|| attempt.limit("sizes", "all time steps have more than 2^64 bytes", HELP))?;
 
-    let samples = match header.get("data file") {
-        None => {
-            let start = header.data_start(attempt)?;
-            input.seek(start).map_err(|error| attempt.io(error))?;
-            read_data(attempt, input, start, &storage, &layout, control)?
-        }
-        Some(name) => {
-            files::check_single(attempt, name)?;
-            let data_path = beside::resolve(attempt, files::FIELD, name)?;
-            let attempt = Attempt { what: "read the NRRD volume's data file", path: &data_path };
-            let input = Input::open(attempt)?;
-            let witness = Witness::of(attempt, &input)?;
-            witness.vouch(attempt, read_data(attempt, input, 0, &storage, &layout, control))?
-        }
+    let places = match files::names(attempt, &header, &geometry.sizes)? {
+        None => vec![Place::Attached(path.to_owned(), header.data_start(attempt)?)],
+        Some(names) => names
+            .iter()
+            .map(|name| beside::resolve(attempt, files::FIELD, name).map(Place::Detached))
+            .collect::<Result<_, _>>()?,
     };
+    let bytes_of_file = bytes_of_frame * geometry.frames / places.len() as u64;
+    let mut data = Data::new(places, storage, bytes_of_file, control);
+    let read = data.skip(frame * bytes_of_frame).map_err(Fault::Io);
+    let layout = Layout { extent, voxel_type: stored.voxel_type(), endian };
+    let samples = read.and_then(|()| stored.read(&mut data, extent, control));
+    let samples = samples.map_err(|fault| match data.failure.take() {
+        Some(failure) => failure,
+        None => fault.into_error(attempt, &layout, "bytes", HELP),
+    })?;
+
+    let placement = &mut geometry.placement;
+    if part == Part::Luminance {
+        placement.remarks.push("colours are shown as their luminance".to_owned());
+    } else if is_layered {
+        let layers = geometry.components;
+        placement.remarks.push(format!("its labels lie in {layers} layers: --component names one"));
+    } else if part == Part::Magnitude {
+        placement.remarks.push("vectors are shown by their length".to_owned());
+    }
     let name = header.get("content").filter(|content| !content.is_empty());
     let name = name.map_or_else(|| stem(path), |content| plain(content, 120));
-    Volume::new(name, extent.dims, geometry.world_from_index, samples)
-        .map(|volume| volume.with_anatomy(geometry.is_anatomical).with_hints(header.hints()))
-        .and_then(|volume| match volume.hints().padding {
-            // A volume of padding alone is shown as it is.
-            Some(padding) if volume.value_range() != ValueRange::new(padding, padding) => {
-                volume.with_padding(padding)
-            }
-            _ => Ok(volume),
-        })
-        .map_err(|error| attempt.bad_input("data", error.to_string(), "check the header against the data"))
+    Parts { name, dims: extent.dims, placement: geometry.placement, samples, hints }.volume(attempt)
 }
 
-/// Reads the voxels from `input`, whose data begin at byte `start`, before any skipping.
-fn read_data(
+/// Which time step is read, from 0 where they are behind each other, and which of the numbers beside each other.
+fn chosen(
     attempt: Attempt<'_>,
-    mut input: Input,
-    start: u64,
-    storage: &Storage,
-    layout: &Layout,
-    control: &LoadControl,
-) -> Result<Samples, LoadError> {
-    const HELP: &str = "check sizes, type and the skips in the header, or copy the file again";
-    let Some(skipped) = input.skip_lines(attempt, storage.line_skip, control)? else {
-        return Err(attempt.bad_input(
-            "line skip",
-            format!("the data end before {} lines have been skipped", storage.line_skip),
-            HELP,
+    geometry: &Geometry,
+    number: Number,
+    is_layered: bool,
+    options: &LoadOptions,
+) -> Result<(u64, Part), LoadError> {
+    let components = geometry.components;
+    let times = if geometry.are_times { components as u64 } else { geometry.frames };
+    if times > MOST_FRAMES || (geometry.are_times && geometry.frames > 1) {
+        return Err(attempt.limit(
+            "sizes",
+            format!("there are more than {MOST_FRAMES} time steps, or times in two axes"),
+            "extract some time steps (for example: unu crop)",
         ));
-    };
-    let start = start + skipped;
-    let available = input.len.saturating_sub(start);
-    match storage.encoding {
-        Encoding::Raw => {
-            let bytes = layout.extent.bytes;
-            let skip = match storage.byte_skip {
-                Some(skip) => skip,
-                None => available.saturating_sub(bytes),
-            };
-            let found = available.saturating_sub(skip);
-            if found < bytes {
-                let [x, y, z] = layout.extent.dims;
-                let name = layout.voxel_type.name();
-                return Err(attempt.bad_input(
-                    "sizes",
-                    format!(
-                        "the data are truncated: {bytes} bytes expected for {x} x {y} x {z} voxels of {name}, \
-                         {found} found"
-                    ),
-                    HELP,
-                ));
-            }
-            if found > bytes {
-                // Legal: several headers can point into one file.
-                attempt.warn(format_args!("{} bytes after the voxels are ignored", found - bytes));
-            }
-            input.seek(start + skip).map_err(|error| attempt.io(error))?;
-            read_binary(&mut input.reader, layout, control)
-                .map_err(|fault| fault.into_error(attempt, layout, "bytes", HELP))
-        }
-        Encoding::Gzip => {
-            // The skipped bytes of compressed data are counted after inflating.
-            read_gzip(input.reader, storage.byte_skip.unwrap_or(0), layout, control)
-                .map_err(|fault| fault.into_error(attempt, layout, "bytes", HELP))
-        }
-        Encoding::Text => {
-            let skip = storage.byte_skip.unwrap_or(0);
-            // A digit each and a space between: less cannot hold the voxels, and nothing is allocated.
-            let voxels = layout.extent.voxels as u64;
-            let most = available.saturating_sub(skip).div_ceil(2);
-            if most < voxels {
-                return Err(attempt.bad_input(
-                    "sizes",
-                    format!("the data are truncated: {voxels} numbers expected, room for {most} found"),
-                    HELP,
-                ));
-            }
-            input.seek(start + skip).map_err(|error| attempt.io(error))?;
-            read_text(&mut input.reader, layout, control)
-                .map_err(|fault| fault.into_error(attempt, layout, "numbers", HELP))
-        }
     }
-}
-
-/// Whether binary voxels of this type need a byte order.
-fn needs_endian(voxel_type: VoxelType) -> bool {
-    voxel_type.bytes() > 1
+    let mut frame = 0;
+    if times > 1 {
+        let offers = (0..times as usize).map(|step| Offer::numbered(step, "", geometry.dims)).collect();
+        frame = attempt.chosen(&options.choice, Dimension::Frame, offers)?;
+    }
+    if geometry.are_times {
+        return Ok((0, Part::Component(frame)));
+    }
+    // Programs that know no colours write them as vectors of bytes.
+    let is_color = geometry.is_color || (number == Number::U8 && (3..=4).contains(&components));
+    // Numbers of segments make nothing together: those of the first layer have names.
+    let component = options.choice.component.or(is_layered.then_some(0));
+    let part = Part::chosen(component, components, is_color).ok_or_else(|| {
+        attempt.bad_input(
+            "--component",
+            format!("each voxel has {components} components"),
+            format!("give a number from 0 to {}", components - 1),
+        )
+    })?;
+    Ok((frame as u64, part))
 }

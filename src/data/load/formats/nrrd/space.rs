@@ -36,10 +36,11 @@ pub(super) fn directions(
             directions.push(None);
             continue;
         };
-        let direction = in_space(&components, space_dimension).ok_or_else(|| {
-            wrong(format!("{components:?} is no vector of {space_dimension} finite numbers"))
-        })?;
-        directions.push(Some(direction));
+        let direction = in_space(&components, space_dimension)
+            .ok_or_else(|| wrong(format!("{components:?} is no vector of {space_dimension} numbers")))?;
+        // An axis of time has steps in time alone.
+        let is_time = direction == DVec3::ZERO && components.get(3).is_some_and(|&step| step != 0.0);
+        directions.push((!is_time).then_some(direction));
     }
     Ok(directions.iter().any(Option::is_some).then_some(directions))
 }
@@ -65,7 +66,9 @@ pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Loa
             attempt.warn("the space origin is unknown: 0 is used");
             Ok(DVec3::ZERO)
         }
-        [Some(components)] => in_space(components, space_dimension).ok_or_else(wrong),
+        [Some(components)] => {
+            in_space(components, space_dimension).filter(|origin| origin.is_finite()).ok_or_else(wrong)
+        }
         _ => Err(wrong()),
     }
 }
@@ -76,7 +79,7 @@ pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Loa
 pub(super) fn flips(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, LoadError> {
     // Checks the dimension also where no vector uses it.
     space_dimension(attempt, header)?;
-    Ok(match header.get("space").unwrap_or_default().to_lowercase().as_str() {
+    Ok(match name(header).as_str() {
         "left-posterior-superior" | "lps" => DVec3::new(-1.0, -1.0, 1.0),
         "left-anterior-superior" | "las" => DVec3::new(-1.0, 1.0, 1.0),
         _ => DVec3::ONE,
@@ -85,7 +88,7 @@ pub(super) fn flips(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Load
 
 /// Whether the file says which way a body lies.
 pub(super) fn is_anatomical(header: &Header) -> bool {
-    let space = header.get("space").unwrap_or_default().to_lowercase();
+    let space = name(header);
     let names = ["right-anterior-superior", "left-anterior-superior", "left-posterior-superior"];
     names.contains(&space.as_str()) || ["ras", "las", "lps"].contains(&space.as_str())
 }
@@ -105,21 +108,34 @@ pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
     units.split('"').skip(1).step_by(2).find_map(length)
 }
 
-/// The number of components of the file's vectors: 3, or 2 for pictures.
+/// The name of the space, without time.
+fn name(header: &Header) -> String {
+    let space = header.get("space").unwrap_or_default().to_lowercase();
+    match space.as_str() {
+        "rast" | "last" | "lpst" => space[..3].to_owned(),
+        _ => space.trim_end_matches("-time").to_owned(),
+    }
+}
+
+/// The number of components of the file's vectors: 3, 4 with time, or 2 for pictures.
 fn space_dimension(attempt: Attempt<'_>, header: &Header) -> Result<usize, LoadError> {
-    let wrong = |field: &str, found: &str| {
+    let wrong = |found: &str| {
         attempt.bad_input(
-            field,
-            format!("a space of 3 dimensions, or 2 for a slice, was expected, {} was found", quoted(found)),
-            "extract one time step, or write a space like left-posterior-superior",
+            "space dimension",
+            format!(
+                "a space of 3 dimensions, 4 with time, or 2 for a slice, was expected, {} was found",
+                quoted(found)
+            ),
+            "write a space like left-posterior-superior",
         )
     };
     match (header.get("space"), header.get("space dimension")) {
         // The spaces with time have four dimensions: names and abbreviations end like this.
-        (Some(space), _) if has_time(space) => Err(wrong("space", space)),
+        (Some(space), _) if has_time(space) => Ok(4),
         (Some(_), _) | (None, None | Some("3")) => Ok(3),
         (None, Some("2")) => Ok(2),
-        (None, Some(other)) => Err(wrong("space dimension", other)),
+        (None, Some("4")) => Ok(4),
+        (None, Some(other)) => Err(wrong(other)),
     }
 }
 
@@ -128,14 +144,14 @@ fn has_time(space: &str) -> bool {
     space.ends_with("-time") || matches!(space.as_str(), "rast" | "last" | "lpst")
 }
 
-/// A vector in three dimensions; none when its length is another or a component is not finite.
+/// A vector in three dimensions, without time; none when its length is another.
 fn in_space(components: &[f64], space_dimension: usize) -> Option<DVec3> {
-    let vector = match *components {
-        [x, y, z] if space_dimension == 3 => DVec3::new(x, y, z),
-        [x, y] if space_dimension == 2 => DVec3::new(x, y, 0.0),
-        _ => return None,
-    };
-    vector.is_finite().then_some(vector)
+    match *components {
+        [x, y, z] if space_dimension == 3 => Some(DVec3::new(x, y, z)),
+        [x, y, z, _] if space_dimension == 4 => Some(DVec3::new(x, y, z)),
+        [x, y] if space_dimension == 2 => Some(DVec3::new(x, y, 0.0)),
+        _ => None,
+    }
 }
 
 /// Takes `(1,0,0) none (0, 1, 0)` apart.

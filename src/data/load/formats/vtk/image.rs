@@ -139,7 +139,7 @@ impl<P> Chosen<P> {
         if self.stored.part == Part::Luminance {
             placement.remarks.push("colours are shown as their luminance".to_owned());
         } else if self.stored.part == Part::Magnitude {
-            placement.remarks.push("vectors are shown as their length".to_owned());
+            placement.remarks.push("vectors are shown by their length".to_owned());
         }
         let file = stem(attempt.path);
         let name = if self.is_one_of_several { format!("{file} {}", self.array.name) } else { file };

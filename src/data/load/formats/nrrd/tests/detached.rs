@@ -43,8 +43,12 @@ fn detached_data_elsewhere_are_refused() {
     refused("C:\\secret.raw", bad, &["drive"]);
     refused("a\0b.raw", bad, &["zero byte"]);
     refused("", bad, &["empty"]);
-    refused("LIST\na.raw\nb.raw", bad, &["several files", "unu"]);
-    refused("slice%03d.raw 1 2 1", bad, &["several files"]);
+    for list in ["LIST\n{}\nb.raw", "LIST 2\n{}\nb.raw"] {
+        refused(&list.replace("{}", "../inner2/secret.raw"), bad, &["out of the header's folder"]);
+        refused(&list.replace("{}", secret.to_str().unwrap()), bad, &["absolute"]);
+    }
+    refused("../inner2/secret%d.raw 1 2 1", bad, &["out of the header's folder"]);
+    refused("slice%03d.raw 1 2 1", LoadErrorKind::Io, &["no such file"]);
     refused("missing.raw", LoadErrorKind::Io, &["no such file"]);
     refused(".", LoadErrorKind::Io, &["directory"]);
     #[cfg(unix)]
@@ -57,4 +61,50 @@ fn detached_data_elsewhere_are_refused() {
         link(Path::new("/dev/zero"), "zero.raw");
         refused("zero.raw", bad, &["link"]);
     }
+}
+
+#[test]
+fn data_in_several_files_are_put_together() {
+    let folder = TempDir::new().unwrap();
+    for (number, voxels) in VOXELS.chunks(4).enumerate() {
+        write(&folder, &format!("s{number:02}.raw"), "", voxels);
+        write(&folder, &format!("skip{number}.raw"), "line\nxx", voxels);
+        write(&folder, &format!("z{number}.gz"), "", &super::gzip(voxels));
+    }
+    for (number, voxels) in VOXELS.chunks(2).enumerate() {
+        write(&folder, &format!("row {number}"), "", voxels);
+    }
+    let load = |lines: &str| load_path(&write(&folder, "v.nhdr", &format!("{HEADER}{lines}\n"), &[]));
+    let expected = Samples::U8(VOXELS.to_vec());
+    for lines in [
+        "data file: LIST\ns00.raw\n\n./s01.raw",
+        "data file: LIST 2\r\ns00.raw\r\ns01.raw\r",
+        "data file: LIST 3\ns00.raw\ns01.raw",
+        "data file: LIST 1\nrow 0\nrow 1\nrow 2\nrow 3",
+        "data file: s%02d.raw 0 1 1",
+        "datafile: s%02d.raw 0 1 1 3",
+        "line skip: 1\nbyte skip: 2\ndata file: skip%d.raw 0 1 1",
+        "byte skip: -1\ndata file: skip%i.raw 0 1 1",
+    ] {
+        assert_eq!(*load(lines).unwrap().samples(), expected, "{lines}");
+    }
+    let zipped = HEADER.replace("raw", "gzip");
+    let path = write(&folder, "z.nhdr", &format!("{zipped}data file: z%d.gz 0 1 1\n"), &[]);
+    assert_eq!(*load_path(&path).unwrap().samples(), expected);
+    let backwards = load("data file: s%02d.raw 1 0 -1").unwrap();
+    assert_eq!(*backwards.samples(), Samples::U8(vec![5, 6, 7, 8, 1, 2, 3, 4]));
+    let bad = LoadErrorKind::BadInput;
+    for (lines, words) in [
+        ("data file: LIST", &["0 are named"][..]),
+        ("data file: LIST\ns00.raw", &["1 files", "2 were expected"]),
+        ("data file: LIST 1\ns00.raw\ns01.raw", &["4 were expected"]),
+        ("data file: LIST 9\ns00.raw\ns01.raw", &["dimension", "\"9\""]),
+        ("data file: LIST 3\ns00.raw\ns01.raw\ns00.raw", &["3 files"]),
+        ("data file: s%02d.raw 0 1 0", &["steps of 0"]),
+        ("data file: s%d%d.raw 0 1 1", &["one number"]),
+        ("byte skip: 1\ndata file: s%02d.raw 0 1 1", &["truncated", "s00.raw"]),
+    ] {
+        assert_refused(load(lines), bad, words);
+    }
+    assert_refused(load("data file: s%02d.raw 0 99999 1"), LoadErrorKind::Limit, &["100000 files"]);
 }

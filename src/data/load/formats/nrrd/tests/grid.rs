@@ -14,11 +14,6 @@ fn other_dimensions_become_three() {
     assert_eq!(dims(&["dimension: 4", "sizes: 1 4 2 1"]).unwrap(), [4, 2, 1]);
     let last = ["dimension: 4", "sizes: 1 2 4 1", "space directions: (1,0,0) (0,1,0) (0,0,2) none"];
     assert_eq!(dims(&last).unwrap(), [1, 2, 4]);
-    let four = load_attached(&header_with(&["dimension: 4", "sizes: 2 2 2 2"]), &[0; 16]);
-    assert_refused(four, LoadErrorKind::BadInput, &["dimension", "component or time step"]);
-    let times = ["dimension: 4", "sizes: 2 1 2 2", "kinds: list domain domain domain"];
-    let times = load_attached(&header_with(&times), &VOXELS);
-    assert_refused(times, LoadErrorKind::BadInput, &["2 components or time steps"]);
     let one = load_attached(&header_with(&["dimension: 1", "sizes: 8"]), &VOXELS);
     assert_refused(one, LoadErrorKind::BadInput, &["dimension"]);
 }
@@ -51,10 +46,33 @@ fn the_world_is_right_anterior_superior_millimetres() {
 fn spacings_without_a_space_are_used() {
     let spacing = |fields: &[&str]| load_attached(&header_with(fields), &VOXELS).unwrap().spacing_mm();
     assert_eq!(spacing(&[]), DVec3::ONE);
+    let is_unknown =
+        |fields: &[&str]| load_attached(&header_with(fields), &VOXELS).unwrap().has_unknown_scale();
+    assert!(is_unknown(&[]) && is_unknown(&["spacings: nan nan nan"]));
+    assert!(!is_unknown(&["spacings: 1 1 1"]));
+    assert!(!is_unknown(&["space: RAS", "space directions: (1,0,0) (0,1,0) (0,0,1)"]));
     assert_eq!(spacing(&["spacings: 0.5 0.5 3"]), DVec3::new(0.5, 0.5, 3.0));
     assert_eq!(spacing(&["spacings: 0.5 NaN 3"]), DVec3::new(0.5, 1.0, 3.0));
     assert_eq!(spacing(&["spacings: 2 2 3", "units: \"cm\" \"cm\" \"cm\""]), DVec3::new(20.0, 20.0, 30.0));
     let squeezed = ["dimension: 4", "sizes: 1 2 2 2", "spacings: nan 1 2 3"];
     assert_eq!(spacing(&squeezed), DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(spacing(&["dimension: 2", "sizes: 4 2", "spacings: 1 4"]), DVec3::new(1.0, 4.0, 2.0));
+}
+
+#[test]
+fn distances_that_cannot_be_are_mended_and_said() {
+    for (field, taken) in [
+        ("spacings: 1 0 2", [1.0, 1.0, 2.0]),
+        ("spacings: 1 -1.5 1", [1.0, 1.5, 1.0]),
+        ("spacings: 1 inf 1", [1.0; 3]),
+        ("spacings: 2 1e300 1", [2.0, 1.0, 1.0]),
+        ("spacings: 1e-8 1 1e8", [1.0; 3]),
+        ("space directions: (2,0,0) (0,1,0) (0,1,0)", [2.0, 1.0, 1.0]),
+        ("space directions: (2,0,0) (0,1,0) (0,0,0)", [2.0, 1.0, 1.0]),
+        ("space directions: (2,0,0) (0,1,0) (0,nan,0)", [2.0, 1.0, 1.0]),
+    ] {
+        let volume = load_attached(&header_with(&[field]), &VOXELS).unwrap();
+        assert_eq!(volume.spacing_mm(), DVec3::from_array(taken), "{field}");
+        assert!(!volume.remarks().is_empty(), "{field}");
+    }
 }

@@ -35,6 +35,9 @@ fn what_values_are_is_understood() {
     assert_eq!(with("PaddingValue:=-500"), Some(-500.0), "in the numbers of the file");
     assert_eq!(hints_of(&["RescaleIntercept:=-1000", "PixelPaddingValue:=0"]).padding, Some(-1000.0));
     assert_eq!(hints_of(&["RescaleSlope:=1e308", "PixelPaddingValue:=100"]).padding, None, "no number");
+    let window = hints_of(&["DICOM_0028_1050:=40\\300", "DICOM_0028_1051:=400\\1500"]).window;
+    assert_eq!(window, Some([-160.0, 240.0]), "the first of two");
+    assert_eq!(hints_of(&["WindowCenter:=40", "WindowWidth:=0"]).window, None);
     assert_eq!(hints_of(&["SeriesDescription:=T1 \u{1b}axial"]).acquisition(), Some("T1 ·axial"));
 }
 

@@ -119,13 +119,13 @@ fn all_arrays_are_found() {
         b"\nLOOKUP_TABLE own 2\n12345678\nFIELD more 3\nbits 1 8 bit\n\xff\nNULL_ARRAY\nt 1 8 unsigned_char\n",
         b"\x01\x02\x03\x04\x05\x06\x07\x08\nSTRANGE thing\nMETADATA",
     ]);
-    let mut in_text = HEAD.to_owned();
-    in_text += "FIELD FieldData 1\nTIME 1 1 double\n0.5\nCELL_DATA 1\nSCALARS c short\nLOOKUP_TABLE default\n7\nMETADATA\nx\n\n";
-    in_text +=
-        &format!("POINT_DATA 8\nCOLOR_SCALARS rgb 3\n{}\nVECTORS v%20w float\n", "0.2 0.2 0.2 ".repeat(8));
-    in_text += &format!("{}\nLOOKUP_TABLE own 2\n1 2 3 4 5 6 7 8\nFIELD more 3\n", "3 4 0\n".repeat(8));
-    in_text +=
-        "bits 1 8 bit\n1 1 1 1 1 1 1 1\nNULL_ARRAY\nt 1 8 unsigned_char\n1 2 3 4 5 6 7 8\nSTRANGE thing\n";
+    let (colors, vectors) = ("0.2 0.2 0.2 ".repeat(8), "3 4 0\n".repeat(8));
+    let in_text = format!(
+        "{HEAD}FIELD FieldData 1\nTIME 1 1 double\n0.5\nCELL_DATA 1\nSCALARS c short\nLOOKUP_TABLE default\n7\n\
+         METADATA\nx\n\nPOINT_DATA 8\nCOLOR_SCALARS rgb 3\n{colors}\nVECTORS v%20w float\n{vectors}\n\
+         LOOKUP_TABLE own 2\n1 2 3 4 5 6 7 8\nFIELD more 3\nbits 1 8 bit\n1 1 1 1 1 1 1 1\nNULL_ARRAY\n\
+         t 1 8 unsigned_char\n1 2 3 4 5 6 7 8\nSTRANGE thing\n"
+    );
     for (bytes, is_text) in [(in_bytes, false), (in_text.into_bytes(), true)] {
         let listed = ["4 arrays", "0 \"c\" (1 x 1 x 1)", "2 \"v w\" (2 x 2 x 2)", "3 \"t\""];
         assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &listed);

@@ -9,7 +9,9 @@ use flate2::write::{GzEncoder, ZlibEncoder};
 use glam::DVec3;
 use tempfile::TempDir;
 
-use crate::data::load::{Choice, Dimension, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::load::{
+    Choice, Dimension, Endian, LoadControl, LoadError, LoadErrorKind, LoadOptions, load,
+};
 use crate::data::{Samples, Volume};
 
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
@@ -74,12 +76,12 @@ fn lz4(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Numbers of a header, of 32 or 64 bits.
-fn words(are_long: bool, is_big: bool, words: &[u64]) -> Vec<u8> {
-    let bytes = |&word: &u64| match (are_long, is_big) {
-        (true, true) => word.to_be_bytes().to_vec(),
-        (true, false) => word.to_le_bytes().to_vec(),
-        (false, true) => (word as u32).to_be_bytes().to_vec(),
-        (false, false) => (word as u32).to_le_bytes().to_vec(),
+fn words(are_long: bool, endian: Endian, words: &[u64]) -> Vec<u8> {
+    let bytes = |&word: &u64| match (are_long, endian) {
+        (true, Endian::Big) => word.to_be_bytes().to_vec(),
+        (true, Endian::Little) => word.to_le_bytes().to_vec(),
+        (false, Endian::Big) => (word as u32).to_be_bytes().to_vec(),
+        (false, Endian::Little) => (word as u32).to_le_bytes().to_vec(),
     };
     words.iter().flat_map(bytes).collect()
 }
@@ -87,7 +89,7 @@ fn words(are_long: bool, is_big: bool, words: &[u64]) -> Vec<u8> {
 /// The header and the data of values in blocks of `size` bytes.
 fn blocks(
     are_long: bool,
-    is_big: bool,
+    endian: Endian,
     bytes: &[u8],
     size: usize,
     pack: fn(&[u8]) -> Vec<u8>,
@@ -95,7 +97,7 @@ fn blocks(
     let packed: Vec<_> = bytes.chunks(size).map(pack).collect();
     let mut header = vec![packed.len() as u64, size as u64, (bytes.len() % size) as u64];
     header.extend(packed.iter().map(|block| block.len() as u64));
-    (words(are_long, is_big, &header), packed.concat())
+    (words(are_long, endian, &header), packed.concat())
 }
 
 #[track_caller]
@@ -113,18 +115,19 @@ fn every_form_of_the_values_is_read() {
     let values: [i16; 8] = [-2, 0, 1, 258, 32767, -32768, 5, 6];
     let expected = Samples::I16(values.to_vec());
     for (are_long, is_big) in [(false, false), (false, true), (true, false), (true, true)] {
+        let endian = if is_big { Endian::Big } else { Endian::Little };
         let bytes: Vec<u8> = values
             .iter()
             .flat_map(|value| if is_big { value.to_be_bytes() } else { value.to_le_bytes() })
             .collect();
         let order = if is_big { "BigEndian" } else { "LittleEndian" };
         let width = if are_long { "UInt64" } else { "UInt32" };
-        let plain = (words(are_long, is_big, &[16]), bytes.clone());
+        let plain = (words(are_long, endian, &[16]), bytes.clone());
         for (compressor, (header, data), is_plain) in [
             ("", plain, true),
-            ("vtkZLibDataCompressor", blocks(are_long, is_big, &bytes, 6, zlib), false),
-            ("vtkZLibDataCompressor", blocks(are_long, is_big, &bytes, 8, zlib), false),
-            ("vtkLZ4DataCompressor", blocks(are_long, is_big, &bytes, 10, lz4), false),
+            ("vtkZLibDataCompressor", blocks(are_long, endian, &bytes, 6, zlib), false),
+            ("vtkZLibDataCompressor", blocks(are_long, endian, &bytes, 8, zlib), false),
+            ("vtkLZ4DataCompressor", blocks(are_long, endian, &bytes, 10, lz4), false),
         ] {
             let root = format!("byte_order=\"{order}\" header_type=\"{width}\" compressor=\"{compressor}\"");
             let both = [header.as_slice(), &data].concat();
@@ -154,7 +157,7 @@ fn every_type_is_read_as_text() {
     macro_rules! check {
         ($name:literal, $variant:ident, $values:expr) => {
             let values = $values;
-            let text = values.iter().map(|value| format!("{value} ")).collect::<String>();
+            let text = values.map(|value| value.to_string()).join(" ");
             let bytes = file("", &points(concat!("type=\"", $name, "\" format=\"ascii\""), &text), b"");
             assert_eq!(*load_bytes(&bytes).unwrap().samples(), Samples::$variant(values.to_vec()));
         };
@@ -238,7 +241,8 @@ fn one_of_several_arrays_is_chosen() {
 #[test]
 fn several_components_make_one_value() {
     let with = |kind: &str, components: usize, component: Option<usize>| {
-        let text: String = (0..8 * components).map(|at| format!("{} ", 3 + at % components)).collect();
+        let numbers: Vec<_> = (0..8 * components).map(|at| (3 + at % components).to_string()).collect();
+        let text = numbers.join(" ");
         let attributes = format!("type=\"{kind}\" NumberOfComponents=\"{components}\" format=\"ascii\"");
         let choice = Choice { component, ..Choice::default() };
         load_bytes_as(&file("", &points(&attributes, &text), b""), choice)
@@ -303,7 +307,7 @@ fn lying_headers_are_refused() {
         let whole = file(root, &appended, &data);
         load_bytes(&whole[..whole.len() - "\n</VTKFile>\n".len()])
     };
-    let with = |header: &[u64], data: &[u8]| [words(false, false, header).as_slice(), data].concat();
+    let with = |header: &[u64], data: &[u8]| [words(false, Endian::Little, header).as_slice(), data].concat();
     let bad = LoadErrorKind::BadInput;
     assert_eq!(*read("", &with(&[8], &VOXELS)).unwrap().samples(), Samples::U8(VOXELS.to_vec()));
     assert_refused(read("", &with(&[9], &[0; 9])), bad, &["8 bytes", "announces 9"]);

@@ -1,0 +1,135 @@
+//! More than one number for each place: components, colours and time steps.
+
+use tempfile::TempDir;
+
+use super::{assert_refused, header_with, load_path_as, write};
+use crate::data::load::{Choice, LoadError, LoadErrorKind};
+use crate::data::{Samples, Volume};
+
+fn load(fields: &[&str], data: &[u8], choice: Choice) -> Result<Volume, LoadError> {
+    let folder = TempDir::new().unwrap();
+    load_path_as(&write(&folder, "v.nrrd", &format!("{}\n", header_with(fields)), data), choice)
+}
+
+fn frame(frame: usize) -> Choice {
+    Choice { frame: Some(frame), ..Choice::default() }
+}
+
+fn component(component: usize) -> Choice {
+    Choice { component: Some(component), ..Choice::default() }
+}
+
+#[test]
+fn the_slowest_axis_holds_time_steps() {
+    let bytes: Vec<u8> = (0..16).collect();
+    let sizes = ["dimension: 4", "sizes: 2 2 2 2"];
+    let plain = [sizes[0], sizes[1]];
+    for fields in [
+        &plain[..],
+        &[sizes[0], sizes[1], "kinds: domain domain domain list"],
+        &[sizes[0], sizes[1], "spacings: 1 1 1 nan"],
+        &[sizes[0], sizes[1], "space: RAS", "space directions: (1,0,0) (0,1,0) (0,0,1) none"],
+        &[
+            sizes[0],
+            sizes[1],
+            "space: left-posterior-superior-time",
+            "space directions: (1,0,0,0) (0,1,0,0) (0,0,1,0) (0,0,0,2)",
+            "space origin: (1,2,3,4)",
+        ],
+    ] {
+        let listed = ["2 time steps", "--frame", "1 (2 x 2 x 2)"];
+        assert_refused(load(fields, &bytes, Choice::default()), LoadErrorKind::BadInput, &listed);
+        for step in [0, 1] {
+            let volume = load(fields, &bytes, frame(step)).unwrap();
+            assert_eq!(*volume.samples(), Samples::U8(bytes[step * 8..][..8].to_vec()), "{fields:?}");
+        }
+        assert_refused(
+            load(fields, &bytes, frame(2)),
+            LoadErrorKind::BadInput,
+            &["none of its 2 time steps"],
+        );
+    }
+    for encoding in ["gzip", "ascii"] {
+        let encoding = format!("encoding: {encoding}");
+        let text = bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(" ");
+        let data = if encoding.ends_with("gzip") { super::gzip(&bytes) } else { text.into_bytes() };
+        for step in [0, 1] {
+            let volume = load(&[sizes[0], sizes[1], &encoding], &data, frame(step)).unwrap();
+            assert_eq!(*volume.samples(), Samples::U8(bytes[step * 8..][..8].to_vec()), "{encoding}");
+        }
+    }
+    // Pictures that follow each other, and two axes of them.
+    let pictures = ["dimension: 4", "sizes: 2 2 2 2", "kinds: domain domain list time"];
+    let third = load(&pictures, &bytes, frame(3)).unwrap();
+    assert_eq!((third.dims(), third.samples()), ([2, 2, 1], &Samples::U8(vec![12, 13, 14, 15])));
+    let short = load(&plain, &bytes[..15], frame(0));
+    assert_refused(short, LoadErrorKind::BadInput, &["truncated", "16 bytes"]);
+}
+
+#[test]
+fn the_fastest_axis_holds_components() {
+    let colors = [3, 4, 0, 10, 10, 10, 0, 0, 0, 255, 255, 255];
+    let sizes = ["dimension: 4", "sizes: 3 2 2 1"];
+    for kind in ["RGB-color", "vector", "none"] {
+        let kinds = format!("kinds: {kind} domain domain domain");
+        let fields = [sizes[0], sizes[1], &kinds, "space directions: none (1,0,0) (0,1,0) (0,0,1)"];
+        let volume = load(&fields, &colors, Choice::default()).unwrap();
+        assert_eq!(*volume.samples(), Samples::U8(vec![3, 10, 0, 255]), "{kind}");
+        assert_eq!(volume.dims(), [2, 2, 1]);
+        assert!(volume.remarks()[0].contains("luminance"));
+        let green = load(&fields, &colors, component(1)).unwrap();
+        assert_eq!(*green.samples(), Samples::U8(vec![4, 10, 0, 255]));
+        assert_refused(load(&fields, &colors, component(3)), LoadErrorKind::BadInput, &["0 to 2"]);
+    }
+    let vectors: Vec<u8> = [3i16, 4, 0, -12, 5, 0].iter().flat_map(|value| value.to_le_bytes()).collect();
+    let fields = [
+        "dimension: 4",
+        "sizes: 3 2 1 1",
+        "type: int16",
+        "endian: little",
+        "kinds: vector space space space",
+    ];
+    let lengths = load(&fields, &vectors, Choice::default()).unwrap();
+    assert_eq!(*lengths.samples(), Samples::F32(vec![5.0, 13.0]));
+    // A large volume of three values each is one of colours; a small one has time steps.
+    let steps: Vec<u8> = (0..24).collect();
+    let small = load(&["dimension: 4", "sizes: 3 2 2 2"], &steps, frame(1)).unwrap();
+    assert_eq!((small.dims(), small.samples()), ([3, 2, 2], &Samples::U8(steps[12..].to_vec())));
+    let large = load(&["dimension: 4", "sizes: 3 5 5 5"], &[7; 375], Choice::default()).unwrap();
+    assert_eq!((large.dims(), large.value(0, 0, 0)), ([5; 3], 7.0));
+    // Both at once: components before the place and time steps behind it.
+    let both = ["dimension: 5", "sizes: 2 1 2 1 3", "kinds: complex domain domain domain time"];
+    let bytes: Vec<u8> = (0..12).collect();
+    let choice = Choice { frame: Some(2), component: Some(1), ..Choice::default() };
+    assert_eq!(*load(&both, &bytes, choice).unwrap().samples(), Samples::U8(vec![9, 11]));
+}
+
+#[test]
+fn times_beside_each_other_are_time_steps_too() {
+    let fields = ["dimension: 4", "sizes: 2 2 2 1", "kinds: time domain domain domain"];
+    let bytes: Vec<u8> = (0..8).collect();
+    assert_refused(load(&fields, &bytes, Choice::default()), LoadErrorKind::BadInput, &["2 time steps"]);
+    assert_eq!(*load(&fields, &bytes, frame(1)).unwrap().samples(), Samples::U8(vec![1, 3, 5, 7]));
+}
+
+#[test]
+fn segments_in_layers_are_those_of_the_first() {
+    let segments = "Segment0_Name:=a\nSegment0_LabelValue:=1\nSegment0_Layer:=0";
+    let fields = ["dimension: 4", "sizes: 2 2 2 1", "kinds: list domain domain domain", segments];
+    let volume = load(&fields, &[0, 9, 1, 9, 1, 9, 0, 9], Choice::default()).unwrap();
+    assert_eq!(*volume.samples(), Samples::U8(vec![0, 1, 1, 0]));
+    assert!(volume.remarks()[0].contains("2 layers"));
+}
+
+#[test]
+fn many_numbers_are_bounded() {
+    let limit = LoadErrorKind::Limit;
+    let many = ["dimension: 4", "sizes: 2 2 2 9999999", "kinds: domain domain domain time"];
+    assert_refused(load(&many, &[0; 8], frame(0)), limit, &["65536 time steps"]);
+    let wide = ["dimension: 4", "sizes: 9999999 2 2 2", "kinds: vector domain domain domain"];
+    assert_refused(load(&wide, &[0; 8], Choice::default()), limit, &["9999999 numbers"]);
+    let most = u64::MAX.to_string();
+    let most =
+        ["dimension: 5", &format!("sizes: 2 2 2 {most} {most}"), "kinds: domain domain domain list list"];
+    assert_refused(load(&most, &[0; 8], frame(0)), limit, &["time steps"]);
+}
