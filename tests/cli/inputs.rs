@@ -12,8 +12,12 @@ use crate::volumes::{attached, gzipped, header, small_ball};
 fn files_that_are_not_there_or_no_files_are_io_errors() {
     let folder = Folder::new();
     fs::create_dir(folder.path("directory.raw")).expect("the folder can be written to");
-    for file in ["missing.raw", "missing.nrrd", "no/such/folder/x.nrrd", "directory.raw", "."] {
+    for file in ["missing.raw", "missing.nrrd", "no/such/folder/x.nrrd"] {
         folder.refuse(file, &[6]);
+    }
+    // A folder may be a volume, of slices.
+    for file in ["directory.raw", "."] {
+        folder.refuse(file, &[3]);
     }
 }
 
@@ -143,16 +147,22 @@ fn spacings_that_are_no_lengths_are_bad_input() {
     for spacing in ["nanx1x1", "infx1x1", "0x1x1", "-1x1x1", "1e300x1x1"] {
         folder.refuse(&format!("ball_8x8x8_uint8.raw --spacing={spacing}"), &[2, 3]);
     }
+    for (name, line) in [("words.nrrd", "spacings: a b c"), ("few.nrrd", "spacings: 1 1")] {
+        folder.write(name, attached(&format!("sizes: 8 8 8\n{line}"), 512));
+        folder.refuse(name, &[3]);
+    }
+    // What cannot be is mended, and said.
     for (name, line) in [
         ("infinite.nrrd", "spacings: inf 1 1"),
         ("zero.nrrd", "spacings: 0 1 1"),
-        ("words.nrrd", "spacings: a b c"),
-        ("few.nrrd", "spacings: 1 1"),
         ("nan.nrrd", "space: left-posterior-superior\nspace directions: (nan,0,0) (0,1,0) (0,0,1)"),
         ("flat.nrrd", "space: left-posterior-superior\nspace directions: (1,0,0) (1,0,0) (0,0,1)"),
     ] {
         folder.write(name, attached(&format!("sizes: 8 8 8\n{line}"), 512));
-        folder.refuse(name, &[3]);
+        let facts = folder.succeed(&format!("info {name} --json"));
+        let facts: Value = serde_json::from_str(&facts).expect("valid JSON");
+        assert_eq!(facts["spacing_mm"], serde_json::json!([1.0, 1.0, 1.0]), "{name}");
+        assert!(facts["remarks"].as_array().is_some_and(|remarks| !remarks.is_empty()), "{name}: {facts}");
     }
     // NRRD writes nan for a spacing that nobody knows: 1 mm then.
     folder.write("unknown.nrrd", attached("sizes: 8 8 8\nspacings: nan 1 2", 512));
