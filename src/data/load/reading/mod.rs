@@ -10,4 +10,4 @@ pub(super) mod reader;
 pub(super) mod samples;
 pub(super) mod text_numbers;
 
-use super::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
+use super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};

@@ -4,7 +4,7 @@
 use std::io::Read;
 
 use super::samples::{BLOCK_BYTES, Fault, Layout, Sample as _, fill, read_binary, reserve};
-use super::{Choice, Endian, LoadControl, LoadError};
+use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, VoxelType};
 
@@ -224,14 +224,17 @@ impl Part {
     /// As [`Self::chosen`], with the error for a component that is not there.
     pub(in crate::data::load) fn asked(
         attempt: Attempt<'_>,
-        choice: &Choice,
+        component: Option<usize>,
         components: usize,
         is_color: bool,
     ) -> Result<Self, LoadError> {
-        Self::chosen(choice.component, components, is_color).ok_or_else(|| {
+        Self::chosen(component, components, is_color).ok_or_else(|| {
             attempt.bad_input(
                 "--component",
-                format!("voxels have {components} components, and the first of them is 0"),
+                format!(
+                    "component {} is not among its {components} components, of which the first is 0",
+                    component.unwrap_or_default()
+                ),
                 format!("give a number from 0 to {}", components.saturating_sub(1)),
             )
         })
@@ -241,7 +244,7 @@ impl Part {
     pub(in crate::data::load) fn remark(self) -> Option<&'static str> {
         match self {
             Self::Component(_) => None,
-            Self::Magnitude => Some("vectors are shown as their length"),
+            Self::Magnitude => Some("vectors are shown by their length"),
             Self::Luminance => Some("colours are shown as their luminance"),
         }
     }

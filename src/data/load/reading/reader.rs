@@ -146,13 +146,7 @@ impl Source<'_> {
         components: usize,
         is_color: bool,
     ) -> Result<Part, LoadError> {
-        Part::chosen(self.options.choice.component, components, is_color).ok_or_else(|| {
-            attempt.bad_input(
-                "--component",
-                format!("its voxels have {components} components"),
-                format!("give a number from 0 to {}", components.saturating_sub(1)),
-            )
-        })
+        Part::asked(attempt, self.options.choice.component, components, is_color)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Numbers written as text, as the bytes that they would have: whoever reads voxels from bytes reads them from text too.
 
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, Cursor, Read};
 
 use super::number::Number;
 use crate::data::attempt::quoted;
@@ -21,14 +21,13 @@ pub(in crate::data::load) struct TextNumbers<R> {
     left: u64,
     /// Whether bytes are written as their shares of 255.
     are_shares: bool,
-    ready: Vec<u8>,
-    at: usize,
+    ready: Cursor<Vec<u8>>,
 }
 
 impl<R: BufRead> TextNumbers<R> {
     /// The next so many numbers.
     pub(in crate::data::load) fn new(reader: R, number: Number, count: u64) -> Self {
-        Self { reader, number, left: count, are_shares: false, ready: Vec::new(), at: 0 }
+        Self { reader, number, left: count, are_shares: false, ready: Cursor::default() }
     }
 
     /// The next so many bytes, written as numbers from 0 to 1.
@@ -37,16 +36,17 @@ impl<R: BufRead> TextNumbers<R> {
     }
 
     fn refill(&mut self) -> io::Result<()> {
-        self.ready.clear();
-        self.at = 0;
+        self.ready.set_position(0);
+        let ready = self.ready.get_mut();
+        ready.clear();
         let mut word = Vec::new();
-        while self.left > 0 && self.ready.len() < BLOCK_BYTES && next_word(&mut self.reader, &mut word)? {
+        while self.left > 0 && ready.len() < BLOCK_BYTES && next_word(&mut self.reader, &mut word)? {
             let text = String::from_utf8_lossy(&word);
             let is_number = if self.are_shares {
                 // What is no number becomes 0.
-                float(&text).map(|share| self.ready.push((share * 255.0).round() as u8)).is_some()
+                float(&text).map(|share| ready.push((share * 255.0).round() as u8)).is_some()
             } else {
-                add_bytes(self.number, &text, &mut self.ready)
+                add_bytes(self.number, &text, ready)
             };
             if !is_number {
                 let name = name(self.number);
@@ -61,13 +61,10 @@ impl<R: BufRead> TextNumbers<R> {
 
 impl<R: BufRead> Read for TextNumbers<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        if self.at == self.ready.len() {
+        if self.ready.position() == self.ready.get_ref().len() as u64 {
             self.refill()?;
         }
-        let count = into.len().min(self.ready.len() - self.at);
-        into[..count].copy_from_slice(&self.ready[self.at..self.at + count]);
-        self.at += count;
-        Ok(count)
+        self.ready.read(into)
     }
 }
 

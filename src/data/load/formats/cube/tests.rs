@@ -3,21 +3,13 @@
 use std::io::Write as _;
 
 use glam::DVec3;
-use tempfile::TempDir;
 
 use super::*;
-use crate::data::load::{Choice, LoadControl, LoadErrorKind, LoadOptions, load as load_file};
+use crate::data::load::tests::shared::load_bytes as loaded_as;
+use crate::data::load::{Choice, LoadErrorKind};
 
 const WATER: &str = "Water\n density in atomic units\n 2 1.0 -2.0 3.0\n 2 0.5 0.0 0.0\n 3 0.0 0.5 0.0\n \
                      2 0.0 0.0 1.0\n 8 8.0 0.0 0.0 0.0\n 1 1.0 0.0 1.0 1.0\n";
-
-fn loaded_as(name: &str, bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join(name);
-    std::fs::write(&path, bytes).unwrap();
-    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load_file(&path, &options, &LoadControl::new())
-}
 
 fn loaded(text: &str) -> Result<Volume, LoadError> {
     loaded_as("a.cube", text.as_bytes(), Choice::default())

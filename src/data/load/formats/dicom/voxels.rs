@@ -40,13 +40,7 @@ pub(super) fn load(
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
-    let Some(part) = Part::chosen(options.choice.component, shape.samples, shape.samples > 1) else {
-        return Err(attempt.bad_input(
-            "--component",
-            format!("its pixels have {} components", shape.samples),
-            format!("choose one from 0 to {}", shape.samples - 1),
-        ));
-    };
+    let part = Part::asked(attempt, options.choice.component, shape.samples, shape.samples > 1)?;
     let Some(first) = slices.first() else {
         return Err(attempt.bad_input(
             "Number of Frames",

@@ -8,7 +8,6 @@ mod geometry;
 mod header;
 mod hints;
 mod layout;
-mod numbers;
 mod pieces;
 #[cfg(test)]
 mod tests;

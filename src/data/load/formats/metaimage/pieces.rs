@@ -8,11 +8,11 @@ use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
 
 use super::super::input::{Input, Witness, is_gzip};
 use super::super::samples::{Fault, fill, skip_bytes};
+use super::super::text_numbers::TextNumbers;
 use super::super::{LoadControl, LoadError, beside};
 use super::files::Files;
 use super::header::DATA_FILE;
 use super::layout::{Grid, Storage};
-use super::numbers::Numbers;
 use crate::data::attempt::{Attempt, quoted};
 
 /// What is being done with a file of voxels.
@@ -175,7 +175,9 @@ impl Pieces {
             };
         }
         if self.storage.is_text {
-            reader = Box::new(Numbers::new(BufReader::new(reader), self.storage.stored.number));
+            let number = self.storage.stored.number;
+            let count = self.piece_bytes / number.bytes() as u64;
+            reader = Box::new(TextNumbers::new(BufReader::new(reader), number, count));
         }
         Ok(Piece { path: attempt.path.to_owned(), witness, reader, left: self.piece_bytes })
     }

@@ -1,13 +1,11 @@
 //! MRC files made by hand: every mode and byte order, cells, stacks, and headers that lie.
 
-use std::path::PathBuf;
-
 use glam::DVec3;
-use tempfile::TempDir;
 
 use super::*;
 use crate::data::Samples;
-use crate::data::load::{Choice, LoadControl, LoadErrorKind, LoadOptions, load as load_file};
+use crate::data::load::tests::shared::{gzip, load_bytes};
+use crate::data::load::{Choice, LoadErrorKind};
 
 /// A header that is put together word by word.
 #[derive(Clone)]
@@ -53,11 +51,7 @@ impl Made {
     }
 
     fn loaded_with(&self, name: &str, choice: Choice) -> Result<Volume, LoadError> {
-        let folder = TempDir::new().unwrap();
-        let path: PathBuf = folder.path().join(name);
-        std::fs::write(&path, self.bytes()).unwrap();
-        let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-        load_file(&path, &options, &LoadControl::new())
+        load_bytes(name, &self.bytes(), choice)
     }
 
     fn loaded(&self) -> Volume {
@@ -193,18 +187,10 @@ fn headers_may_be_longer_and_hold_words_and_stacks() {
 
 #[test]
 fn compressed_files_are_read_and_checked() {
-    use std::io::Write as _;
-    let folder = TempDir::new().unwrap();
-    let bytes = Made::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0])).bytes();
-    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-    encoder.write_all(&bytes).unwrap();
-    let zipped = encoder.finish().unwrap();
-    let path = folder.path().join("virus.map.gz");
-    std::fs::write(&path, &zipped).unwrap();
-    let loaded = |path: &PathBuf| load_file(path, &LoadOptions::default(), &LoadControl::new());
-    assert_eq!(loaded(&path).unwrap().name(), "virus");
-    std::fs::write(&path, &zipped[..zipped.len() - 12]).unwrap();
-    let error = loaded(&path).unwrap_err();
+    let zipped = gzip(&Made::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0])).bytes());
+    let loaded = |bytes: &[u8]| load_bytes("virus.map.gz", bytes, Choice::default());
+    assert_eq!(loaded(&zipped).unwrap().name(), "virus");
+    let error = loaded(&zipped[..zipped.len() - 12]).unwrap_err();
     assert!(error.to_string().contains("truncated"), "{error}");
 }
 

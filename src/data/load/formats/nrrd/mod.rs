@@ -77,14 +77,11 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     })?;
 
     let placement = &mut geometry.placement;
-    if part == Part::Luminance {
-        placement.remarks.push("colours are shown as their luminance".to_owned());
-    } else if is_layered {
+    if is_layered {
         let layers = geometry.components;
         placement.remarks.push(format!("its labels lie in {layers} layers: --component names one"));
-    } else if part == Part::Magnitude {
-        placement.remarks.push("vectors are shown by their length".to_owned());
     }
+    placement.remarks.extend(part.remark().map(str::to_owned));
     let name = header.get("content").filter(|content| !content.is_empty());
     let name = name.map_or_else(|| stem(path), |content| plain(content, 120));
     Parts { name, dims: extent.dims, placement: geometry.placement, samples, hints }.volume(attempt)
@@ -119,12 +116,6 @@ fn chosen(
     let is_color = geometry.is_color || (number == Number::U8 && (3..=4).contains(&components));
     // Numbers of segments make nothing together: those of the first layer have names.
     let component = options.choice.component.or(is_layered.then_some(0));
-    let part = Part::chosen(component, components, is_color).ok_or_else(|| {
-        attempt.bad_input(
-            "--component",
-            format!("each voxel has {components} components"),
-            format!("give a number from 0 to {}", components - 1),
-        )
-    })?;
+    let part = Part::asked(attempt, component, components, is_color)?;
     Ok((frame as u64, part))
 }

@@ -17,14 +17,14 @@ const MOST_AXES: usize = 64;
 /// The entries of a dictionary, or what was expected where it is none.
 pub(super) fn parse(text: &str) -> Result<Vec<(String, Value)>, &'static str> {
     let mut text = Text(text.trim_ascii());
-    text.expect('{', "a dictionary in braces")?;
+    text.require('{', "a dictionary in braces")?;
     let mut entries = Vec::new();
     while !text.takes('}') {
         let key = text.quoted().ok_or("a key in quotes")?;
-        text.expect(':', "a colon behind a key")?;
+        text.require(':', "a colon behind a key")?;
         entries.push((key, text.value()?));
         if !text.takes(',') {
-            text.expect('}', "a comma or the closing brace")?;
+            text.require('}', "a comma or the closing brace")?;
             break;
         }
     }
@@ -47,7 +47,7 @@ impl<'a> Text<'a> {
         after.is_some()
     }
 
-    fn expect(&mut self, sign: char, what: &'static str) -> Result<(), &'static str> {
+    fn require(&mut self, sign: char, what: &'static str) -> Result<(), &'static str> {
         if self.takes(sign) { Ok(()) } else { Err(what) }
     }
 
@@ -92,7 +92,7 @@ impl<'a> Text<'a> {
             }
             numbers.push(number);
             if !self.takes(',') {
-                self.expect(')', "a comma or the closing parenthesis")?;
+                self.require(')', "a comma or the closing parenthesis")?;
                 break;
             }
         }

@@ -2,10 +2,9 @@
 
 use std::io::Write as _;
 
-use tempfile::TempDir;
-
 use super::*;
-use crate::data::load::{Choice, LoadControl, LoadErrorKind, LoadOptions, load as load_file};
+use crate::data::load::tests::shared::load_bytes as loaded_as;
+use crate::data::load::{Choice, LoadErrorKind};
 
 fn array_of(version: u8, header: &str, data: &[u8]) -> Vec<u8> {
     let length = header.len();
@@ -20,14 +19,6 @@ fn array_of(version: u8, header: &str, data: &[u8]) -> Vec<u8> {
 fn array(descr: &str, order: &str, shape: &str, data: &[u8]) -> Vec<u8> {
     let header = format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': {shape}, }}\n");
     array_of(1, &header, data)
-}
-
-fn loaded_as(name: &str, bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join(name);
-    std::fs::write(&path, bytes).unwrap();
-    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load_file(&path, &options, &LoadControl::new())
 }
 
 fn loaded(bytes: &[u8]) -> Result<Volume, LoadError> {

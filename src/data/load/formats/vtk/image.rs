@@ -136,11 +136,7 @@ impl<P> Chosen<P> {
         title: &str,
     ) -> Result<Volume, LoadError> {
         let mut placement = grid.placement(self.array.of_cells);
-        if self.stored.part == Part::Luminance {
-            placement.remarks.push("colours are shown as their luminance".to_owned());
-        } else if self.stored.part == Part::Magnitude {
-            placement.remarks.push("vectors are shown by their length".to_owned());
-        }
+        placement.remarks.extend(self.stored.part.remark().map(str::to_owned));
         let file = stem(attempt.path);
         let name = if self.is_one_of_several { format!("{file} {}", self.array.name) } else { file };
         let mut hints = Hints::default();
@@ -171,13 +167,7 @@ pub(super) fn choose<P>(
         .collect();
     let array = arrays.swap_remove(attempt.chosen(&options.choice, Dimension::Array, offers)?);
     let components = array.components;
-    let part = Part::chosen(options.choice.component, components, array.is_color).ok_or_else(|| {
-        attempt.bad_input(
-            "--component",
-            format!("the array has {components} components"),
-            format!("give a number from 0 to {}", components - 1),
-        )
-    })?;
+    let part = Part::asked(attempt, options.choice.component, components, array.is_color)?;
     // The byte order is said when they are read.
     let stored = Stored { number: array.number, endian: Endian::Little, components, part };
     let dims = grid.dims(array.of_cells);

@@ -8,7 +8,7 @@ mod series;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
@@ -16,6 +16,7 @@ use tempfile::TempDir;
 
 use super::header::syntax::{Form, Syntax};
 use super::header::tags::{self, Tag};
+use crate::data::load::tests::shared::{assert_refused, load_path};
 use crate::data::load::{Choice, Endian, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
 use crate::data::{Samples, Volume};
 
@@ -209,21 +210,6 @@ impl File {
     fn load_with(&self, choice: Choice) -> Result<Volume, LoadError> {
         let folder = TempDir::new().unwrap();
         load_path(&self.write(&folder, "a.dcm"), choice)
-    }
-}
-
-fn load_path(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
-    let options = LoadOptions { memory_budget_bytes: 1 << 20, choice, ..LoadOptions::default() };
-    load(path, &options, &LoadControl::new())
-}
-
-#[track_caller]
-fn assert_refused(result: Result<Volume, LoadError>, kind: LoadErrorKind, words: &[&str]) {
-    let error = result.unwrap_err();
-    let message = error.to_string();
-    assert_eq!(error.kind(), kind, "{message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
     }
 }
 

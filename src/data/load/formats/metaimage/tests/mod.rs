@@ -4,14 +4,12 @@ mod files;
 mod geometry;
 
 use std::fs;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use flate2::Compression;
-use flate2::write::{GzEncoder, ZlibEncoder};
 use tempfile::TempDir;
 
-use crate::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::load::tests::shared::{assert_refused, gzip, load_path, zlib};
+use crate::data::load::{Choice, LoadError, LoadErrorKind};
 use crate::data::{Meaning, Modality, Samples, Volume};
 
 /// A header of 2 x 2 x 2 bytes, without the field that ends it.
@@ -20,18 +18,6 @@ const HEADER: &str = "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementTyp
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 /// The field that ends it.
 const LOCAL: &str = "ElementDataFile = LOCAL\n";
-
-fn zlib(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
-}
-
-fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
-}
 
 /// The header with other fields in place of those of the same name.
 fn header_with(fields: &[&str]) -> String {
@@ -47,11 +33,6 @@ fn write(folder: &TempDir, name: &str, header: &str, data: &[u8]) -> PathBuf {
     path
 }
 
-fn load_path(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
-    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load(path, &options, &LoadControl::new())
-}
-
 /// Loads a file of its own: a header with some fields, and data behind it.
 fn load_local(fields: &[&str], data: &[u8], choice: Choice) -> Result<Volume, LoadError> {
     let folder = TempDir::new().unwrap();
@@ -60,16 +41,6 @@ fn load_local(fields: &[&str], data: &[u8], choice: Choice) -> Result<Volume, Lo
 
 fn read(fields: &[&str], data: &[u8]) -> Volume {
     load_local(fields, data, Choice::default()).unwrap()
-}
-
-#[track_caller]
-fn assert_refused(result: Result<Volume, LoadError>, kind: LoadErrorKind, words: &[&str]) {
-    let error = result.unwrap_err();
-    let message = error.to_string();
-    assert_eq!(error.kind(), kind, "{message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
-    }
 }
 
 #[test]

@@ -7,14 +7,12 @@ mod refused;
 mod series;
 
 use std::fs;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use tempfile::TempDir;
 
-use crate::data::load::{Choice, Endian, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::load::tests::shared::{self, assert_refused, gzip, load_path};
+use crate::data::load::{Choice, Endian, LoadError, LoadErrorKind};
 use crate::data::{Samples, Volume};
 
 /// A header of some form and byte order, whose fields are put in one by one.
@@ -72,40 +70,18 @@ fn nifti(dims: &[i16], datatype: i16) -> Bytes {
     first(Endian::Little, dims, datatype, b"n+1\0")
 }
 
-fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
-}
-
 fn write(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder.path().join(name);
     fs::write(&path, bytes).unwrap();
     path
 }
 
-fn load_path(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
-    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load(path, &options, &LoadControl::new())
-}
-
 fn load_bytes(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    let folder = TempDir::new().unwrap();
-    load_path(&write(&folder, "v.nii", bytes), choice)
+    shared::load_bytes("v.nii", bytes, choice)
 }
 
 fn read(bytes: &[u8]) -> Volume {
     load_bytes(bytes, Choice::default()).unwrap()
-}
-
-#[track_caller]
-fn assert_refused(result: Result<Volume, LoadError>, kind: LoadErrorKind, words: &[&str]) {
-    let error = result.unwrap_err();
-    let message = error.to_string();
-    assert_eq!(error.kind(), kind, "{message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
-    }
 }
 
 #[test]

@@ -9,23 +9,16 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use tempfile::TempDir;
 
-use crate::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::load::tests::shared::{assert_refused, gzip, load_path as load_path_as};
+use crate::data::load::{Choice, LoadError, LoadErrorKind};
 use crate::data::{Samples, Volume};
 
 /// A header of a 2 x 2 x 2 volume of bytes, without its data.
 const HEADER: &str = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
 /// The data that fit it.
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
-
-fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
-}
 
 fn bzip2(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = bzip2::write::BzEncoder::new(Vec::new(), bzip2::Compression::fast());
@@ -49,25 +42,10 @@ fn load_path(path: &Path) -> Result<Volume, LoadError> {
     load_path_as(path, Choice::default())
 }
 
-fn load_path_as(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
-    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load(path, &options, &LoadControl::new())
-}
-
 /// Loads an attached file: `header`, an empty line, `data`.
 fn load_attached(header: &str, data: &[u8]) -> Result<Volume, LoadError> {
     let folder = TempDir::new().unwrap();
     load_path(&write(&folder, "v.nrrd", &format!("{header}\n"), data))
-}
-
-#[track_caller]
-fn assert_refused(result: Result<Volume, LoadError>, kind: LoadErrorKind, words: &[&str]) {
-    let error = result.unwrap_err();
-    let message = error.to_string();
-    assert_eq!(error.kind(), kind, "{message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
-    }
 }
 
 /// A header with other fields in place of those of [`HEADER`] with the same name.

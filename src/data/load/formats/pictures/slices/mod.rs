@@ -15,7 +15,6 @@ use super::pile::read_pile;
 use super::tiff;
 use crate::data::attempt::{Attempt, Extent, quoted};
 use crate::data::load::reading::input::{Input, stem};
-use crate::data::load::reading::number::Part;
 use crate::data::load::reading::placement::{Parts, Placement};
 use crate::data::load::reading::reader::{Reader, Source, Start};
 use crate::data::load::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
@@ -182,9 +181,7 @@ fn volume(
     })?;
     let mut placement = Placement::unknown();
     placement.remarks = remarks;
-    if stored.part == Part::Luminance {
-        placement.remarks.push("colours are shown as their luminance".to_owned());
-    }
+    placement.remarks.extend(stored.part.remark().map(str::to_owned));
     Parts { name, dims: extent.dims, placement, samples, hints: Hints::default() }.volume(attempt)
 }
 

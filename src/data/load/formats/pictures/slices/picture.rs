@@ -158,14 +158,7 @@ fn look_at_image(
         ColorType::Rgba16 => (Number::U16, 4),
         other => return Err(attempt.bad_input("data", format!("its colours are {other:?}"), HELP)),
     };
-    let Some(part) = Part::chosen(options.choice.component, components, true) else {
-        let said = options.choice.component.unwrap_or(0);
-        return Err(attempt.bad_input(
-            "--component",
-            format!("component {said} is not among its {components}"),
-            "give a number from 0, or leave it out",
-        ));
-    };
+    let part = Part::asked(attempt, options.choice.component, components, true)?;
     // Decoders give numbers in the order of this machine.
     let endian = if cfg!(target_endian = "big") { Endian::Big } else { Endian::Little };
     let stored = Stored { number, endian, components, part };

@@ -5,6 +5,7 @@ use std::path::Path;
 use image::{DynamicImage, ImageFormat};
 use tempfile::TempDir;
 
+use crate::data::load::tests::shared::assert_refused;
 use crate::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
 use crate::data::{Samples, Volume};
 
@@ -34,16 +35,6 @@ fn folder(pictures: &[(&str, DynamicImage)]) -> TempDir {
         picture.save_with_format(folder.path().join(name), ImageFormat::from_path(name).unwrap()).unwrap();
     }
     folder
-}
-
-#[track_caller]
-fn assert_refused(result: Result<Volume, LoadError>, kind: LoadErrorKind, words: &[&str]) {
-    let error = result.unwrap_err();
-    let message = error.to_string();
-    assert_eq!(error.kind(), kind, "{message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
-    }
 }
 
 #[test]

@@ -157,9 +157,7 @@ impl Stack {
         let extent =
             Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.memory_budget_bytes)?;
         check_page_bytes(attempt, &model, options)?;
-        if model.meaning == Meaning::Color && matches!(stored.part, Part::Luminance) {
-            placement.remarks.push("colours are shown as their luminance".to_owned());
-        }
+        placement.remarks.extend(stored.part.remark().map(str::to_owned));
         if model.is_inverted {
             placement.remarks.push(if matches!(model.format, 1 | 4) {
                 "the lowest values stand for white: values are turned around".to_owned()
@@ -222,13 +220,7 @@ pub(super) fn stored(
         _ => None,
     });
     let is_color = page.meaning != Meaning::Channels;
-    let Some(part) = Part::chosen(component, page.samples, is_color) else {
-        return Err(attempt.bad_input(
-            "--component",
-            format!("component {} is not among its {}", component.unwrap_or(0), page.samples),
-            "give a number from 0, or leave it out",
-        ));
-    };
+    let part = Part::asked(attempt, component, page.samples, is_color)?;
     // A sample that lies by itself is fetched by itself.
     let is_alone = page.is_planar && sample.is_some();
     let (components, part) = if is_alone { (1, Part::Component(0)) } else { (page.samples, part) };

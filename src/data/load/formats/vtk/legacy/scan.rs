@@ -48,6 +48,16 @@ struct Announced {
     are_shares: bool,
 }
 
+impl Announced {
+    /// Values of a type with so many components, of so many tuples; `None` for a type that there is not, or too many.
+    fn of(name: String, kind: &str, [components, tuples]: [u64; 2]) -> Option<Self> {
+        let (number, bits) = number(kind)?;
+        let bytes = bits.checked_mul(tuples.checked_mul(components)?)?.div_ceil(8);
+        let is_color = number == Some(Number::U8) && (3..=4).contains(&components);
+        Some(Self { name, number, components, tuples, bytes, is_color, are_shares: false })
+    }
+}
+
 impl<'a> Scan<'a> {
     pub(super) fn of(attempt: Attempt<'a>, mut lines: Lines<'_>) -> Result<Self, LoadError> {
         lines.next()?;
@@ -98,18 +108,8 @@ impl<'a> Scan<'a> {
         let word = |at: usize| words.get(at).copied().unwrap_or_default();
         let attempt = self.attempt;
         let tuples = self.section.map_or(0, |(count, _)| count);
-        let announced = |kind: &str, components: u64| {
-            let (number, bits) = number(kind)?;
-            Some(Announced {
-                name: name(word(1)),
-                number,
-                components,
-                tuples,
-                bytes: bits.checked_mul(tuples.checked_mul(components)?)?.div_ceil(8),
-                is_color: number == Some(Number::U8) && (3..=4).contains(&components),
-                are_shares: false,
-            })
-        };
+        let announced =
+            |kind: &str, components: u64| Announced::of(name(word(1)), kind, [components, tuples]);
         let attribute = match keyword.as_str() {
             "DIMENSIONS" => {
                 let [x, y, z]: [i64; 3] = numbers(attempt, &keyword, &words)?;
@@ -220,17 +220,8 @@ impl<'a> Scan<'a> {
             }
             let announced = || {
                 let [array, components, tuples, kind] = words[..] else { return None };
-                let (number, bits) = number(kind)?;
-                let (components, tuples): (u64, u64) = (components.parse().ok()?, tuples.parse().ok()?);
-                Some(Announced {
-                    name: name(array),
-                    number,
-                    components,
-                    tuples,
-                    bytes: bits.checked_mul(tuples.checked_mul(components)?)?.div_ceil(8),
-                    is_color: number == Some(Number::U8) && (3..=4).contains(&components),
-                    are_shares: false,
-                })
+                let counts = [components.parse().ok()?, tuples.parse().ok()?];
+                Announced::of(name(array), kind, counts)
             };
             let Some(found) = announced() else { return self.stop(&line) };
             if !self.add_array(found, lines)? {

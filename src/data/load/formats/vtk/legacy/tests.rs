@@ -1,14 +1,13 @@
 //! Files of the older form from the outside: what is read and what is refused.
 
-use std::fs;
 use std::io::Write as _;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::DVec3;
-use tempfile::TempDir;
 
-use crate::data::load::{Choice, Dimension, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::load::tests::shared::{self, assert_refused};
+use crate::data::load::{Choice, Dimension, LoadError, LoadErrorKind};
 use crate::data::{Modality, Samples, Volume};
 
 const HEAD: &str = "# vtk DataFile Version 3.0\na head, CT\nASCII\n  \nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n\
@@ -16,11 +15,7 @@ const HEAD: &str = "# vtk DataFile Version 3.0\na head, CT\nASCII\n  \nDATASET S
 const TEXT: &str = "POINT_DATA 8\nSCALARS a unsigned_char 1\nLOOKUP_TABLE default\n1 2 3 4\n5 6 7 8\n";
 
 fn load_bytes_as(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("v.vtk");
-    fs::write(&path, bytes).unwrap();
-    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load(&path, &options, &LoadControl::new())
+    shared::load_bytes("v.vtk", bytes, choice)
 }
 
 fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
@@ -30,16 +25,6 @@ fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
 /// A file of bytes: the head, and after it what is given.
 fn binary(parts: &[&[u8]]) -> Vec<u8> {
     [HEAD.replace("ASCII", "BINARY").as_bytes(), &parts.concat()].concat()
-}
-
-#[track_caller]
-fn assert_refused(result: Result<Volume, LoadError>, kind: LoadErrorKind, words: &[&str]) {
-    let error = result.unwrap_err();
-    let message = error.to_string();
-    assert_eq!(error.kind(), kind, "{message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
-    }
 }
 
 #[test]

@@ -3,15 +3,14 @@
 //!
 //! Pieces may follow each other: VTK writes a header of its own before the data, each with its padding.
 
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, Cursor, Read};
 
 use super::super::image::invalid;
 
 /// Reads what base64 text stands for.
 pub(super) struct Base64<R> {
     reader: R,
-    ready: Vec<u8>,
-    at: usize,
+    ready: Cursor<Vec<u8>>,
     /// The bits of the group so far, …
     bits: u32,
     /// … of how many characters they are, …
@@ -24,13 +23,13 @@ pub(super) struct Base64<R> {
 
 impl<R: BufRead> Base64<R> {
     pub(super) fn new(reader: R) -> Self {
-        Self { reader, ready: Vec::new(), at: 0, bits: 0, characters: 0, padding: 0, wrong: None }
+        Self { reader, ready: Cursor::default(), bits: 0, characters: 0, padding: 0, wrong: None }
     }
 
     fn refill(&mut self) -> io::Result<()> {
-        self.ready.clear();
-        self.at = 0;
-        while self.ready.is_empty() {
+        self.ready.set_position(0);
+        self.ready.get_mut().clear();
+        while self.ready.get_ref().is_empty() {
             if let Some(why) = self.wrong.take() {
                 return Err(invalid(why));
             }
@@ -76,7 +75,7 @@ impl<R: BufRead> Base64<R> {
             if rest.iter().any(|&byte| byte != 0) {
                 return Err("the padding of base64 hides bits".to_owned());
             }
-            self.ready.extend(bytes);
+            self.ready.get_mut().extend(bytes);
             (self.bits, self.characters, self.padding) = (0, 0, 0);
         }
         Ok(())
@@ -85,13 +84,10 @@ impl<R: BufRead> Base64<R> {
 
 impl<R: BufRead> Read for Base64<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        if self.at == self.ready.len() {
+        if self.ready.position() == self.ready.get_ref().len() as u64 {
             self.refill()?;
         }
-        let count = into.len().min(self.ready.len() - self.at);
-        into[..count].copy_from_slice(&self.ready[self.at..self.at + count]);
-        self.at += count;
-        Ok(count)
+        self.ready.read(into)
     }
 }
 

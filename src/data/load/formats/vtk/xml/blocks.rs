@@ -1,6 +1,6 @@
 //! Binary values: their length and then they, or a table of blocks and then those, each compressed by itself.
 
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
 
 use flate2::read::ZlibDecoder;
 
@@ -63,8 +63,7 @@ pub(super) struct Blocks<R> {
     block_bytes: u64,
     last_bytes: u64,
     packed: Vec<u8>,
-    ready: Vec<u8>,
-    at: usize,
+    ready: Cursor<Vec<u8>>,
 }
 
 impl<R: Read> Blocks<R> {
@@ -119,14 +118,15 @@ impl<R: Read> Blocks<R> {
             )));
         }
         compressed.reverse();
-        let (packed, ready) = (Vec::new(), Vec::new());
-        Ok(Self { reader, compressor, compressed, block_bytes, last_bytes, packed, ready, at: 0 })
+        let (packed, ready) = (Vec::new(), Cursor::default());
+        Ok(Self { reader, compressor, compressed, block_bytes, last_bytes, packed, ready })
     }
 
     /// Unpacks the next block.
     fn refill(&mut self) -> io::Result<()> {
-        self.at = 0;
-        self.ready.clear();
+        self.ready.set_position(0);
+        let ready = self.ready.get_mut();
+        ready.clear();
         let Some(bytes) = self.compressed.pop() else { return Ok(()) };
         let wanted = if self.compressed.is_empty() { self.last_bytes } else { self.block_bytes };
         let wanted = usize::try_from(wanted).map_err(|_too_large| invalid("a block is too large"))?;
@@ -135,18 +135,17 @@ impl<R: Read> Blocks<R> {
         if (found as u64) < bytes {
             return Err(invalid("the data are truncated: they end within a block"));
         }
-        let room = self.ready.try_reserve_exact(wanted + 1);
+        let room = ready.try_reserve_exact(wanted + 1);
         room.map_err(|_no_memory| io::Error::from(io::ErrorKind::OutOfMemory))?;
         let unpacked = match self.compressor {
             Compressor::Zlib => {
                 // A byte more than wanted tells too much from enough.
                 let mut decoder = ZlibDecoder::new(&self.packed[..]).take(wanted as u64 + 1);
-                decoder.read_to_end(&mut self.ready).map_err(|error| error.to_string())
+                decoder.read_to_end(ready).map_err(|error| error.to_string())
             }
             Compressor::Lz4 => {
-                self.ready.resize(wanted, 0);
-                lz4_flex::block::decompress_into(&self.packed, &mut self.ready)
-                    .map_err(|error| error.to_string())
+                ready.resize(wanted, 0);
+                lz4_flex::block::decompress_into(&self.packed, ready).map_err(|error| error.to_string())
             }
         };
         match unpacked {
@@ -159,12 +158,9 @@ impl<R: Read> Blocks<R> {
 
 impl<R: Read> Read for Blocks<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        if self.at == self.ready.len() {
+        if self.ready.position() == self.ready.get_ref().len() as u64 {
             self.refill()?;
         }
-        let count = into.len().min(self.ready.len() - self.at);
-        into[..count].copy_from_slice(&self.ready[self.at..self.at + count]);
-        self.at += count;
-        Ok(count)
+        self.ready.read(into)
     }
 }

@@ -1,31 +1,19 @@
 //! Images in XML from the outside: what is read and what is refused.
 
-use std::fs;
 use std::io::Write as _;
-use std::path::Path;
 
 use flate2::Compression;
-use flate2::write::{GzEncoder, ZlibEncoder};
+use flate2::write::GzEncoder;
 use glam::DVec3;
-use tempfile::TempDir;
 
-use crate::data::load::{
-    Choice, Dimension, Endian, LoadControl, LoadError, LoadErrorKind, LoadOptions, load,
-};
+use crate::data::load::tests::shared::{self, assert_refused, zlib};
+use crate::data::load::{Choice, Dimension, Endian, LoadError, LoadErrorKind};
 use crate::data::{Samples, Volume};
 
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 
 fn load_bytes_as(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("v.vti");
-    fs::write(&path, bytes).unwrap();
-    load_path(&path, choice)
-}
-
-fn load_path(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
-    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load(path, &options, &LoadControl::new())
+    shared::load_bytes("v.vti", bytes, choice)
 }
 
 fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
@@ -64,12 +52,6 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-fn zlib(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
-}
-
 /// A block of LZ4 with nothing but literals; of at most 14 bytes.
 fn lz4(bytes: &[u8]) -> Vec<u8> {
     [&[(bytes.len() as u8) << 4], bytes].concat()
@@ -98,16 +80,6 @@ fn blocks(
     let mut header = vec![packed.len() as u64, size as u64, (bytes.len() % size) as u64];
     header.extend(packed.iter().map(|block| block.len() as u64));
     (words(are_long, endian, &header), packed.concat())
-}
-
-#[track_caller]
-fn assert_refused(result: Result<Volume, LoadError>, kind: LoadErrorKind, words: &[&str]) {
-    let error = result.unwrap_err();
-    let message = error.to_string();
-    assert_eq!(error.kind(), kind, "{message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in: {message}");
-    }
 }
 
 #[test]

@@ -1,24 +1,18 @@
 //! RAW files and dispatch, from the outside: what is read and what is refused.
 
+pub(super) mod shared;
+
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use glam::DVec3;
 use tempfile::TempDir;
 
+use self::shared::gzip;
 use super::*;
 use crate::data::attempt::Extent;
 use crate::data::open;
 use crate::data::{Samples, VoxelType};
-
-fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
-}
 
 fn write(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder.path().join(name);

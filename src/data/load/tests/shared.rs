@@ -1,0 +1,56 @@
+//! What tests of readers share.
+
+use std::fmt::Debug;
+use std::io::Write as _;
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::write::{GzEncoder, ZlibEncoder};
+use tempfile::TempDir;
+
+use super::super::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::Volume;
+
+/// Loads a file of at most 1 MiB of voxels.
+pub(in crate::data::load) fn load_path(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
+    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
+    load(path, &options, &LoadControl::new())
+}
+
+/// Loads a file of a name that lies alone in its folder.
+pub(in crate::data::load) fn load_bytes(
+    name: &str,
+    bytes: &[u8],
+    choice: Choice,
+) -> Result<Volume, LoadError> {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    load_path(&path, choice)
+}
+
+#[track_caller]
+pub(in crate::data::load) fn assert_refused<T: Debug>(
+    result: Result<T, LoadError>,
+    kind: LoadErrorKind,
+    words: &[&str],
+) {
+    let error = result.unwrap_err();
+    let message = error.to_string();
+    assert_eq!(error.kind(), kind, "{message}");
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in: {message}");
+    }
+}
+
+pub(in crate::data::load) fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+pub(in crate::data::load) fn zlib(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
