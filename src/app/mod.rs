@@ -231,7 +231,7 @@ impl App {
 
     fn title(&self) -> String {
         let Some(volume) = &self.volume else { return String::new() };
-        text::menu::title(&volume.name, volume.dims, volume.spacing_mm)
+        text::menu::title(&volume.name, volume.dims, volume.spacing_mm, volume.has_unknown_scale)
     }
 
     /// The panels around the picture.

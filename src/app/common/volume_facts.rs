@@ -27,6 +27,8 @@ pub(crate) struct VolumeFacts {
     pub voxel_type: &'static str,
     /// Millimetres between voxel centres along x, y, z.
     pub spacing_mm: [f64; 3],
+    /// They are no millimetres: nobody knows how large voxels are.
+    pub has_unknown_scale: bool,
     /// All values of the file, and those that matter.
     pub ranges: ValueRanges,
     /// What densities stand for in the picture and in the histogram.
@@ -107,6 +109,7 @@ impl VolumeFacts {
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
             spacing_mm: volume.spacing_mm().into(),
+            has_unknown_scale: volume.has_unknown_scale(),
             ranges: volume.ranges(),
             shown: volume.shown(),
             range,

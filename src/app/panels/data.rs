@@ -34,7 +34,7 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
         (text::data::DIMENSIONS, text::data::dimensions(volume.dims)),
         (text::data::VOXEL_TYPE, volume.voxel_type.to_owned()),
         (text::data::KIND, text::data::kind(volume.kind)),
-        (text::data::SPACING, text::data::spacing(&volume.spacing_mm.map(short))),
+        (text::data::SPACING, text::data::spacing(&volume.spacing_mm.map(short), volume.has_unknown_scale)),
         (text::data::VALUES, text::data::values(&short(low), &short(high))),
         (text::data::MEMORY, text::data::memory(volume.bytes as f64 / f64::from(1 << 20))),
     ];

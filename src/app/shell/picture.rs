@@ -73,7 +73,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
-    let Some(&VolumeFacts { scene, is_anatomical, .. }) = volume else {
+    let Some(&VolumeFacts { scene, is_anatomical, has_unknown_scale, .. }) = volume else {
         ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
         return (canvas, Ok(()));
     };
@@ -111,7 +111,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
     // Two looks have words of their own at the top and at the bottom.
     let body = is_anatomical.then(|| compare.beside_words(ui, canvas.rect));
-    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, &scene, body) {
+    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, (&scene, has_unknown_scale), body) {
         commands.push(Command::LookFrom(view));
     }
     if overlay.on {

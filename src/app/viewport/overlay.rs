@@ -40,14 +40,14 @@ impl Overlay {
         ui: &Ui,
         picture: Rect,
         camera: &Camera,
-        scene: &SceneSpace,
+        (scene, has_unknown_scale): (&SceneSpace, bool),
         body: Option<Rect>,
     ) -> Option<StandardView> {
         if !self.on || picture.width() < 4.0 * CUBE || picture.height() < 4.0 * CUBE {
             return None;
         }
         let painter = ui.painter_at(picture);
-        scale_bar(&painter, picture, camera, scene);
+        scale_bar(&painter, picture, camera, (scene, has_unknown_scale));
         if let Some(part) = body {
             for Letters { at, align, text } in letters(part, camera) {
                 outlined(&painter, at, align, &text);
@@ -83,8 +83,8 @@ impl Overlay {
     }
 }
 
-/// A length that fits, and what it is in the unit that suits it.
-fn bar_length_mm(longest_mm: f64) -> Option<(f64, String)> {
+/// A length that fits, and what it is in the unit that suits it; in voxels where nobody knows how large these are.
+fn bar_length_mm(longest_mm: f64, has_unknown_scale: bool) -> Option<(f64, String)> {
     if !(longest_mm.is_finite() && longest_mm > 0.0) {
         return None;
     }
@@ -93,6 +93,7 @@ fn bar_length_mm(longest_mm: f64) -> Option<(f64, String)> {
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= longest_mm).unwrap_or(1.0);
     let length = step * power;
     let (value, unit) = match length {
+        length if has_unknown_scale => (length, text::overlay::VOXELS),
         length if length >= 1e6 => (length * 1e-6, text::overlay::KILOMETRES),
         length if length >= 1e3 => (length * 1e-3, text::overlay::METRES),
         length if length >= 10.0 => (length / 10.0, text::overlay::CENTIMETRES),
@@ -105,11 +106,16 @@ fn bar_length_mm(longest_mm: f64) -> Option<(f64, String)> {
 }
 
 /// A bar at the bottom left whose length holds at the middle of the view.
-fn scale_bar(painter: &Painter, picture: Rect, camera: &Camera, scene: &SceneSpace) {
+fn scale_bar(
+    painter: &Painter,
+    picture: Rect,
+    camera: &Camera,
+    (scene, has_unknown_scale): (&SceneSpace, bool),
+) {
     let [width, height] = [picture.width(), picture.height().max(1.0)].map(f64::from);
     let mm_per_point = camera.pixel_at_target(width, height) * scene.mm_per_unit;
-    let Some((length_mm, text)) = bar_length_mm(mm_per_point * LONGEST_BAR * f64::from(picture.width()))
-    else {
+    let longest_mm = mm_per_point * LONGEST_BAR * f64::from(picture.width());
+    let Some((length_mm, text)) = bar_length_mm(longest_mm, has_unknown_scale) else {
         return;
     };
     let length = (length_mm / mm_per_point) as f32;
@@ -228,12 +234,13 @@ mod tests {
             (2.6e3, 2e3, "2 m"),
             (9.9e-5, 5e-5, "50 nm"),
         ] {
-            let (found, words) = bar_length_mm(longest).unwrap();
+            let (found, words) = bar_length_mm(longest, false).unwrap();
             assert!((found / length - 1.0).abs() < 1e-9, "{longest}: {found}");
             assert_eq!(words, text);
         }
-        assert_eq!(bar_length_mm(f64::NAN), None);
-        assert_eq!(bar_length_mm(0.0), None);
+        assert_eq!(bar_length_mm(2.6e3, true), Some((2e3, "2000 voxels".to_owned())));
+        assert_eq!(bar_length_mm(f64::NAN, false), None);
+        assert_eq!(bar_length_mm(0.0, false), None);
     }
 
     #[test]

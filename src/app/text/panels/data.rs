@@ -102,9 +102,14 @@ pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {
     format!("{x} × {y} × {z}")
 }
 
-/// Millimetres between voxels along x, y and z, in digits.
-pub(crate) fn spacing([x, y, z]: &[String; 3]) -> String {
-    format!("{x} × {y} × {z} mm")
+/// The unit of distances between voxels.
+pub(crate) fn unit_of_spacing(is_unknown: bool) -> &'static str {
+    if is_unknown { "(unit unknown)" } else { "mm" }
+}
+
+/// Distances between voxels along x, y and z, in digits.
+pub(crate) fn spacing([x, y, z]: &[String; 3], is_unknown: bool) -> String {
+    format!("{x} × {y} × {z} {}", unit_of_spacing(is_unknown))
 }
 
 /// The smallest and the largest value, in digits.

@@ -37,6 +37,12 @@ pub(crate) fn with_key(label: &str, key: &str) -> String {
 }
 
 /// The open volume, its voxels and their size.
-pub(crate) fn title(name: &str, [nx, ny, nz]: [usize; 3], [sx, sy, sz]: [f64; 3]) -> String {
-    format!("{name} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3} mm")
+pub(crate) fn title(
+    name: &str,
+    [nx, ny, nz]: [usize; 3],
+    [sx, sy, sz]: [f64; 3],
+    has_unknown_scale: bool,
+) -> String {
+    let unit = crate::app::text::panels::data::unit_of_spacing(has_unknown_scale);
+    format!("{name} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3} {unit}")
 }

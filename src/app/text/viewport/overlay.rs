@@ -15,6 +15,8 @@ pub(crate) const CENTIMETRES: &str = "cm";
 pub(crate) const MILLIMETRES: &str = "mm";
 pub(crate) const MICROMETRES: &str = "µm";
 pub(crate) const NANOMETRES: &str = "nm";
+/// Where nobody knows how large voxels are.
+pub(crate) const VOXELS: &str = "voxels";
 
 /// How long the scale bar is.
 pub(crate) fn length(value: f64, unit: &str) -> String {
