@@ -54,6 +54,7 @@ use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
 use self::viewport::overlay::Overlay;
 use self::viewport::{Facts, Viewport, paint_callback};
+use self::windows::chooser::Chooser;
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
 use self::windows::files::Files;
@@ -131,6 +132,7 @@ pub struct App {
     /// Whether what looks from outside say of their volumes is opened without a question.
     trusts_paths: bool,
     contact_sheet: ContactSheet,
+    chooser: Chooser,
     editor: TransferEditor,
     selected_light: usize,
     side_open: bool,
@@ -318,6 +320,7 @@ impl eframe::App for App {
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
         self.palette.ui(&ctx, self.settings.camera.up, &mut commands);
+        self.chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
         self.surroundings(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);
         shortcuts::from_keys(&ctx, &mut commands);

@@ -44,6 +44,10 @@ impl Command {
                 return text::commands::use_colors(name, *back).into();
             }
             Self::TreatAs(kind) => return text::commands::treat_as(*kind).into(),
+            Self::Choose(aspect) => return text::chooser::command(*aspect).into(),
+            Self::StepChoice(aspect, is_forward) => return text::chooser::step(*aspect, *is_forward).into(),
+            Self::TakeChoice(..) => text::commands::TAKE_CHOICE,
+            Self::OpenAgain(_) => text::menu::OPEN_RECENT,
             Self::Average(block) => return text::commands::average(*block).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,

@@ -9,8 +9,10 @@ use eframe::egui::{self, ColorImage};
 
 #[cfg(feature = "cli")]
 use super::earlier;
+use super::recent::RecentFile;
 use super::standing::{self, Standing};
 use super::{recent, thumbnail};
+use crate::data::load::Choice;
 use crate::export::write_atomically;
 use crate::model::{Record, Settings, VolumeRecord};
 
@@ -28,11 +30,12 @@ struct Look {
     settings: Settings,
     source: PathBuf,
     content_id: u64,
+    choice: Choice,
 }
 
 impl Look {
     fn text(&self) -> String {
-        let volume = VolumeRecord::new(&self.source, self.content_id, None);
+        let volume = VolumeRecord::new(&self.source, self.content_id, None).choosing(self.choice.clone());
         Record::text(&self.settings, Some(&volume), None)
     }
 }
@@ -43,7 +46,7 @@ struct Due {
     look: Option<Look>,
     picture: Option<Arc<ColorImage>>,
     /// Files that were opened, the latest last.
-    opened: Vec<PathBuf>,
+    opened: Vec<RecentFile>,
     /// How things stand that were turned, the latest last.
     stood: Vec<Standing>,
     closed: bool,
@@ -220,8 +223,9 @@ impl Keeper {
     }
 
     /// The look as it is from now on.
-    pub(super) fn keep(&self, settings: &Settings, source: &Path, content_id: u64) {
-        let look = Look { settings: settings.clone(), source: source.to_owned(), content_id };
+    pub(super) fn keep(&self, settings: &Settings, source: &Path, content_id: u64, choice: &Choice) {
+        let (settings, source, choice) = (settings.clone(), source.to_owned(), choice.clone());
+        let look = Look { settings, source, content_id, choice };
         self.change(|due| due.look = Some(look));
     }
 
@@ -231,8 +235,8 @@ impl Keeper {
     }
 
     /// A file was opened.
-    pub(super) fn opened(&self, source: &Path) {
-        self.change(|due| due.opened.push(source.to_owned()));
+    pub(super) fn opened(&self, file: RecentFile) {
+        self.change(|due| due.opened.push(file));
     }
 
     /// The object was turned.

@@ -21,8 +21,10 @@ use self::keeper::Keeper;
 #[cfg(feature = "cli")]
 pub(crate) use self::keeper::end_in_a_hurry;
 pub(crate) use self::keeper::{LastWords, write_last_words};
+pub(crate) use self::recent::RecentFile;
 use self::standing::Standing;
 use crate::app::text;
+use crate::data::load::Choice;
 use crate::export;
 use crate::model::{SceneAxis, Settings};
 
@@ -45,12 +47,17 @@ fn folder_of(source: &Path) -> Option<PathBuf> {
 }
 
 /// The look that was handed over last, and what it is of.
-type Kept = (Settings, u64);
+#[derive(Debug)]
+struct Kept {
+    settings: Settings,
+    content_id: u64,
+    choice: Choice,
+}
 
 /// Files in the folder that the system gives us; without one, nothing is remembered.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
-    recent: Vec<PathBuf>,
+    recent: Vec<RecentFile>,
     /// Which way up things stood in folders, the latest first.
     standing: Vec<Standing>,
     /// Runs that have ended, the latest first.
@@ -112,19 +119,20 @@ impl Memory {
     }
 
     /// What was opened, the latest first.
-    pub(crate) fn recent(&self) -> &[PathBuf] {
+    pub(crate) fn recent(&self) -> &[RecentFile] {
         &self.recent
     }
 
-    /// Takes note of a file that was opened. Built-in volumes have a menu of their own.
-    pub(crate) fn opened(&mut self, source: &Path) {
+    /// Takes note of a file that was opened, and of which of its volumes. Built-in volumes have a menu of their own.
+    pub(crate) fn opened(&mut self, source: &Path, choice: &Choice) {
         if is_builtin(source) {
             return;
         }
-        let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
-        recent::put_first(&mut self.recent, &whole);
+        let path = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
+        let latest = RecentFile { path, choice: choice.clone() };
+        recent::put_first(&mut self.recent, latest.clone());
         if let Some(keeper) = &self.keeper {
-            keeper.opened(&whole);
+            keeper.opened(latest);
         }
     }
 
@@ -166,11 +174,14 @@ impl Memory {
     }
 
     /// Keeps a look of a volume, unless it is as it was.
-    pub(crate) fn keep(&mut self, settings: &Settings, source: &Path, content_id: u64) {
-        let is_known = self.kept.as_ref().is_some_and(|(kept, of)| *of == content_id && kept == settings);
+    pub(crate) fn keep(&mut self, settings: &Settings, source: &Path, content_id: u64, choice: &Choice) {
+        let is_known = self.kept.as_ref().is_some_and(|kept| {
+            kept.content_id == content_id && kept.choice == *choice && kept.settings == *settings
+        });
         if let Some(keeper) = self.keeper.as_ref().filter(|_| !is_known) {
-            keeper.keep(settings, source, content_id);
-            self.kept = Some((settings.clone(), content_id));
+            keeper.keep(settings, source, content_id, choice);
+            let (settings, choice) = (settings.clone(), choice.clone());
+            self.kept = Some(Kept { settings, content_id, choice });
         }
     }
 

@@ -10,6 +10,7 @@ mod labels;
 mod lights;
 mod range;
 mod sampling;
+mod several;
 mod shading;
 mod shadows;
 

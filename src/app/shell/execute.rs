@@ -25,6 +25,10 @@ impl App {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
             Command::Open(source) => self.open(&source, ctx),
+            Command::OpenAgain(file) => self.open_again(&file, ctx),
+            Command::Choose(aspect) => self.choose(aspect),
+            Command::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
+            Command::TakeChoice(choice, keeps_look) => self.take_choice(&choice, keeps_look, ctx),
             Command::Average(reduce) => self.average(reduce, ctx),
             Command::GoOn => match self.memory.before() {
                 Some(path) => self.open_record(&path, ctx),

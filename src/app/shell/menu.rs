@@ -1,12 +1,10 @@
 //! The menu bar.
 
-use std::path::PathBuf;
-
 use eframe::egui::{self, Button, ThemePreference};
 
 use crate::app::common::commands::{Command, VIEW_SLOTS};
 use crate::app::common::theme;
-use crate::app::memory::EarlierRun;
+use crate::app::memory::{EarlierRun, RecentFile};
 use crate::app::text;
 use crate::app::windows::recovery;
 use crate::data::{plain, synthetic};
@@ -28,7 +26,7 @@ pub(crate) struct Menu<'a> {
     /// What is on screen.
     pub shown: Shown,
     /// Files that were opened, the latest first.
-    pub recent: &'a [PathBuf],
+    pub recent: &'a [RecentFile],
     /// Whether the next volume is shown as this one.
     pub keeps_look: bool,
     /// Runs that have ended, the latest first.
@@ -91,12 +89,13 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::OpenPath, true);
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
         ui.menu_button(text::menu::OPEN_RECENT, |ui| {
-            for path in menu.recent {
+            for recent in menu.recent {
+                let path = &recent.path;
                 let whole = path.to_string_lossy();
                 let name = path.file_name().map(|name| name.to_string_lossy());
                 let name = plain(name.as_ref().unwrap_or(&whole), MAX_NAME);
                 if ui.button(name).on_hover_text(plain(&whole, LONGEST_PATH)).clicked() {
-                    menu.commands.push(Command::Open(path.clone()));
+                    menu.commands.push(Command::OpenAgain(recent.clone()));
                 }
             }
         });

@@ -23,6 +23,7 @@ use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
 use crate::app::viewport::overlay::Overlay;
+use crate::app::windows::chooser::Chooser;
 use crate::app::windows::contact_sheet::ContactSheet;
 use crate::app::windows::export::Export;
 use crate::app::windows::files::Files;
@@ -148,6 +149,7 @@ impl App {
             foreign_path: ForeignPath::default(),
             trusts_paths: false,
             contact_sheet: ContactSheet::default(),
+            chooser: Chooser::default(),
             editor: TransferEditor::new(window.clone()),
             window,
             window_context,

@@ -10,7 +10,7 @@ use eframe::egui;
 use super::task::Work;
 use crate::app::text;
 use crate::data::load::{
-    self, Dimension, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout,
+    self, Choice, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, Several,
 };
 use crate::data::{self, Dataset, Volume};
 use crate::fault::{Place, may_panic};
@@ -18,10 +18,12 @@ use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright,
 use crate::model::{SceneAxis, Settings};
 
 /// How a volume is read, where the user has said it.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Reading {
     /// How a file of bare voxels is stored.
     pub raw: Option<RawFormat>,
+    /// Which of several volumes is opened.
+    pub choice: Option<Choice>,
     /// Blocks of so many voxels along each axis are averaged into one.
     pub reduce: Option<usize>,
 }
@@ -68,7 +70,7 @@ struct Running {
 }
 
 /// How far a volume is that is being opened.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct LoadProgress<'a> {
     /// What is being opened.
     pub source: &'a Path,
@@ -184,7 +186,8 @@ impl Loader {
             options.raw = reading.raw.unwrap_or(options.raw);
             let reduce = reading.reduce.unwrap_or(options.reduce);
             options.reduce = reduce;
-            let reading = Reading { reduce: Some(reduce), ..reading };
+            options.choice = reading.choice.clone().unwrap_or(options.choice);
+            let reading = Reading { reduce: Some(reduce), ..reading.clone() };
             let opening = Opening {
                 source: source.to_owned(),
                 reading,
@@ -249,7 +252,7 @@ impl Loader {
         let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
         Some(LoadProgress {
             source: &running.source,
-            reading: running.reading,
+            reading: running.reading.clone(),
             phase: PHASES[phase],
             fraction: fraction.map(|fraction| fraction as f32),
         })
@@ -282,31 +285,22 @@ struct Opening {
     phase: Arc<AtomicU8>,
 }
 
-/// Opens a volume; of several the first, of which the user is told.
-fn open_first(source: &Path, mut options: LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let mut told = Vec::new();
-    loop {
-        match data::open(source, &options, control) {
-            Err(LoadError::Several { dimension, offers, .. })
-                if told.len() < Dimension::COUNT && !offers.is_empty() =>
-            {
-                let first = &offers[0];
-                told.push(text::opening::one_of_several(first, offers.len(), dimension));
-                options.choice = options.choice.with(dimension, &first.key);
-            }
-            Ok(volume) if !told.is_empty() => {
-                let remarks = volume.remarks().iter().cloned().chain(told).collect();
-                return Ok(volume.with_remarks(remarks));
-            }
-            opened => return opened,
-        }
-    }
+/// Opens a volume; of several the first where nobody has said which, of which the user is told.
+fn open_first(source: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let options = LoadOptions { choice: options.choice.clone().or_first(), ..options.clone() };
+    let volume = data::open(source, &options, control)?;
+    let is_unsaid =
+        |several: &&Several| several.missed.is_some() || options.choice.said(several.dimension).is_none();
+    let told: Vec<_> =
+        volume.held().several.iter().filter(is_unsaid).map(text::opening::first_of_several).collect();
+    let remarks = volume.remarks().iter().cloned().chain(told).collect();
+    Ok(volume.with_remarks(remarks))
 }
 
 fn open(opening: Opening) -> Outcome {
     let Opening { source, reading, up, options, context, shaders, control, phase } = opening;
     may_panic(Place::Loader);
-    let volume = match open_first(&source, options, &control) {
+    let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
         Err(err) => {
@@ -329,6 +323,8 @@ fn open(opening: Opening) -> Outcome {
         Err(err) => return not_shown(&err),
     };
     let too_many = (volume.dims() != dims).then_some(dims);
+    // It is read in the same way again.
+    let reading = Reading { choice: Some(volume.held().choice()), ..reading };
     if control.is_cancelled() {
         return Outcome::Cancelled;
     }

@@ -7,6 +7,7 @@ pub(crate) const OPEN_DIALOG: &str = "Open…";
 pub(crate) const OPEN_PATH: &str = "Open path…";
 /// The name of a command, and of the menu of what can be opened.
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
+pub(crate) const TAKE_CHOICE: &str = "Show this one";
 pub(crate) const CANCEL_OPENING: &str = "Cancel";
 pub(crate) const GO_ON: &str = "Go on where you left off";
 pub(crate) const SAVE_SETTINGS: &str = "Save settings…";

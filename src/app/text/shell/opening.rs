@@ -1,6 +1,7 @@
 //! Opening volumes and looks, and the window's title.
 
-use crate::data::load::{Dimension, Offer};
+use crate::data::load::Several;
+use crate::data::plain;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -63,10 +64,18 @@ pub(crate) fn averaged(before: [usize; 3], after: [usize; 3]) -> String {
     format!("{before} voxels are shown as {after}: the graphics adapter cannot hold more")
 }
 
-/// A file holds several volumes, of which the first is shown.
-pub(crate) fn one_of_several(first: &Offer, count: usize, dimension: Dimension) -> String {
-    let (plural, option) = (dimension.plural(), dimension.option());
-    format!("The first of {count} {plural} is shown: {first}. Start with {option} for another one")
+/// A file holds several volumes, of which the first is shown: nobody has said which, or what was said is not there.
+pub(crate) fn first_of_several(several: &Several) -> String {
+    let (count, plural) = (several.offers.len(), several.dimension.plural());
+    let first = several.offers.first().map_or("", |first| first.name.as_str());
+    let first = if first.is_empty() { String::new() } else { format!(" ({first})") };
+    match &several.missed {
+        None => format!("The first of {count} {plural} is shown{first}: the section Data offers the others"),
+        Some(said) => {
+            let said = plain(said, 60);
+            format!("{said} is none of the {count} {plural} that there are now: the first is shown{first}")
+        }
+    }
 }
 
 /// The system is out of threads.

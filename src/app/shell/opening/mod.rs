@@ -1,24 +1,26 @@
 //! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
 
-use std::path::{Path, PathBuf};
+mod choosing;
+mod looks;
+
+use std::path::Path;
 use std::sync::Arc;
 
 use eframe::egui;
 
-use super::first_lights::FirstLights;
-use super::history::History;
-use super::keep_balanced::KeepBalanced;
-use super::session::Session;
-use super::treat_as::Treated;
-use super::upright::Upright;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::windows::files::{self, Purpose};
-use crate::app::windows::foreign_path::Answer;
+use crate::app::memory::RecentFile;
+use crate::app::shell::first_lights::FirstLights;
+use crate::app::shell::history::History;
+use crate::app::shell::keep_balanced::KeepBalanced;
+use crate::app::shell::treat_as::Treated;
+use crate::app::shell::upright::Upright;
+use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Opened, Reading};
 use crate::app::{App, text};
-use crate::data::ValueRanges;
-use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, VolumeRecord, made_by};
+use crate::data::load::Choice;
+use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, made_by};
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -30,6 +32,8 @@ pub(in crate::app) enum PendingLook {
     Record(Box<Record>),
     /// Every setting, whatever the first look is.
     Settings(Box<Settings>),
+    /// The look as it is when the volume is there.
+    Current,
 }
 
 impl App {
@@ -42,6 +46,28 @@ impl App {
         } else if self.start_loading(source, Reading::default(), ctx) {
             self.pending = None;
         }
+    }
+
+    /// Opens one of several volumes of a file; what the command line says of which counts more than what was remembered.
+    pub(crate) fn open_chosen(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
+        if self.start_loading(source, self.reading_of(choice), ctx) {
+            self.pending = None;
+        }
+    }
+
+    /// Opens a file that was open before, as it was then.
+    pub(crate) fn open_again(&mut self, file: &RecentFile, ctx: &egui::Context) {
+        if file.choice.is_empty() {
+            self.open(&file.path, ctx)
+        } else {
+            self.open_chosen(&file.path, &file.choice, ctx)
+        }
+    }
+
+    /// How a volume is read that was chosen before.
+    fn reading_of(&self, choice: &Choice) -> Reading {
+        let is_said = choice.is_empty() || !self.loader.options().choice.is_empty();
+        Reading { choice: (!is_said).then(|| choice.clone()), ..Reading::default() }
     }
 
     /// Opens what was named at the start. A look that cannot be used leaves the default volume.
@@ -68,7 +94,7 @@ impl App {
         let Some(volume) = record.volume.clone() else { return };
         match self.place_of(&volume, &session) {
             VolumePlace::Builtin(name) => self.open(name, ctx),
-            VolumePlace::Beside(path) => self.open(path, ctx),
+            VolumePlace::Beside(path) => self.open_chosen(&path, &volume.choice, ctx),
             VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
             VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
         }
@@ -105,7 +131,8 @@ impl App {
             let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
             settings.opacity_unit = Length::Mm(unit);
         }
-        let (source, reading) = (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading });
+        let (source, reading) =
+            (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading.clone() });
         if self.start_loading(&source, reading, ctx) {
             self.pending = Some(PendingLook::Settings(Box::new(settings)));
         }
@@ -120,151 +147,6 @@ impl App {
         started.is_ok()
     }
 
-    /// Takes over the look of a session, a preset or a picture. If it is of another volume than the open one,
-    /// that is opened first; a preset is of any volume.
-    pub(crate) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
-        let record = match files::load_record(path) {
-            Ok(record) => record,
-            Err(err) => return self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-        };
-        let open = self.volume_record().map(|(_, content_id)| content_id);
-        match record.volume.clone() {
-            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => match self.place_of(&volume, path)
-            {
-                VolumePlace::Builtin(name) => self.open_with(Path::new(&name), record, ctx),
-                VolumePlace::Beside(path) => self.open_with(&path, record, ctx),
-                VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
-                VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
-            },
-            Some(_) => drop(self.apply_record(&record, &self.value_ranges())),
-            None => self.use_look(record, ctx),
-        }
-    }
-
-    /// Where the volume of a record is; beside it is also what may be opened without a question.
-    fn place_of(&self, volume: &VolumeRecord, record: &Path) -> VolumePlace {
-        match volume.place(record.parent()) {
-            VolumePlace::Elsewhere(path) if self.is_trusted(record, &path) => VolumePlace::Beside(path),
-            place => place,
-        }
-    }
-
-    /// Whether a record may open a file that is not beside it: the program's own may, and others what the user has
-    /// opened before.
-    fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
-        let is_known = || self.memory.recent().iter().any(|known| known == volume);
-        self.trusts_paths || self.memory.is_own(record) || is_known()
-    }
-
-    /// Takes over a look for whichever volume is open, or is being opened.
-    fn use_look(&mut self, record: Record, ctx: &egui::Context) {
-        if self.loader.progress().is_some() {
-            // What is being opened is what the user will see it on.
-            self.pending = Some(PendingLook::Record(Box::new(record)));
-        } else if self.volume_record().is_none() {
-            self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
-        } else {
-            self.apply_record(&record, &self.value_ranges());
-        }
-    }
-
-    /// Opens a volume with a look.
-    fn open_with(&mut self, source: &Path, record: Record, ctx: &egui::Context) {
-        if self.start_loading(source, Reading::default(), ctx) {
-            self.pending = Some(PendingLook::Record(Box::new(record)));
-        }
-    }
-
-    /// Shows the question whether a look may open its volume, and does what the user says.
-    pub(crate) fn ask_for_volume(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
-        let Some(answer) = self.foreign_path.ui(ctx) else { return };
-        if answer == Answer::Choose {
-            // It stays open: choosing may be cancelled.
-            return self.files.ask(Purpose::VolumeOfLook, frame, ctx);
-        }
-        match self.foreign_path.take() {
-            Some((record, Some(path))) if answer == Answer::Open => self.open_with(&path, record, ctx),
-            Some((record, _)) => self.use_look(record, ctx),
-            None => {}
-        }
-    }
-
-    /// Opens what the user has chosen for the look that was asked about.
-    pub(crate) fn open_for_look(&mut self, path: &Path, ctx: &egui::Context) {
-        match self.foreign_path.take() {
-            Some((record, _)) => self.open_with(path, record, ctx),
-            None => self.open(path, ctx),
-        }
-    }
-
-    /// Takes over a look for the open volume, whatever volume it was made for.
-    pub(crate) fn load_settings(&mut self, path: &Path) {
-        match files::load_record(path) {
-            Ok(record) => {
-                let open = self.volume_record().map(|(_, content_id)| content_id);
-                if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
-                    self.messages.note(text::opening::OF_ANOTHER_VOLUME);
-                }
-                self.apply_record(&record, &self.value_ranges());
-            }
-            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-        }
-    }
-
-    /// The values of the open volume.
-    pub(crate) fn value_ranges(&self) -> ValueRanges {
-        self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
-    }
-
-    /// The settings with a record laid over them, for a volume with these values.
-    pub(crate) fn with_record(&mut self, record: &Record, ranges: &ValueRanges) -> Result<Settings, String> {
-        let (settings, warnings) = record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
-        if !warnings.is_empty() {
-            self.messages.note(warnings.join("; "));
-        }
-        Ok(settings)
-    }
-
-    /// Lays a record over the settings; whether that could be done.
-    fn apply_record(&mut self, record: &Record, ranges: &ValueRanges) -> bool {
-        match self.with_record(record, ranges) {
-            Ok(settings) => {
-                self.settings = settings;
-                if record.names_balance() {
-                    self.keep_balanced.accept(&self.settings);
-                }
-                true
-            }
-            Err(err) => {
-                self.messages.error(text::opening::SETTINGS_NOT_LOADED, err);
-                false
-            }
-        }
-    }
-
-    /// The open volume, for records.
-    pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
-        let dataset = self.viewport.dataset()?;
-        Some((&self.volume.as_ref()?.source, dataset.volume().content_id()))
-    }
-
-    /// Where Ctrl+S writes, if it may; else why not is said.
-    pub(crate) fn session_to_save(&mut self) -> Option<PathBuf> {
-        let session = self.session.as_ref()?;
-        let Some((path, why)) = session.protection() else { return Some(session.path().to_owned()) };
-        self.messages.note(text::memory::protected(path, why));
-        None
-    }
-
-    pub(crate) fn save_settings(&mut self, path: &Path) {
-        let volume = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
-        let volume = self.volume.as_ref().map(|volume| volume.source.as_path()).zip(volume);
-        match Session::save(&mut self.session, path, &self.settings, volume) {
-            Ok(()) => self.messages.note(text::opening::saved(path)),
-            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
-        }
-    }
-
     /// Something was found before there was a window to say it.
     pub(crate) fn remember_to_say(&mut self, found: Option<String>) {
         if let Some(notice) = found {
@@ -276,7 +158,7 @@ impl App {
     pub(crate) fn keep_look(&mut self) {
         let open = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
         if let Some((volume, content_id)) = self.volume.as_ref().zip(open) {
-            self.memory.keep(&self.settings, &volume.source, content_id);
+            self.memory.keep(&self.settings, &volume.source, content_id, &volume.held.choice());
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.show(picture);
             }
@@ -293,6 +175,8 @@ impl App {
         let Opened { source, reading, dataset, too_many, renderer, settings } = opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
+        let current = matches!(self.pending, Some(PendingLook::Current)).then(|| self.settings.clone());
+        let selected_light = if current.is_some() { self.selected_light } else { 0 };
         if let Some(before) = too_many {
             self.messages.note(text::opening::averaged(before, volume.dims()));
         }
@@ -330,11 +214,15 @@ impl App {
             }
             self.session = Some(session);
         }
-        self.memory.opened(&source);
+        self.memory.opened(&source, &volume.held().choice());
         match self.pending.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {
                 self.settings = *settings;
+                self.keep_balanced.accept(&self.settings);
+            }
+            Some(PendingLook::Current) => {
+                self.settings = current.unwrap_or_default();
                 self.keep_balanced.accept(&self.settings);
             }
             Some(PendingLook::Record(record)) => {
@@ -357,7 +245,7 @@ impl App {
         (self.treated, self.upright) = (Treated::default(), Upright::default());
         self.viewport.set_scene(renderer, dataset);
         self.history = History::default();
-        self.selected_light = 0;
+        self.selected_light = selected_light;
         let title = text::opening::title(self.volume_name().unwrap_or_default());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }
