@@ -6,6 +6,7 @@
 //! itself and one block.
 
 mod formats;
+mod neighbour;
 mod reading;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,8 @@ pub use super::attempt::{
     Choice, Components, Dimension, Explanation, Held, LoadControl, LoadError, LoadErrorKind, Offer, Several,
     Watch, Whole,
 };
+pub use neighbour::neighbour;
+
 use formats::{READERS, folder, reader_of};
 use reading::input::{Input, Witness};
 use reading::reader::{Source, Start};
