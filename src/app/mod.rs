@@ -34,12 +34,12 @@ use self::windows::files;
 
 use self::common::commands::Command;
 use self::common::volume_facts::VolumeFacts;
-use self::memory::Memory;
+use self::memory::{Memory, RecentPictures};
 use self::shell::first_lights::{FirstLights, Seeking};
 use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
 use self::shell::messages::Messages;
-use self::shell::opening::PendingLook;
+use self::shell::opening::{Neighbour, PendingLook};
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
 use self::shell::treat_as::Treated;
@@ -101,6 +101,7 @@ pub struct App {
     canvas: Option<Canvas>,
     loader: Loader,
     memory: Memory,
+    recent_pictures: RecentPictures,
     /// Whether the next volume is shown as this one, and not as its own first look.
     keeps_look: bool,
     /// Settings of the volume that is being opened.
@@ -133,6 +134,8 @@ pub struct App {
     trusts_paths: bool,
     contact_sheet: ContactSheet,
     chooser: Chooser,
+    /// The next file is being looked for.
+    neighbour: Option<Neighbour>,
     editor: TransferEditor,
     selected_light: usize,
     side_open: bool,
@@ -256,7 +259,9 @@ impl App {
                 can_undo,
                 can_redo,
                 shown,
+                several: self.volume.as_ref().map(|volume| &volume.held),
                 recent: self.memory.recent(),
+                recent_pictures: &mut self.recent_pictures,
                 keeps_look: self.keeps_look,
                 earlier: self.memory.earlier(),
                 frame_ms: &mut self.viewport.frame_ms,
@@ -315,8 +320,9 @@ impl eframe::App for App {
         let start = std::time::Instant::now();
         ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
         let mut commands = Vec::new();
-        if let Some(path) = files::dropped(&ctx) {
-            commands.push(Command::Open(path));
+        let dropped = files::dropped(&ctx);
+        if !dropped.is_empty() {
+            commands.push(Command::OpenDropped(dropped));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
         self.palette.ui(&ctx, self.settings.camera.up, &mut commands);

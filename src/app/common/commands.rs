@@ -13,8 +13,16 @@ use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxi
 pub(crate) enum Command {
     /// Ask for a volume and open it.
     OpenDialog,
+    /// Ask for a folder of slices and open it.
+    OpenFolder,
     /// Show the window for typing a path.
     OpenPath,
+    /// Open what was dropped on the window.
+    OpenDropped(Vec<PathBuf>),
+    /// Open the file after the open one in its folder.
+    NextFile,
+    /// Open the file before it.
+    PreviousFile,
     /// Open a file or a built-in volume.
     Open(PathBuf),
     /// Open a file that was open before, and of its volumes the one that was.
@@ -148,7 +156,10 @@ pub(crate) const VIEW_SLOTS: std::ops::RangeInclusive<u8> = 1..=9;
 pub(crate) fn listed() -> Vec<Command> {
     let mut all = vec![
         Command::OpenDialog,
+        Command::OpenFolder,
         Command::OpenPath,
+        Command::NextFile,
+        Command::PreviousFile,
         Command::GoOn,
         Command::SaveSettings,
         Command::LoadSettings,

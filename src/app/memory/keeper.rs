@@ -11,7 +11,7 @@ use eframe::egui::{self, ColorImage};
 use super::earlier;
 use super::recent::RecentFile;
 use super::standing::{self, Standing};
-use super::{recent, thumbnail};
+use super::{recent, recent_pictures, thumbnail};
 use crate::data::load::Choice;
 use crate::export::write_atomically;
 use crate::model::{Record, Settings, VolumeRecord};
@@ -40,11 +40,18 @@ impl Look {
     }
 }
 
+/// What a look shows, and of which file.
+#[derive(Debug)]
+struct Shown {
+    picture: Arc<ColorImage>,
+    source: PathBuf,
+}
+
 /// What waits to be written.
 #[derive(Debug, Default)]
 struct Due {
     look: Option<Look>,
-    picture: Option<Arc<ColorImage>>,
+    picture: Option<Shown>,
     /// Files that were opened, the latest last.
     opened: Vec<RecentFile>,
     /// How things stand that were turned, the latest last.
@@ -109,10 +116,11 @@ impl Shared {
             }
         }
         // The look counts; a list is one without its picture, too, and without the latest file.
-        if let Some(picture) = picture
-            && let Err(err) = thumbnail::write(&picture, &self.look.with_extension("png"))
-        {
-            log::warn!("the small picture of the look was not kept: {err}");
+        if let Some(Shown { picture, source }) = picture {
+            let kept = thumbnail::write(&picture, &self.look.with_extension("png"));
+            if let Err(err) = kept.and_then(|()| recent_pictures::write(&self.folder, &source, &picture)) {
+                log::warn!("the small picture of the look was not kept: {err}");
+            }
         }
         if !opened.is_empty()
             && let Err(err) = recent::add(&self.folder, &opened)
@@ -230,8 +238,9 @@ impl Keeper {
     }
 
     /// What the look shows.
-    pub(super) fn show(&self, picture: Arc<ColorImage>) {
-        self.change(|due| due.picture = Some(picture));
+    pub(super) fn show(&self, picture: Arc<ColorImage>, source: &Path) {
+        let source = source.to_owned();
+        self.change(|due| due.picture = Some(Shown { picture, source }));
     }
 
     /// A file was opened.

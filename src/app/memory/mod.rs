@@ -6,6 +6,7 @@ mod damaged;
 mod earlier;
 mod keeper;
 mod recent;
+mod recent_pictures;
 mod standing;
 mod thumbnail;
 
@@ -22,6 +23,7 @@ use self::keeper::Keeper;
 pub(crate) use self::keeper::end_in_a_hurry;
 pub(crate) use self::keeper::{LastWords, write_last_words};
 pub(crate) use self::recent::RecentFile;
+pub(crate) use self::recent_pictures::RecentPictures;
 use self::standing::Standing;
 use crate::app::text;
 use crate::data::load::Choice;
@@ -50,6 +52,7 @@ fn folder_of(source: &Path) -> Option<PathBuf> {
 #[derive(Debug)]
 struct Kept {
     settings: Settings,
+    source: PathBuf,
     content_id: u64,
     choice: Choice,
 }
@@ -71,6 +74,7 @@ pub(crate) struct Memory {
     kept: Option<Kept>,
     /// The last write has failed, and that has been said.
     is_failing: bool,
+    folder: Option<PathBuf>,
     // In this order: all is written before the run ends.
     keeper: Option<Keeper>,
     run: Option<ThisRun>,
@@ -82,6 +86,7 @@ impl Memory {
     pub(crate) fn new(folder: Option<&Path>, wake: &egui::Context) -> Self {
         let mut memory = Self::default();
         let Some(folder) = folder else { return memory };
+        memory.folder = Some(folder.to_owned());
         let runs = folder.join("runs");
         earlier::adopt(folder, &runs);
         for folder in [folder, &runs] {
@@ -121,6 +126,11 @@ impl Memory {
     /// What was opened, the latest first.
     pub(crate) fn recent(&self) -> &[RecentFile] {
         &self.recent
+    }
+
+    /// Their pictures.
+    pub(crate) fn recent_pictures(&self) -> RecentPictures {
+        self.folder.as_deref().map_or_else(RecentPictures::default, RecentPictures::of)
     }
 
     /// Takes note of a file that was opened, and of which of its volumes. Built-in volumes have a menu of their own.
@@ -180,15 +190,15 @@ impl Memory {
         });
         if let Some(keeper) = self.keeper.as_ref().filter(|_| !is_known) {
             keeper.keep(settings, source, content_id, choice);
-            let (settings, choice) = (settings.clone(), choice.clone());
-            self.kept = Some(Kept { settings, content_id, choice });
+            let (settings, source, choice) = (settings.clone(), source.to_owned(), choice.clone());
+            self.kept = Some(Kept { settings, source, content_id, choice });
         }
     }
 
     /// Keeps what the look shows.
     pub(crate) fn show(&self, picture: Arc<ColorImage>) {
-        if let Some(keeper) = self.keeper.as_ref().filter(|_| self.kept.is_some()) {
-            keeper.show(picture);
+        if let Some((keeper, kept)) = self.keeper.as_ref().zip(self.kept.as_ref()) {
+            keeper.show(picture, &kept.source);
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::damaged;
+use super::{damaged, recent_pictures};
 use crate::data::load::Choice;
 use crate::data::read_small;
 use crate::export::{hold_lock, write_atomically};
@@ -99,9 +99,10 @@ pub(super) fn add(folder: &Path, opened: &[RecentFile]) -> Result<(), String> {
         put_first(&mut list, latest.clone());
     }
     let chosen: Vec<_> = list.iter().filter(|file| !file.choice.is_empty()).map(Chosen::of).collect();
-    let list: Vec<_> = list.iter().map(|file| text_of(&file.path)).collect();
-    let text = serde_json::to_string_pretty(&list).map_err(|err| err.to_string())?;
+    let paths: Vec<_> = list.iter().map(|file| text_of(&file.path)).collect();
+    let text = serde_json::to_string_pretty(&paths).map_err(|err| err.to_string())?;
     write_atomically(&folder.join("recent.json"), text.as_bytes()).map_err(|err| err.to_string())?;
     let text = serde_json::to_string_pretty(&chosen).map_err(|err| err.to_string())?;
+    recent_pictures::tidy(folder, &list);
     write_atomically(&folder.join(CHOSEN), text.as_bytes()).map_err(|err| err.to_string())
 }

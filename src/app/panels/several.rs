@@ -9,7 +9,7 @@ use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
 
 /// Points of a button that takes the next one.
-const STEP_WIDTH: f32 = 16.0;
+const STEP_WIDTH: f32 = 20.0;
 
 /// Shows a row for each way in which volumes of the file differ.
 pub(super) fn show(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
@@ -26,7 +26,8 @@ fn choice(ui: &mut Ui, aspect: Aspect, all: &Alternatives<'_>, commands: &mut Ve
     let (at, count) = (all.at(), all.count());
     row(ui, text::chooser::row(aspect), |ui| {
         let steps = 2.0 * (STEP_WIDTH + ui.spacing().item_spacing.x);
-        let width = ui.available_width() - steps;
+        // A point for what is rounded up.
+        let width = ui.available_width() - steps - 1.0;
         step(ui, aspect, false, at > 0, commands);
         let present = text::chooser::present(at, count, &all.name(at));
         let button = egui::Button::new(&present).truncate();

@@ -23,6 +23,10 @@ impl App {
     pub(crate) fn execute(&mut self, command: Command, frame: &eframe::Frame, ctx: &egui::Context) {
         match command {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
+            Command::OpenFolder => self.files.ask(Purpose::OpenFolder, frame, ctx),
+            Command::OpenDropped(paths) => self.open_dropped(&paths, ctx),
+            Command::NextFile => self.seek_neighbour(true, ctx),
+            Command::PreviousFile => self.seek_neighbour(false, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
             Command::Open(source) => self.open(&source, ctx),
             Command::OpenAgain(file) => self.open_again(&file, ctx),
@@ -171,6 +175,7 @@ impl App {
                 self.messages.error(short, details);
             }
         }
+        self.take_neighbour(ctx);
         self.take_treated(ctx);
         if let Some(result) = self.balance.as_ref().and_then(Work::take) {
             self.balance = None;
@@ -273,7 +278,7 @@ impl App {
     /// A file was chosen or typed.
     fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
         match purpose {
-            Purpose::OpenVolume => self.open(path, ctx),
+            Purpose::OpenVolume | Purpose::OpenFolder => self.open(path, ctx),
             Purpose::VolumeOfLook => self.open_for_look(path, ctx),
             Purpose::ExportPicture => self.export.set_path(path),
             Purpose::SaveSettings => self.save_settings(path),

@@ -350,3 +350,28 @@ fn open(opening: Opening) -> Outcome {
         Err(err) => not_shown(&err),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_user_hears_which_of_several_is_shown_unless_it_was_chosen() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("steps.nrrd");
+        let header = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 3\nencoding: raw\nkinds: domain domain domain time\n\n";
+        std::fs::write(&file, [header.as_bytes(), &(0..24).collect::<Vec<u8>>()].concat()).unwrap();
+        let told = |frame| {
+            let choice = Choice { frame, ..Choice::default() };
+            let options = LoadOptions { choice, ..LoadOptions::default() };
+            let volume = open_first(&file, &options, &LoadControl::new()).unwrap();
+            let remarks = volume.remarks().iter().filter(|said| said.contains("time steps")).cloned();
+            (volume.held().choice().frame, remarks.collect::<Vec<_>>().join("; "))
+        };
+        let (frame, said) = told(None);
+        assert!(frame == Some(0) && said.starts_with("The first of 3 time steps is shown"), "{said}");
+        assert_eq!(told(Some(2)), (Some(2), String::new()));
+        let (frame, said) = told(Some(7));
+        assert!(frame == Some(0) && said.starts_with("7 is none of the 3 time steps"), "{said}");
+    }
+}

@@ -1,6 +1,7 @@
 //! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
 
 mod choosing;
+mod folders;
 mod looks;
 
 use std::path::Path;
@@ -22,6 +23,9 @@ use crate::app::{App, text};
 use crate::data::load::Choice;
 use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, made_by};
 
+use self::folders::Likeness;
+pub(in crate::app) use self::folders::Neighbour;
+
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
 
@@ -34,6 +38,8 @@ pub(in crate::app) enum PendingLook {
     Settings(Box<Settings>),
     /// The look as it is when the volume is there.
     Current,
+    /// That look, as far as the volume is like the one before.
+    IfAlike,
 }
 
 impl App {
@@ -41,7 +47,7 @@ impl App {
     /// that is kept there. What is open stays until it is there.
     pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
         let source = source.as_ref();
-        if files::is_record(source) {
+        if files::is_record(source) && !files::is_volume(source) {
             self.open_record(source, ctx);
         } else if self.start_loading(source, Reading::default(), ctx) {
             self.pending = None;
@@ -175,6 +181,13 @@ impl App {
         let Opened { source, reading, dataset, too_many, renderer, settings } = opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
+        let likeness = match (&self.pending, &self.volume) {
+            (Some(PendingLook::IfAlike), Some(open)) => Likeness::of(open, &volume),
+            _ => Likeness::Nothing,
+        };
+        if let Some(PendingLook::IfAlike) = self.pending {
+            self.pending = (likeness == Likeness::Grid).then_some(PendingLook::Current);
+        }
         let current = matches!(self.pending, Some(PendingLook::Current)).then(|| self.settings.clone());
         let selected_light = if current.is_some() { self.selected_light } else { 0 };
         if let Some(before) = too_many {
@@ -184,7 +197,7 @@ impl App {
             self.messages.note(remark.clone());
         }
         self.defaults = settings.clone();
-        let is_kept = self.keeps_look && self.volume.is_some();
+        let is_kept = (self.keeps_look || likeness == Likeness::Kind) && self.volume.is_some();
         if is_kept {
             // As it was, but for where the object is: that is another one, and may stand another way up.
             let mut before = std::mem::take(&mut self.settings);
@@ -215,13 +228,14 @@ impl App {
             self.session = Some(session);
         }
         self.memory.opened(&source, &volume.held().choice());
+        self.recent_pictures.forget();
         match self.pending.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {
                 self.settings = *settings;
                 self.keep_balanced.accept(&self.settings);
             }
-            Some(PendingLook::Current) => {
+            Some(PendingLook::Current | PendingLook::IfAlike) => {
                 self.settings = current.unwrap_or_default();
                 self.keep_balanced.accept(&self.settings);
             }

@@ -4,6 +4,10 @@ use crate::app::text::data;
 use crate::data::KindName;
 
 pub(crate) const OPEN_DIALOG: &str = "Open…";
+pub(crate) const OPEN_FOLDER: &str = "Open folder…";
+pub(crate) const NEXT_FILE: &str = "Next file of the folder";
+pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";
+pub(crate) const OPEN_DROPPED: &str = "Open what was dropped";
 pub(crate) const OPEN_PATH: &str = "Open path…";
 /// The name of a command, and of the menu of what can be opened.
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";

@@ -78,6 +78,30 @@ pub(crate) fn first_of_several(several: &Several) -> String {
     }
 }
 
+/// Slices were dropped: what their folder holds is opened.
+pub(crate) fn folder_of_dropped(count: usize, folder: &Path) -> String {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    format!("{count} files were dropped: all slices of their folder {} are opened", plain(&name, 60))
+}
+
+/// Several files were dropped that do not belong together.
+pub(crate) fn first_of_dropped(count: usize, first: &Path) -> String {
+    let name = first.file_name().unwrap_or_default().to_string_lossy();
+    format!("{count} files were dropped: the first, {}, is opened", plain(&name, 60))
+}
+
+/// The open volume is in no folder.
+pub(crate) const NO_FOLDER: &str = "The open volume is in no folder";
+
+/// There is no other file.
+pub(crate) fn no_neighbour(is_forward: bool) -> &'static str {
+    if is_forward {
+        "This is the last volume of its folder"
+    } else {
+        "This is the first volume of its folder"
+    }
+}
+
 /// The system is out of threads.
 pub(crate) fn no_thread(err: impl Display) -> String {
     format!("no thread for the loader: {err}")

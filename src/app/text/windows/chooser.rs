@@ -91,7 +91,15 @@ pub(crate) fn present(at: usize, count: usize, name: &str) -> String {
     format!("{} of {count} · {name}", at + 1)
 }
 
-/// How many there are.
+/// What is shown, beside the name of the file: a component by its name, all else by its number.
+pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: &str) -> String {
+    match aspect {
+        Aspect::Component => name.to_owned(),
+        _ => format!("{} {}", row(aspect).name, place(at, count)),
+    }
+}
+
+/// Which it is of how many.
 pub(crate) fn place(at: usize, count: usize) -> String {
     format!("{} of {count}", at + 1)
 }

@@ -172,7 +172,8 @@ impl Chooser {
         }
         let left = frame.right() + 2.0 * MARGIN;
         let right = if is_shown {
-            let color = theme::accent(ui.visuals());
+            let is_marked = at == self.selected;
+            let color = if is_marked { visuals.text_color() } else { theme::accent(ui.visuals()) };
             let place = pos2(rect.right() - 2.0 * MARGIN, rect.center().y);
             let font = TextStyle::Small.resolve(ui.style());
             painter.text(place, Align2::RIGHT_CENTER, text::chooser::SHOWN, font, color).left()
