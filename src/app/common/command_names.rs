@@ -47,7 +47,7 @@ impl Command {
             Self::Choose(aspect) => return text::chooser::command(*aspect).into(),
             Self::StepChoice(aspect, is_forward) => return text::chooser::step(*aspect, *is_forward).into(),
             Self::TakeChoice(..) => text::commands::TAKE_CHOICE,
-            Self::OpenAgain(_) => text::menu::OPEN_RECENT,
+            Self::OpenAgain(..) => text::menu::OPEN_RECENT,
             Self::Average(block) => return text::commands::average(*block).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,

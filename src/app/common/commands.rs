@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::aspect::Aspect;
-use crate::app::memory::RecentFile;
 use crate::data::KindName;
 use crate::data::load::Choice;
 use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView};
@@ -26,7 +25,7 @@ pub(crate) enum Command {
     /// Open a file or a built-in volume.
     Open(PathBuf),
     /// Open a file that was open before, and of its volumes the one that was.
-    OpenAgain(RecentFile),
+    OpenAgain(PathBuf, Choice),
     /// Show the volumes of the open file.
     Choose(Aspect),
     /// Open the volume of the open file after the one that is shown, or the one before.

@@ -29,7 +29,7 @@ impl App {
             Command::PreviousFile => self.seek_neighbour(false, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
             Command::Open(source) => self.open(&source, ctx),
-            Command::OpenAgain(file) => self.open_again(&file, ctx),
+            Command::OpenAgain(path, choice) => self.open_again(&path, &choice, ctx),
             Command::Choose(aspect) => self.choose(aspect),
             Command::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
             Command::TakeChoice(choice, keeps_look) => self.take_choice(&choice, keeps_look, ctx),

@@ -131,7 +131,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
                 let button = ui.add(button.image_tint_follows_text_color(false));
                 button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
                 if button.on_hover_text(plain(&whole, LONGEST_PATH)).clicked() {
-                    menu.commands.push(Command::OpenAgain(recent.clone()));
+                    menu.commands.push(Command::OpenAgain(path.clone(), recent.choice.clone()));
                 }
             }
         });

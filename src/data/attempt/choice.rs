@@ -47,9 +47,6 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// How many there are.
-    pub const COUNT: usize = 4;
-
     /// The option of the command line that chooses.
     pub fn option(self) -> &'static str {
         match self {

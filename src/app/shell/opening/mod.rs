@@ -10,7 +10,6 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::memory::RecentFile;
 use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::History;
 use crate::app::shell::keep_balanced::KeepBalanced;
@@ -62,11 +61,11 @@ impl App {
     }
 
     /// Opens a file that was open before, as it was then.
-    pub(crate) fn open_again(&mut self, file: &RecentFile, ctx: &egui::Context) {
-        if file.choice.is_empty() {
-            self.open(&file.path, ctx)
+    pub(crate) fn open_again(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
+        if choice.is_empty() {
+            self.open(source, ctx);
         } else {
-            self.open_chosen(&file.path, &file.choice, ctx)
+            self.open_chosen(source, choice, ctx);
         }
     }
 
