@@ -28,26 +28,25 @@ fn choice(ui: &mut Ui, aspect: Aspect, all: &Alternatives<'_>, commands: &mut Ve
         let steps = 2.0 * (STEP_WIDTH + ui.spacing().item_spacing.x);
         // A point for what is rounded up.
         let width = ui.available_width() - steps - 1.0;
-        step(ui, aspect, false, at > 0, commands);
+        ui.add_enabled_ui(at > 0, |ui| step(ui, aspect, false, commands));
         let present = text::chooser::present(at, count, &all.name(at));
         let button = egui::Button::new(&present).truncate();
         let button = ui.add_sized([width, ui.spacing().interact_size.y], button);
         if button.on_hover_text(text::chooser::command(aspect)).clicked() {
             commands.push(Command::Choose(aspect));
         }
-        step(ui, aspect, true, at + 1 < count, commands);
+        ui.add_enabled_ui(at + 1 < count, |ui| step(ui, aspect, true, commands));
     });
 }
 
-fn step(ui: &mut Ui, aspect: Aspect, is_forward: bool, is_there: bool, commands: &mut Vec<Command>) {
+fn step(ui: &mut Ui, aspect: Aspect, is_forward: bool, commands: &mut Vec<Command>) {
     let sign = if is_forward { text::chooser::FORWARD } else { text::chooser::BACK };
     let name = text::chooser::step(aspect, is_forward);
-    ui.add_enabled_ui(is_there, |ui| {
-        let size = [STEP_WIDTH, ui.spacing().interact_size.y];
-        let button = ui.add_sized(size, egui::Button::new(sign).small());
-        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_there, &name));
-        if button.on_hover_text(&name).clicked() {
-            commands.push(Command::StepChoice(aspect, is_forward));
-        }
-    });
+    let size = [STEP_WIDTH, ui.spacing().interact_size.y];
+    let button = ui.add_sized(size, egui::Button::new(sign).small());
+    let is_there = ui.is_enabled();
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_there, &name));
+    if button.on_hover_text(&name).clicked() {
+        commands.push(Command::StepChoice(aspect, is_forward));
+    }
 }

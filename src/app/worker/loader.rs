@@ -70,12 +70,12 @@ struct Running {
 }
 
 /// How far a volume is that is being opened.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct LoadProgress<'a> {
     /// What is being opened.
     pub source: &'a Path,
     /// How it is read.
-    pub reading: Reading,
+    pub reading: &'a Reading,
     /// What is being done, in words.
     pub phase: &'static str,
     /// The share of the phase that is done, where it is known.
@@ -252,7 +252,7 @@ impl Loader {
         let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
         Some(LoadProgress {
             source: &running.source,
-            reading: running.reading.clone(),
+            reading: &running.reading,
             phase: PHASES[phase],
             fraction: fraction.map(|fraction| fraction as f32),
         })

@@ -18,10 +18,11 @@ const DATA: [&str; 8] = [".raw.gz", ".raw", ".zraw", ".img.gz", ".img", ".bin", 
 /// Endings of such headers.
 const HEADERS: [&str; 6] = [".nhdr", ".mhd", ".hdr", ".dat", ".ini", ".ivf"];
 
-/// The volume after one in natural order, or the one before it: the nearest file of the same folder that a reader knows, by
-/// its content or its ending; for a folder the nearest one beside it in which there is such a file. Data that a header
-/// describes, and slices of the series that is open already, are no volumes of their own; whether others are one is for
-/// `is_wanted` to say. Behind the last there is none.
+/// The volume after one in natural order, or the one before it; behind the last there is none.
+///
+/// It is the nearest file of the same folder that a reader knows, by its content or its ending; for a folder the nearest
+/// one beside it in which there is such a file. Data that a header describes, and slices of the series that is open
+/// already, are no volumes of their own; whether others are one is for `is_wanted` to say.
 pub fn neighbour(
     path: &Path,
     is_forward: bool,

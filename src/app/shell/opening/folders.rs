@@ -65,17 +65,14 @@ impl App {
     /// opened as what that holds, and else the first.
     pub(crate) fn open_dropped(&mut self, paths: &[PathBuf], ctx: &egui::Context) {
         let Some(first) = paths.first() else { return };
-        match slices_of(paths) {
-            Some(folder) => {
-                self.open(folder, ctx);
-                self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
-            }
-            None => {
-                self.open(first, ctx);
-                if paths.len() > 1 {
-                    self.messages.note(text::opening::first_of_dropped(paths.len(), first));
-                }
-            }
+        if let Some(folder) = slices_of(paths) {
+            self.open(folder, ctx);
+            self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
+            return;
+        }
+        self.open(first, ctx);
+        if paths.len() > 1 {
+            self.messages.note(text::opening::first_of_dropped(paths.len(), first));
         }
     }
 

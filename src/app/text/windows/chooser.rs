@@ -95,7 +95,7 @@ pub(crate) fn present(at: usize, count: usize, name: &str) -> String {
 pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: &str) -> String {
     match aspect {
         Aspect::Component => name.to_owned(),
-        _ => format!("{} {}", row(aspect).name, place(at, count)),
+        Aspect::Of(_) => format!("{} {}", row(aspect).name, place(at, count)),
     }
 }
 

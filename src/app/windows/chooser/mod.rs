@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use eframe::egui::{self, Align2, Key, Modifiers, Rect, Sense, TextStyle, Ui, Vec2, pos2, vec2};
 
-use self::previews::Previews;
+use self::previews::{Preview, Previews};
 use crate::app::common::aspect::{Alternatives, Aspect};
 use crate::app::common::commands::Command;
 use crate::app::common::shortcuts::is_typing;
@@ -160,15 +160,14 @@ impl Chooser {
         let frame = Rect::from_min_size(rect.min + Vec2::splat(MARGIN), Vec2::splat(PICTURE));
         painter.rect_filled(frame, 0.0, theme::EMPTY_CANVAS);
         match self.previews.get(&all.choice(at)) {
-            Some(Some(picture)) => {
+            Preview::Picture(picture) => {
                 let size = picture.size_vec2();
                 let fitted = Rect::from_center_size(frame.center(), size * (PICTURE / size.max_elem()));
                 let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                 painter.image(picture.id(), fitted, whole, egui::Color32::WHITE);
             }
-            // It could not be made.
-            Some(None) => {}
-            None => egui::Spinner::new().paint_at(ui, frame.shrink(PICTURE / 3.0)),
+            Preview::Never => {}
+            Preview::NotYet => egui::Spinner::new().paint_at(ui, frame.shrink(PICTURE / 3.0)),
         }
         let left = frame.right() + 2.0 * MARGIN;
         let right = if is_shown {

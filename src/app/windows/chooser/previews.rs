@@ -32,6 +32,17 @@ pub(super) struct Previews {
     making: Option<Making>,
 }
 
+/// What is known of a picture.
+#[derive(Clone, Copy)]
+pub(super) enum Preview<'a> {
+    /// It waits for others.
+    NotYet,
+    /// It could not be made.
+    Never,
+    /// It is there.
+    Picture(&'a TextureHandle),
+}
+
 /// It ends when nobody wants it any more.
 struct Making {
     choice: Choice,
@@ -58,9 +69,17 @@ impl Previews {
         self.making = None;
     }
 
-    /// The picture of a volume, if it was made; whether it is known at all.
-    pub(super) fn get(&self, choice: &Choice) -> Option<Option<&TextureHandle>> {
-        self.made.iter().find(|(known, _)| known == choice).map(|(_, picture)| picture.as_ref())
+    /// The picture of a volume, as far as it is known.
+    pub(super) fn get(&self, choice: &Choice) -> Preview<'_> {
+        match self.made.iter().find(|(known, _)| known == choice) {
+            None => Preview::NotYet,
+            Some((_, None)) => Preview::Never,
+            Some((_, Some(picture))) => Preview::Picture(picture),
+        }
+    }
+
+    fn is_known(&self, choice: &Choice) -> bool {
+        !matches!(self.get(choice), Preview::NotYet)
     }
 
     /// Takes what has been made, and makes the picture of the first volume in a list that has none.
@@ -79,7 +98,7 @@ impl Previews {
         if self.making.as_ref().is_some_and(|making| !wanted.contains(&making.choice)) {
             self.making = None;
         }
-        let Some(choice) = wanted.iter().find(|choice| self.get(choice).is_none()) else { return };
+        let Some(choice) = wanted.iter().find(|choice| !self.is_known(choice)) else { return };
         if self.making.is_some() {
             return;
         }
@@ -144,18 +163,18 @@ mod tests {
         let mut previews = Previews::default();
         previews.look_at(&file);
         let start = std::time::Instant::now();
-        while !steps.iter().all(|step| previews.get(step).is_some()) {
+        while !steps.iter().all(|step| previews.is_known(step)) {
             previews.make(&steps, &LoadOptions::default(), &ctx);
             assert!(previews.made.len() <= 4 && start.elapsed().as_secs() < 60);
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
-        assert!(previews.get(&steps[2]).unwrap().is_some());
-        assert!(previews.get(&steps[3]).unwrap().is_none(), "there is no such time step");
+        assert!(matches!(previews.get(&steps[2]), Preview::Picture(_)));
+        assert!(matches!(previews.get(&steps[3]), Preview::Never), "there is no such time step");
         previews.make(&[Choice::default()], &LoadOptions::default(), &ctx);
         let control = Arc::clone(&previews.making.as_ref().unwrap().control);
         previews.rest();
-        assert!(control.is_cancelled() && previews.get(&steps[0]).is_some(), "what there is stays");
+        assert!(control.is_cancelled() && previews.is_known(&steps[0]), "what there is stays");
         previews.look_at(std::path::Path::new("other"));
-        assert!(previews.get(&steps[0]).is_none());
+        assert!(!previews.is_known(&steps[0]));
     }
 }
