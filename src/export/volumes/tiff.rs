@@ -147,7 +147,20 @@ struct Pages<'a> {
     page_bytes: u64,
 }
 
-impl Pages<'_> {
+impl<'a> Pages<'a> {
+    fn of(volume: &'a Outgoing<'a>, is_big: bool) -> Self {
+        Self { volume, form: Form { is_big }, page_bytes: volume.bytes() / volume.dims()[2] as u64 }
+    }
+
+    /// Where the pixels of the first page begin.
+    fn pixels(&self) -> u64 {
+        let of_page = |page: usize| self.form.directory(&self.entries(page, 0), 0, false).len() as u64;
+        let others = self.volume.dims()[2] as u64 - 1;
+        // All but the first are alike.
+        let others = if others > 0 { others * of_page(1) } else { 0 };
+        (self.form.header() + of_page(0) + others).next_multiple_of(ALIGNMENT)
+    }
+
     /// The entries of a page whose pixels begin at a place.
     fn entries(&self, page: usize, pixels: u64) -> Vec<Entry> {
         let [width, height, _] = self.volume.dims();
@@ -196,19 +209,14 @@ impl Pages<'_> {
 
 /// Writes a volume.
 pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
-    let layout = |is_big: bool| {
-        let form = Form { is_big };
-        let slices = volume.dims()[2] as u64;
-        let pages = Pages { volume, form, page_bytes: volume.bytes() / slices };
-        let of_page = |page: usize| form.directory(&pages.entries(page, 0), 0, false).len() as u64;
-        let others = if slices > 1 { (slices - 1) * of_page(1) } else { 0 };
-        let pixels = (form.header() + of_page(0) + others).next_multiple_of(ALIGNMENT);
-        (pages, pixels)
-    };
-    let (pages, pixels) = layout(false);
-    let is_small = pixels + volume.bytes() <= u64::from(u32::MAX);
-    let (pages, pixels) = if is_small { (pages, pixels) } else { layout(true) };
-    let form = pages.form;
+    let pages = Pages::of(volume, false);
+    let is_big = pages.pixels() + volume.bytes() > u64::from(u32::MAX);
+    write_pages(out, &if is_big { Pages::of(volume, true) } else { pages })
+}
+
+/// Writes a volume in a form.
+fn write_pages(out: &mut dyn Write, pages: &Pages<'_>) -> Result<()> {
+    let Pages { volume, form, page_bytes } = *pages;
     if form.is_big {
         // 43, then eight bytes for each place.
         out.write_all(b"II\x2b\0\x08\0\0\0")?;
@@ -216,10 +224,10 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
         out.write_all(b"II\x2a\0")?;
     }
     out.write_all(&form.place(form.header()))?;
-    let mut at = form.header();
+    let (mut at, pixels) = (form.header(), pages.pixels());
     let slices = volume.dims()[2];
     for page in 0..slices {
-        let entries = pages.entries(page, pixels + page as u64 * pages.page_bytes);
+        let entries = pages.entries(page, pixels + page as u64 * page_bytes);
         let directory = form.directory(&entries, at, page + 1 == slices);
         out.write_all(&directory)?;
         at += directory.len() as u64;
@@ -264,6 +272,28 @@ fn description(volume: &Outgoing<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::load::{LoadControl, LoadOptions, load};
+    use crate::data::{Samples, Volume};
+
+    #[test]
+    fn large_files_are_read_as_small_ones_are() {
+        let values = Samples::I16((0..60).map(|at| at * 500 - 9000).collect());
+        let spacing = glam::DVec3::new(0.5, 1.5, 2.0);
+        let volume =
+            Volume::with_spacing("t", [5, 4, 3], spacing, values).unwrap().with_padding(-9000.0).unwrap();
+        let outgoing = Outgoing::of(&volume);
+        let folder = tempfile::tempdir().unwrap();
+        for is_big in [false, true] {
+            let mut bytes = Vec::new();
+            write_pages(&mut bytes, &Pages::of(&outgoing, is_big)).unwrap();
+            assert_eq!(bytes[2], if is_big { 43 } else { 42 });
+            let path = folder.path().join("t.tif");
+            std::fs::write(&path, bytes).unwrap();
+            let found = load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap();
+            assert_eq!((found.samples(), found.dims()), (volume.samples(), volume.dims()));
+            assert_eq!((found.spacing_mm(), found.padding_value()), (spacing, Some(-9000.0)));
+        }
+    }
 
     #[test]
     fn fractions_are_as_near_as_they_can_be() {
