@@ -164,7 +164,7 @@ impl ConvertArgs {
         };
         let volume = match &self.region {
             None => whole,
-            Some(region) => whole.cropped(region.of(dims)).map_err(refused)?,
+            Some(region) => whole.cropped(&region.of(dims)).map_err(refused)?,
         };
         volume.reduced([block; 3]).map_err(|err| self.usage(&err))
     }

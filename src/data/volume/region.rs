@@ -14,7 +14,7 @@ impl Volume {
     ///
     /// # Errors
     /// When the box is empty or reaches beyond the grid, or none of its voxels is finite.
-    pub fn cropped(self, region: [Range<usize>; 3]) -> Result<Self, VolumeError> {
+    pub fn cropped(self, region: &[Range<usize>; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         if region.iter().zip(dims).any(|(range, count)| range.is_empty() || range.end > count) {
             return Err(VolumeError::Outside { dims });
@@ -25,7 +25,7 @@ impl Volume {
         let mut whole = self;
         let shared = std::mem::replace(&mut whole.samples, Arc::new(Samples::U8(Vec::new())));
         let mut samples = Arc::unwrap_or_clone(shared);
-        keep_box(&mut samples, dims, &region);
+        keep_box(&mut samples, dims, region);
         let cropped = Self::new(whole.name(), found, world_from_index, samples)?;
         // A box of padding alone is shown as it is.
         let cropped = match whole.padding_value() {
@@ -65,18 +65,18 @@ mod tests {
         hints.set_unit("HU");
         let volume = Volume::with_spacing("t", [4, 3, 2], DVec3::new(1.0, 2.0, 3.0), Samples::I16(values));
         let volume = volume.unwrap().with_hints(hints).with_padding(7.0).unwrap();
-        let part = volume.clone().cropped([1..4, 1..3, 1..2]).unwrap();
+        let part = volume.clone().cropped(&[1..4, 1..3, 1..2]).unwrap();
         assert_eq!((part.dims(), part.file_dims()), ([3, 2, 1], [3, 2, 1]));
         assert_eq!(part.samples(), &Samples::I16(vec![17, 18, 19, 21, 22, 23]));
         let place = |volume: &Volume, index| volume.world_from_index().transform_point3(index);
         assert_eq!(place(&part, DVec3::ZERO), place(&volume, DVec3::ONE));
         assert_eq!((part.hints().unit(), part.padding_value()), (Some("HU"), Some(7.0)));
-        let all = volume.clone().cropped([0..4, 0..3, 0..2]).unwrap();
+        let all = volume.clone().cropped(&[0..4, 0..3, 0..2]).unwrap();
         assert_eq!(all.content_id(), volume.content_id());
-        let padding = volume.clone().cropped([3..4, 1..2, 0..1]).unwrap();
+        let padding = volume.clone().cropped(&[3..4, 1..2, 0..1]).unwrap();
         assert_eq!(padding.value_range(), ValueRange::new(7.0, 7.0), "of padding alone");
         for region in [[0..0, 0..3, 0..2], [0..5, 0..3, 0..2], [0..4, 0..3, 2..3]] {
-            assert!(matches!(volume.clone().cropped(region), Err(VolumeError::Outside { .. })));
+            assert!(matches!(volume.clone().cropped(&region), Err(VolumeError::Outside { .. })));
         }
     }
 }

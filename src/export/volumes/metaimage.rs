@@ -58,7 +58,7 @@ fn header(volume: &Outgoing<'_>, compressed: Option<u64>) -> String {
     let mut text = String::new();
     let mut add = |field: &str, value: &str| {
         if !value.is_empty() {
-            text.push_str(&format!("{field} = {}\n", single_line(value, LONGEST_VALUE)));
+            text.extend([field, " = ", &single_line(value, LONGEST_VALUE), "\n"]);
         }
     };
     add("ObjectType", "Image");
@@ -85,7 +85,7 @@ fn header(volume: &Outgoing<'_>, compressed: Option<u64>) -> String {
     if !volume.has_no_place() {
         add_place(&mut add, volume);
     }
-    add("DimSize", &words(volume.dims().map(|n| n.to_string())));
+    add("DimSize", &words(&volume.dims().map(|n| n.to_string())));
     add("ElementType", element_type(volume.voxel_type()));
     add("ElementDataFile", "LOCAL");
     text
@@ -96,18 +96,18 @@ fn add_place(add: &mut impl FnMut(&str, &str), volume: &Outgoing<'_>) {
     let lps_from_ras = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0)));
     let DAffine3 { matrix3, translation } = lps_from_ras * volume.world_from_index();
     let directions = [matrix3.x_axis, matrix3.y_axis, matrix3.z_axis]
-        .map(|axis| words((axis / axis.length()).to_array().map(plus_zero)));
+        .map(|axis| words(&(axis / axis.length()).to_array().map(plus_zero)));
     add("TransformMatrix", &directions.join(" "));
-    add("Offset", &words(translation.to_array().map(plus_zero)));
+    add("Offset", &words(&translation.to_array().map(plus_zero)));
     add("CenterOfRotation", "0 0 0");
     if !volume.is_anatomical() {
         add("AnatomicalOrientation", "???");
     }
-    add("ElementSpacing", &words(volume.spacing_mm().map(|length| length.to_string())));
+    add("ElementSpacing", &words(&volume.spacing_mm().map(|length| length.to_string())));
     add("DistanceUnits", if volume.has_unknown_scale() { "?" } else { "mm" });
 }
 
-fn words(all: [String; 3]) -> String {
+fn words(all: &[String; 3]) -> String {
     all.join(" ")
 }
 

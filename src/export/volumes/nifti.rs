@@ -1,4 +1,4 @@
-//! NIfTI: a binary header, an extension that says who made the file, and the voxels, as they are or in gzip.
+//! `NIfTI`: a binary header, an extension that says who made the file, and the voxels, as they are or in gzip.
 //!
 //! After `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>): NIfTI-1, or NIfTI-2 where an axis has more voxels than
 //! 16 bits count. World space is right-anterior-superior millimetres; where no body is known, distances alone are said.
@@ -34,6 +34,10 @@ const SCANNER: u8 = 1;
 
 /// Numbers of labels (`NIFTI_INTENT_LABEL`).
 const LABELS: i16 = 1002;
+
+/// Cosine of axes up to which a turn is written beside the matrix, for programs that know nothing else: what is a
+/// thousandth askew is half a voxel off after five hundred.
+const MOST_ASKEW: f64 = 1e-3;
 
 /// Bytes of a description, the last of them zero.
 const DESCRIPTION: usize = 79;
@@ -82,7 +86,7 @@ struct Facts {
     bits: i16,
     /// Whether the volume lies in a body.
     is_placed: bool,
-    /// Whether its axes are square to each other, so that a turn says where it lies, too.
+    /// Whether its axes are as good as square to each other, so that a turn says where it lies, too.
     is_square: bool,
     /// -1 where the grid is mirrored.
     mirror: f64,
@@ -102,10 +106,10 @@ impl Facts {
         let axes = world.matrix3;
         let directions = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::normalize);
         let [x, y, z] = directions;
-        let mirror = if x.cross(y).dot(z) < 0.0 { -1.0 } else { 1.0 };
-        // 32-bit numbers keep a millionth.
-        let is_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cosine| cosine.abs() < 1e-6);
-        let turn = DQuat::from_mat3(&DMat3::from_cols(x, y, z * mirror));
+        let across = x.cross(y).normalize();
+        let mirror = if across.dot(z) < 0.0 { -1.0 } else { 1.0 };
+        let is_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cosine| cosine.abs() < MOST_ASKEW);
+        let turn = DQuat::from_mat3(&DMat3::from_cols(x, across.cross(x), across));
         let turn = if turn.w < 0.0 { -turn } else { turn };
         let is_placed = volume.is_anatomical();
         let of_unknown_size = volume.has_unknown_scale();

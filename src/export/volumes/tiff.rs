@@ -251,7 +251,7 @@ fn description(volume: &Outgoing<'_>) -> String {
     let slices = volume.dims()[2];
     // As the programs say that write its files.
     let mut text = format!("ImageJ=1.54f\nimages={slices}\nslices={slices}\n");
-    let mut add = |name: &str, value: &str| text.push_str(&format!("{name}={}\n", single_line(value, 200)));
+    let mut add = |name: &str, value: &str| text.extend([name, "=", &single_line(value, 200), "\n"]);
     if !volume.has_unknown_scale() {
         add("unit", if is_small(volume) { "micron" } else { "mm" });
     }

@@ -1,4 +1,4 @@
-//! The mark in volumes: a comment of NRRD, of NIfTI and of VTK's XML, a field of `MetaImage`, a text of TIFF. `NumPy`'s
+//! The mark in volumes: a comment of NRRD, of `NIfTI` and of VTK's XML, a field of `MetaImage`, a text of TIFF. `NumPy`'s
 //! arrays have no place for one.
 
 use std::fs::File;
@@ -18,7 +18,7 @@ const AROUND_COMMENT: [&[u8]; 2] = [b"<?xml version=\"1.0\"?>\n<!-- ", b" -->\n"
 const NIFTI_1: usize = 348;
 const NIFTI_2: usize = 540;
 
-/// Bytes between a header of NIfTI and its first extension; the first of them says that there is one.
+/// Bytes between a header of `NIfTI` and its first extension; the first of them says that there is one.
 const EXTENDER: usize = 4;
 
 /// Bytes of an extension before its text: its length, and its kind.
@@ -43,11 +43,16 @@ pub(super) fn nrrd(file: BufReader<File>) -> Result<bool> {
 
 /// A field of the first ones.
 pub(super) fn metaimage(file: BufReader<File>) -> Result<bool> {
-    let lines = file.take(2 * LONGEST_MARK).split(b'\n');
-    let mut lines = lines.take_while(|line| line.as_ref().is_ok_and(|line| line.contains(&b'=')));
-    Ok(lines.any(|line| {
-        line.is_ok_and(|line| line.strip_prefix(FIELD).is_some_and(|text| is_mark(text.trim_ascii_end())))
-    }))
+    for line in file.take(2 * LONGEST_MARK).split(b'\n') {
+        let line = line?;
+        if let Some(text) = line.strip_prefix(FIELD) {
+            return Ok(is_mark(text.trim_ascii_end()));
+        }
+        if !line.contains(&b'=') {
+            break;
+        }
+    }
+    Ok(false)
 }
 
 /// The comment behind the declaration.
