@@ -33,8 +33,8 @@ pub(super) struct LoadArgs {
     #[arg(long, value_name = "WxHxD", global = false)]
     dims: Option<String>,
     /// RAW input: uint8, int8, uint16, int16, uint32, int32, float32 or float64
-    #[arg(long = "type", value_name = "T")]
-    voxel_type: Option<String>,
+    #[arg(long = "type", value_name = "T", value_parser = parse_voxel_type)]
+    voxel_type: Option<VoxelType>,
     /// RAW input: distance between voxels in millimetres
     #[arg(long, value_name = "SXxSYxSZ")]
     spacing: Option<String>,
@@ -87,18 +87,11 @@ impl LoadArgs {
                 Some(triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?)
             }
         };
-        let voxel_type = match &self.voxel_type {
-            None => None,
-            Some(text) => {
-                let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
-                Some(known.ok_or_else(|| usage("type", text, "uint8, int8, … float64"))?)
-            }
-        };
         let endian = self.endian.map(|endian| match endian {
             EndianArg::Little => Endian::Little,
             EndianArg::Big => Endian::Big,
         });
-        let raw = RawFormat { dims, voxel_type, spacing_mm, endian, offset: self.offset };
+        let raw = RawFormat { dims, voxel_type: self.voxel_type, spacing_mm, endian, offset: self.offset };
         let choice = Choice {
             component: self.component,
             frame: self.frame,
@@ -132,6 +125,12 @@ fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result
         ));
     }
     Ok(volume)
+}
+
+/// `uint8`
+pub(super) fn parse_voxel_type(text: &str) -> Result<VoxelType, String> {
+    let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
+    known.ok_or_else(|| format!("expected one of {}", VoxelType::ALL.map(VoxelType::name).join(", ")))
 }
 
 /// `1x2x3`.

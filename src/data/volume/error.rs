@@ -10,6 +10,8 @@ pub enum VolumeError {
     WrongCount { dims: [usize; 3], found: usize },
     #[error("the spacing or orientation is unusable ({what}): it must be finite and not flat")]
     BadGeometry { what: String },
+    #[error("the region is empty, or reaches beyond the {dims:?} voxels")]
+    Outside { dims: [usize; 3] },
     #[error("no voxel has a finite value")]
     NothingFinite,
     #[error(

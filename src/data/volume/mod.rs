@@ -5,6 +5,7 @@ mod kind;
 mod label_set;
 mod missing;
 mod reduce;
+mod region;
 mod shown;
 
 pub use error::VolumeError;

@@ -20,7 +20,7 @@ fn end(last_acts: &[fn()], signal: i32) -> ! {
 }
 
 /// Listens, from now on, on a thread of its own. Before the process ends, some things are done.
-pub(super) fn listen(last_acts: &'static [fn()]) {
+pub(in crate::cli) fn listen(last_acts: &'static [fn()]) {
     if let Err(err) = start(last_acts) {
         log::warn!("files that are being written will stay when this is interrupted: {err}");
     }
