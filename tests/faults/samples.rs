@@ -100,7 +100,12 @@ const KEPT: [(&str, &[u8]); 36] = kept![
     "list.mhd",
 ];
 
-fn gzip(bytes: &[u8]) -> Vec<u8> {
+/// The files of other programs, by their names.
+pub(crate) fn kept() -> Vec<(&'static str, Vec<u8>)> {
+    KEPT.map(|(name, bytes)| (name, bytes.to_vec())).to_vec()
+}
+
+pub(crate) fn gzip(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     encoder.write_all(bytes).expect("it is in memory");
     encoder.finish().expect("it is in memory")
@@ -122,8 +127,8 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     add("zipped.nrrd", [nrrd("gzip").into_bytes(), zipped.clone()].concat(), volume);
     add("bare_6x5x4_uint8.raw", voxels.clone(), volume);
     add("bare_6x5x4_uint8.raw.gz", zipped, volume);
-    for (name, bytes) in KEPT {
-        add(name, bytes.to_vec(), volume);
+    for (name, bytes) in kept() {
+        add(name, bytes, volume);
     }
     // What headers and descriptions are of.
     std::fs::write(folder.join("described.raw"), [7; 24]).expect("room");
