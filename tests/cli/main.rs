@@ -6,6 +6,7 @@
 mod animation;
 mod bench;
 mod checks;
+mod corrections;
 mod info;
 mod inputs;
 mod light_volume;

@@ -25,6 +25,8 @@ pub(crate) struct VolumeFacts {
     pub file_dims: [usize; 3],
     /// The type of the voxels, such as `uint8`.
     pub voxel_type: &'static str,
+    /// The volume, which knows what its file says.
+    pub of: Arc<Volume>,
     /// Millimetres between voxel centres along x, y, z.
     pub spacing_mm: [f64; 3],
     /// They are no millimetres: nobody knows how large voxels are.
@@ -108,6 +110,7 @@ impl VolumeFacts {
             dims: volume.dims(),
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
+            of: Arc::clone(volume),
             spacing_mm: volume.spacing_mm().into(),
             has_unknown_scale: volume.has_unknown_scale(),
             ranges: volume.ranges(),

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
 use super::controls::{choice, row, short};
-use super::{Panels, range};
+use super::{Panels, corrections, range};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{KindName, ValueRange, plain};
@@ -24,6 +24,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     range::show(ui, panels.settings, volume);
     averaging(ui, volume, panels.commands);
     opacity_unit(ui, panels.settings, panels.defaults, volume);
+    corrections::show(ui, panels.settings, volume);
 }
 
 fn facts(ui: &mut Ui, volume: &VolumeFacts) {
