@@ -1,6 +1,5 @@
 //! The real window, driven without a display: pointer, keys and widgets by their names.
 
-mod corrections;
 mod cuts;
 mod editor;
 mod files;

@@ -6,8 +6,7 @@
 mod animation;
 mod bench;
 mod checks;
-mod corrections;
-mod info;
+mod data;
 mod inputs;
 mod light_volume;
 mod limits;

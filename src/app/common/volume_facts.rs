@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::app::text::common::LengthUnit;
 use crate::app::worker::loader::Reading;
 use crate::data::{
     CountedLabel, DataKind, Dataset, Histogram, Shown, ValueRange, ValueRanges, Volume, VoxelType,
@@ -125,6 +126,11 @@ impl VolumeFacts {
             labels: LabelRow::all_of(volume),
             histogram: Arc::clone(dataset.histogram()),
         }
+    }
+
+    /// The unit that suits lengths in the scene.
+    pub(crate) fn length_unit(&self) -> LengthUnit {
+        LengthUnit::showing(self.scene.mm_per_unit, self.has_unknown_scale)
     }
 
     /// Whether pictures with these settings show labels, which have looks by their numbers.

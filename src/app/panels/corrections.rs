@@ -4,6 +4,7 @@ use eframe::egui::{self, DragValue, Ui};
 
 use super::super::text::{self, Named};
 use super::controls::{reset, row, short, unlabelled};
+use super::data;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{
     AxisOrder, Corrections, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale, Volume,
@@ -76,7 +77,7 @@ fn file_row(
 
 fn spacing(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     let in_file: [f64; 3] = opened.file_spacing_mm().into();
-    let said = text::data::spacing(&in_file.map(short), opened.has_unknown_scale());
+    let said = data::spacing(in_file, opened.has_unknown_scale());
     let mut lengths = by.spacing.unwrap_or(in_file);
     let is_reset = file_row(ui, text::corrections::SPACING, &said, by.spacing.is_some(), |ui, tip| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -115,7 +116,8 @@ fn list<T: PartialEq + Copy>(ui: &mut Ui, named: Named, tip: &str, chosen: &mut 
 }
 
 fn unit(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
-    let said = text::data::unit_of_spacing(opened.has_unknown_scale());
+    let in_file = opened.file_spacing_mm().into();
+    let said = text::data::unit_of_spacing(in_file, opened.has_unknown_scale()).symbol();
     let units = SpacingUnit::ALL.map(|unit| (Some(unit), text::corrections::unit(unit).to_owned()));
     let options: Vec<_> =
         std::iter::once((None, text::corrections::IN_FILE.to_owned())).chain(units).collect();

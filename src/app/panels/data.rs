@@ -35,7 +35,7 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
         (text::data::DIMENSIONS, text::data::dimensions(volume.dims)),
         (text::data::VOXEL_TYPE, volume.voxel_type.to_owned()),
         (text::data::KIND, text::data::kind(volume.kind)),
-        (text::data::SPACING, text::data::spacing(&volume.spacing_mm.map(short), volume.has_unknown_scale)),
+        (text::data::SPACING, spacing(volume.spacing_mm, volume.has_unknown_scale)),
         (text::data::VALUES, text::data::values(&short(low), &short(high))),
         (text::data::MEMORY, text::data::memory(volume.bytes as f64 / f64::from(1 << 20))),
     ];
@@ -48,6 +48,12 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     for (name, fact) in rows {
         row(ui, Named { name, tip: "" }, |ui| ui.add(egui::Label::new(fact).truncate()));
     }
+}
+
+/// Distances between voxels, in the unit that suits them.
+pub(super) fn spacing(spacing_mm: [f64; 3], is_unknown: bool) -> String {
+    let unit = text::data::unit_of_spacing(spacing_mm, is_unknown);
+    text::data::spacing(&spacing_mm.map(|length| short(length / unit.mm)), unit)
 }
 
 /// The first look, for another kind of data.

@@ -257,7 +257,7 @@ impl LookArgs {
     fn corrected(&self, source: &Path, volume: Volume) -> Result<Volume, CliError> {
         let opened_id = volume.opened_id();
         let overlays = self.overlays()?;
-        let of_session = overlays.iter().filter_map(|overlay| overlay.corrections_of(opened_id)).last();
+        let of_session = overlays.iter().rev().find_map(|overlay| overlay.corrections_of(opened_id));
         let by = corrections::laid_over(of_session.unwrap_or_default(), &self.set)?;
         corrected(source, volume, &by)
     }

@@ -8,11 +8,7 @@ use crate::data::{Hints, Samples, ValueRange, VolumeError};
 macro_rules! narrowest {
     ($($variant:ident: $type:ty),+) => {
         /// The values in the narrowest type of whole numbers that holds them all; `None` where none does.
-        #[expect(
-            trivial_numeric_casts,
-            clippy::unnecessary_cast,
-            reason = "one of the types is what is asked for already"
-        )]
+        #[expect(trivial_numeric_casts, reason = "one of the eight types is f64 already")]
         fn whole(samples: &Samples, scale: ValueScale, range: ValueRange) -> Result<Option<Samples>, VolumeError> {
             $(
                 if range.low >= f64::from(<$type>::MIN) && range.high <= f64::from(<$type>::MAX) {

@@ -43,7 +43,7 @@ fn unfold(harness: &mut Harness<'_, App>) {
         click(harness, part);
         harness.run_steps(8);
     }
-    harness.get_by_label("Padding").scroll_to_me();
+    harness.get_by_label("All as in the file").scroll_to_me();
     harness.run_steps(8);
 }
 
