@@ -3,8 +3,7 @@
 use eframe::egui::{self, DragValue, Ui};
 
 use super::super::text::{self, Named};
-use super::controls::{reset, row, short, unlabelled};
-use super::data;
+use super::controls::{reset, row, short, spacing as spacing_in_words, unlabelled};
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{
     AxisOrder, Corrections, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale, Volume,
@@ -77,7 +76,7 @@ fn file_row(
 
 fn spacing(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     let in_file: [f64; 3] = opened.file_spacing_mm().into();
-    let said = data::spacing(in_file, opened.has_unknown_scale());
+    let said = spacing_in_words(in_file, opened.has_unknown_scale());
     let mut lengths = by.spacing.unwrap_or(in_file);
     let is_reset = file_row(ui, text::corrections::SPACING, &said, by.spacing.is_some(), |ui, tip| {
         ui.spacing_mut().item_spacing.x = 3.0;

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::controls::{choice, row, short};
+use super::controls::{choice, row, short, spacing};
 use super::{Panels, corrections, range};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
@@ -48,12 +48,6 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     for (name, fact) in rows {
         row(ui, Named { name, tip: "" }, |ui| ui.add(egui::Label::new(fact).truncate()));
     }
-}
-
-/// Distances between voxels, in the unit that suits them.
-pub(super) fn spacing(spacing_mm: [f64; 3], is_unknown: bool) -> String {
-    let unit = text::data::unit_of_spacing(spacing_mm, is_unknown);
-    text::data::spacing(&spacing_mm.map(|length| short(length / unit.mm)), unit)
 }
 
 /// The first look, for another kind of data.

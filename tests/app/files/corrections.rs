@@ -52,6 +52,8 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let file = folder.path().join("slab_24x24x24_uint8.raw");
     write_slab(&file);
+    // Not for the first time, which says how to begin over the picture.
+    std::fs::create_dir(storage.path().join("runs")).expect("a folder");
     let mut harness = start(&file, storage.path(), None);
     let as_opened = settings(&harness);
     assert!(as_opened.volume.is_none());
