@@ -20,7 +20,7 @@ pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
     harness.remove_cursor();
     // Pictures of a window that high are larger than egui assumes to be safe.
     harness.input_mut().max_texture_side = Some(8192);
-    harness.set_size(Vec2::new(width, 3260.0));
+    harness.set_size(Vec2::new(width, 3060.0));
     harness.run_steps(3);
     for section in ["Shading", "Cut", "Floor", "Camera", "Compare", "Data"] {
         click(&mut harness, section);
