@@ -7,7 +7,7 @@ mod animation;
 mod bench;
 mod checks;
 mod convert;
-mod info;
+mod data;
 mod inputs;
 mod light_volume;
 mod limits;

@@ -6,18 +6,19 @@ use std::sync::Arc;
 use eframe::egui;
 
 use super::first_lights::FirstLights;
-use super::history::History;
+use super::history::{History, Step};
 use super::keep_balanced::KeepBalanced;
+use super::object::corrected::Corrected;
+use super::object::treat_as::Treated;
+use super::object::upright::Upright;
 use super::session::Session;
-use super::treat_as::Treated;
-use super::upright::Upright;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::windows::files::{self, Purpose};
 use crate::app::windows::foreign_path::Answer;
 use crate::app::windows::raw_dialog::Described;
-use crate::app::worker::loader::{Opened, Reading};
+use crate::app::worker::loader::{Known, Opened, Reading};
 use crate::app::{App, text};
-use crate::data::ValueRanges;
+use crate::data::{Corrections, ValueRanges, Volume};
 use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, VolumeRecord, made_by};
 
 /// What is opened when nothing is named.
@@ -112,8 +113,8 @@ impl App {
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
-        let up = self.memory.up_of(source);
-        let started = self.loader.open(source, reading, up, ctx);
+        let known = Known { up: self.memory.up_of(source), corrected: self.memory.corrections_of(source) };
+        let started = self.loader.open(source, reading, known, ctx);
         if let Err(err) = &started {
             self.messages.error(text::opening::NOT_OPENED, err.clone());
         }
@@ -136,7 +137,7 @@ impl App {
                 VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
                 VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
             },
-            Some(_) => drop(self.apply_record(&record, &self.value_ranges())),
+            Some(_) => drop(self.apply_record(&record, &self.value_ranges(), self.opened_id())),
             None => self.use_look(record, ctx),
         }
     }
@@ -164,7 +165,7 @@ impl App {
         } else if self.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
         } else {
-            self.apply_record(&record, &self.value_ranges());
+            self.apply_record(&record, &self.value_ranges(), self.opened_id());
         }
     }
 
@@ -205,7 +206,7 @@ impl App {
                 if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
                     self.messages.note(text::opening::OF_ANOTHER_VOLUME);
                 }
-                self.apply_record(&record, &self.value_ranges());
+                self.apply_record(&record, &self.value_ranges(), self.opened_id());
             }
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         }
@@ -225,11 +226,16 @@ impl App {
         Ok(settings)
     }
 
-    /// Lays a record over the settings; whether that could be done.
-    fn apply_record(&mut self, record: &Record, ranges: &ValueRanges) -> bool {
+    /// Lays a record over the settings; whether that could be done. It corrects the volume, if that is the one that it is
+    /// of.
+    fn apply_record(&mut self, record: &Record, ranges: &ValueRanges, opened_id: Option<u64>) -> bool {
         match self.with_record(record, ranges) {
             Ok(settings) => {
                 self.settings = settings;
+                if let Some(by) = opened_id.and_then(|open| record.corrections_of(open)) {
+                    self.settings.volume = by;
+                    self.corrected.accept(by);
+                }
                 if record.names_balance() {
                     self.keep_balanced.accept(&self.settings);
                 }
@@ -242,10 +248,25 @@ impl App {
         }
     }
 
+    /// What can be undone of a volume that has just been opened: that it was corrected as the last time.
+    fn history_of(&self, volume: &Volume) -> History {
+        let by = self.settings.volume;
+        if by.is_none() || by != *volume.corrections() {
+            return History::default();
+        }
+        let mut settings = self.settings.clone();
+        settings.correct(Corrections::default(), volume);
+        History::after(&Step { settings, treated_as: None })
+    }
+
+    /// Identifies the file that is open.
+    fn opened_id(&self) -> Option<u64> {
+        self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
+    }
+
     /// The open volume, for records.
     pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
-        let dataset = self.viewport.dataset()?;
-        Some((&self.volume.as_ref()?.source, dataset.volume().content_id()))
+        Some((&self.volume.as_ref()?.source, self.opened_id()?))
     }
 
     /// Where Ctrl+S writes, if it may; else why not is said.
@@ -257,8 +278,7 @@ impl App {
     }
 
     pub(crate) fn save_settings(&mut self, path: &Path) {
-        let volume = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
-        let volume = self.volume.as_ref().map(|volume| volume.source.as_path()).zip(volume);
+        let volume = self.volume.as_ref().map(|volume| volume.source.as_path()).zip(self.opened_id());
         match Session::save(&mut self.session, path, &self.settings, volume) {
             Ok(()) => self.messages.note(text::opening::saved(path)),
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
@@ -274,9 +294,8 @@ impl App {
 
     /// Keeps the look as it is now, so that nothing is lost however this run ends; and says what could not be kept.
     pub(crate) fn keep_look(&mut self) {
-        let open = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
-        if let Some((volume, content_id)) = self.volume.as_ref().zip(open) {
-            self.memory.keep(&self.settings, &volume.source, content_id);
+        if let Some((volume, opened_id)) = self.volume.as_ref().zip(self.opened_id()) {
+            self.memory.keep(&self.settings, &volume.source, opened_id);
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.show(picture);
             }
@@ -290,7 +309,7 @@ impl App {
 
     /// A volume is ready: it replaces the one before.
     pub(crate) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
-        let Opened { source, reading, dataset, too_many, renderer, settings } = opened;
+        let Opened { source, reading, dataset, too_many, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
         if let Some(before) = too_many {
@@ -299,13 +318,16 @@ impl App {
         for remark in volume.remarks() {
             self.messages.note(remark.clone());
         }
+        if !volume.corrections().is_none() {
+            self.messages.note(text::corrections::as_last_time(&volume.corrections().in_words()));
+        }
         self.defaults = settings.clone();
         let is_kept = self.keeps_look && self.volume.is_some();
         if is_kept {
             // As it was, but for where the object is: that is another one, and may stand another way up.
             let mut before = std::mem::take(&mut self.settings);
             before.turn_object(ObjectTurn::Upright(settings.camera.up));
-            let mut kept = Settings { camera: settings.camera.clone(), ..before };
+            let mut kept = Settings { camera: settings.camera.clone(), volume: settings.volume, ..before };
             kept.floor.height = settings.floor.height;
             self.settings = kept;
         } else {
@@ -316,7 +338,7 @@ impl App {
         let has_session =
             self.session_is_due && self.session.as_ref().is_some_and(|session| session.path().exists());
         let is_named = is_kept || has_session || self.pending.is_some() || self.adjust.is_some();
-        let ranges = volume.ranges();
+        let (ranges, opened_id) = (volume.ranges(), Some(volume.opened_id()));
         // Session and command line speak of the first volume.
         if std::mem::take(&mut self.session_is_due)
             && let Some(mut session) = self.session.take_if(|session| session.path().exists())
@@ -324,7 +346,7 @@ impl App {
             let found = files::load_record(session.path());
             session.found(found.as_ref());
             match found {
-                Ok(record) if !self.apply_record(&record, &ranges) => session.not_understood(),
+                Ok(record) if !self.apply_record(&record, &ranges, opened_id) => session.not_understood(),
                 Ok(_) => {}
                 Err(err) => self.messages.error(text::opening::SESSION_NOT_LOADED, err),
             }
@@ -338,10 +360,10 @@ impl App {
                 self.keep_balanced.accept(&self.settings);
             }
             Some(PendingLook::Record(record)) => {
-                if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
+                if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.opened_id())) {
                     self.messages.note(text::opening::OF_OTHER_VALUES);
                 }
-                self.apply_record(&record, &ranges);
+                self.apply_record(&record, &ranges, opened_id);
             }
         }
         if let Some(adjust) = self.adjust.take() {
@@ -356,7 +378,8 @@ impl App {
         // With its own look, as it stands there.
         (self.treated, self.upright) = (Treated::default(), Upright::default());
         self.viewport.set_scene(renderer, dataset);
-        self.history = History::default();
+        self.history = self.history_of(&volume);
+        self.corrected = Corrected::new(stamp, self.settings.volume);
         self.selected_light = 0;
         let title = text::opening::title(self.volume_name().unwrap_or_default());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));

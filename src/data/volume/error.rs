@@ -18,4 +18,6 @@ pub enum VolumeError {
         "the values reach {range}, further than 64-bit numbers can count: they must span less than 1.8e308"
     )]
     TooWide { range: String },
+    #[error("the memory for other values is not there ({bytes} bytes): close other programs")]
+    NoMemory { bytes: u64 },
 }

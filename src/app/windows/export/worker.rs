@@ -138,7 +138,7 @@ impl Worker {
         shot: &ImageSpec,
         folder: Option<&Path>,
     ) -> String {
-        let volume = VolumeRecord::new(&subject.source, subject.dataset.volume().content_id(), folder);
+        let volume = VolumeRecord::new(&subject.source, subject.dataset.volume().opened_id(), folder);
         let how = PictureRecord::new(*shot, self.adapter.clone());
         Record::text(settings, Some(&volume), Some(&how))
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::first_lights::FirstLights;
+use crate::app::shell::first_lights::FirstLights;
 use crate::app::worker::task::Work;
 use crate::app::{App, text};
 use crate::data::KindName;
@@ -57,7 +57,7 @@ impl Treated {
 
 impl App {
     /// Makes the first look anew, for data of a kind; for the volume's own if none is named.
-    pub(super) fn treat_as(&mut self, kind: Option<KindName>, ctx: &egui::Context) {
+    pub(in crate::app::shell) fn treat_as(&mut self, kind: Option<KindName>, ctx: &egui::Context) {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
         let (histogram, up) = (Arc::clone(&facts.histogram), self.settings.camera.up);
         let task =
@@ -66,7 +66,7 @@ impl App {
     }
 
     /// Makes the automatic transfer function, or table of labels, for the kind of data that is shown.
-    pub(super) fn use_automatic_transfer(&mut self, ctx: &egui::Context) {
+    pub(in crate::app::shell) fn use_automatic_transfer(&mut self, ctx: &egui::Context) {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
         let (histogram, kind) = (Arc::clone(&facts.histogram), self.treated.kind);
         let task = move || {
@@ -85,7 +85,7 @@ impl App {
     }
 
     /// Takes in what has been made.
-    pub(super) fn take_treated(&mut self, ctx: &egui::Context) {
+    pub(in crate::app::shell) fn take_treated(&mut self, ctx: &egui::Context) {
         let Some(made) = self.treated.making.as_ref().and_then(Work::take) else { return };
         self.treated.making = None;
         match made {

@@ -45,7 +45,7 @@ impl Upright {
 }
 
 /// Whether two cameras frame the same, but for what rounding leaves where a view was framed again.
-fn is_framed_alike(a: &Camera, b: &Camera) -> bool {
+pub(super) fn is_framed_alike(a: &Camera, b: &Camera) -> bool {
     let apart = glam::DVec3::from(a.target).distance(b.target.into()) + (a.distance - b.distance).abs();
     apart < 1e-6
 }
@@ -53,7 +53,7 @@ fn is_framed_alike(a: &Camera, b: &Camera) -> bool {
 impl App {
     /// Turns the object over or stands it up otherwise, on the floor again and as much in the picture as it was. The
     /// data stay where they are: camera and lights turn.
-    pub(super) fn turn_object(&mut self, turn: ObjectTurn, ctx: &egui::Context) {
+    pub(in crate::app::shell) fn turn_object(&mut self, turn: ObjectTurn, ctx: &egui::Context) {
         if self.upright.is_busy() {
             return self.upright.waiting.push_back(Command::TurnObject(turn));
         }
@@ -71,13 +71,17 @@ impl App {
 
     /// Whether the first look stands as the object does in the settings, wherever these come from. If not, it will, and
     /// then a command is carried out that needs that.
-    pub(super) fn first_look_stands(&mut self, then: Option<Command>, ctx: &egui::Context) -> bool {
+    pub(in crate::app::shell) fn first_look_stands(
+        &mut self,
+        then: Option<Command>,
+        ctx: &egui::Context,
+    ) -> bool {
         self.first_look_stands_on(self.settings.camera.up, then, ctx)
     }
 
     /// Whether an axis of the scene points up in the first look. If not, it will, and then a command is carried out that
     /// needs that.
-    pub(super) fn first_look_stands_on(
+    pub(in crate::app::shell) fn first_look_stands_on(
         &mut self,
         up: SceneAxis,
         then: Option<Command>,
@@ -146,7 +150,7 @@ impl App {
     }
 
     /// Looks from a view that was kept. Where the object stands otherwise in it, the room turns first.
-    pub(super) fn recall_view(&mut self, slot: u8, ctx: &egui::Context) {
+    pub(in crate::app::shell) fn recall_view(&mut self, slot: u8, ctx: &egui::Context) {
         let Some(camera) = self.settings.views.get(&slot).cloned() else {
             return self.messages.note(text::messages::no_view_kept(slot));
         };
@@ -161,7 +165,7 @@ impl App {
     }
 
     /// Remembers for the folder of the volume how it stands. A file that says where the head is says nothing of others.
-    pub(super) fn remember_up(&mut self) {
+    pub(in crate::app::shell) fn remember_up(&mut self) {
         if let Some(volume) = self.volume.as_ref().filter(|volume| !volume.is_anatomical) {
             self.memory.stood(&volume.source, self.settings.camera.up);
         }
