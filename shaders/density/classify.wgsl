@@ -37,8 +37,16 @@ fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
     return SlabSample(vec4f(found.gba / max(found.r, 1e-20), classified_extinction(found.r)), found.r);
 #else
     let density = slab_density(frame, ray, k);
-    let material = classify(density);
-    return SlabSample(vec4f(material.rgb, material.a * slab_presence(frame, ray, k)), density);
+    var material = classify(density);
+#if MISSING
+    // Most of what is sampled is empty, and to know how much of nothing is there takes fetches.
+    if (material.a > 0.0) {
+        material.a *= slab_presence(frame, ray, k);
+    }
+#else
+    material.a *= slab_presence(frame, ray, k);
+#endif
+    return SlabSample(material, density);
 #endif
 }
 

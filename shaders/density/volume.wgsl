@@ -29,8 +29,13 @@ var<private> grid: Grid;
 @group(1) @binding(3) var clamped: sampler;
 // Takes the nearest texel.
 @group(1) @binding(4) var nearest: sampler;
-// Where voxels are missing, the share of kernels that lies on those that are there, level by level as in the pyramid.
+// Where voxels are missing, level by level as in the pyramid: r the share of kernels that lies on those that are there,
+// gba how it changes from the texel before to the one behind along x, y and z, as a byte with NO_CHANGE in the middle.
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
+
+// Bytes of those changes: 128 for none, so that there is exactly none where nothing is missing, and 127 for all.
+const NO_CHANGE = 128.0 / 255.0;
+const CHANGES = 255.0 / 127.0;
 
 // Whether any slab's pixels are wider than voxels.
 override STRETCH: bool = false;
@@ -125,17 +130,10 @@ fn pyramid_presence(p: vec3f, level: f32) -> f32 {
 }
 
 #if MISSING
-// How steeply that rises, in index space: by central differences over as far as the kernel is stretched.
+// How steeply that rises, in index space: by central differences over as far as the kernel is stretched, made beforehand.
 fn presence_slope(p: vec3f, level: f32) -> vec3f {
-    let h = exp2(level);
-    let x = vec3f(h, 0.0, 0.0);
-    let y = vec3f(0.0, h, 0.0);
-    let z = vec3f(0.0, 0.0, h);
-    return vec3f(
-        presence_at(p + x, level) - presence_at(p - x, level),
-        presence_at(p + y, level) - presence_at(p - y, level),
-        presence_at(p + z, level) - presence_at(p - z, level),
-    ) / (2.0 * h);
+    let changes = textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).gba;
+    return (changes - NO_CHANGE) * (0.5 * CHANGES * exp2(-level));
 }
 #endif
 

@@ -39,11 +39,12 @@ use self::shell::first_lights::{FirstLights, Seeking};
 use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
 use self::shell::messages::Messages;
+use self::shell::object::corrected::Corrected;
+use self::shell::object::treat_as::Treated;
+use self::shell::object::upright::Upright;
 use self::shell::opening::{Neighbour, PendingLook};
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
-use self::shell::treat_as::Treated;
-use self::shell::upright::Upright;
 use self::start::carried::Legacy;
 use self::transfer_editor::TransferEditor;
 use self::viewport::canvas::Canvas;
@@ -84,6 +85,7 @@ pub struct App {
     volume: Option<VolumeFacts>,
     treated: Treated,
     upright: Upright,
+    corrected: Corrected,
     viewport: Viewport,
     /// Fills the window's background.
     window: WindowPainter,
@@ -192,9 +194,11 @@ impl App {
         self.treated.is_busy() || self.upright.is_busy()
     }
 
-    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened.
+    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened or corrected.
     fn is_complete(&self) -> bool {
-        self.loader.progress().is_none() && self.viewport.is_idle(&self.compare.looks(&self.settings))
+        self.loader.progress().is_none()
+            && !self.is_correcting()
+            && self.viewport.is_idle(&self.compare.looks(&self.settings))
     }
 
     /// Where the picture is, in points, and its size in physical pixels.
@@ -338,6 +342,7 @@ impl eframe::App for App {
         for command in commands {
             self.execute(command, frame, &ctx);
         }
+        self.follow_corrections(&ctx);
         self.finish_first_look(&ctx);
         self.keep_balanced(&ctx);
         self.keep_look();

@@ -64,6 +64,16 @@ pub enum CliError {
         /// What helps.
         help: &'static str,
     },
+    /// No volume is left of one that is corrected.
+    #[error("{path} could not be corrected ({by}): {why}; other values of `volume.…` help")]
+    Uncorrectable {
+        /// The volume.
+        path: String,
+        /// How it was to be corrected.
+        by: String,
+        /// Why that cannot be.
+        why: String,
+    },
     /// A picture that was made again is not as it was.
     #[error("{0}")]
     Differs(String),
@@ -87,7 +97,10 @@ impl CliError {
         match self {
             Self::Differs(_) => 1,
             Self::Usage(_) => 2,
-            Self::Preset { .. } | Self::Replay { .. } | Self::VolumeElsewhere { .. } => 3,
+            Self::Preset { .. }
+            | Self::Replay { .. }
+            | Self::VolumeElsewhere { .. }
+            | Self::Uncorrectable { .. } => 3,
             Self::Load(err) => match err.kind() {
                 LoadErrorKind::BadInput => 3,
                 LoadErrorKind::Limit => 5,

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::CliError;
 use super::outputs::print_line;
-use super::scene::LoadArgs;
+use super::scene::{LoadArgs, corrected_by};
 use crate::data::load::LoadControl;
 use crate::data::{CountedLabel, DataKind, Dataset, Hints, ValueRange, Volume, open};
 use crate::gpu::small_volume;
@@ -27,6 +27,9 @@ pub(super) struct InfoArgs {
     /// As JSON
     #[arg(long)]
     json: bool,
+    /// One correction of the volume by its path, for instance volume.spacing=0.5,0.5,2; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
     #[command(flatten)]
     load: LoadArgs,
 }
@@ -34,6 +37,7 @@ pub(super) struct InfoArgs {
 /// Prints what is known about a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let volume = open(&args.file, &args.load.load_options()?, &LoadControl::new())?;
+    let volume = corrected_by(&args.file, volume, &args.set)?;
     let ValueRange { low, high } = volume.value_range();
     let shown = volume.shown_range();
     let percentile = |p: u32| volume.quantile(f64::from(p) / 100.0);
@@ -53,6 +57,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "has_unknown_scale": volume.has_unknown_scale(),
         "is_anatomical": volume.is_anatomical(),
         "world_from_index": volume.world_from_index().to_cols_array(),
+        "corrections": volume.corrections(),
         "remarks": volume.remarks(),
         "non_finite_voxels": volume.non_finite_voxels(),
         "kind": kind(&volume.kind().kind),
@@ -81,6 +86,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().why))?;
     for line in hint_lines(volume.hints()) {
         print_line(&line)?;
+    }
+    for correction in volume.corrections().in_words() {
+        print_line(&format!("  corrected    {correction}"))?;
     }
     for remark in volume.remarks() {
         print_line(&format!("  note         {remark}"))?;

@@ -3,17 +3,16 @@
 
 mod bench;
 mod compare;
-mod cpu_time;
+mod convert;
 mod error;
 mod image_args;
 mod info;
 mod light_volume;
 mod outputs;
+mod process;
 mod render;
 mod replay;
 mod scene;
-mod signals;
-mod threads;
 mod turntable;
 
 use std::path::{Path, PathBuf};
@@ -86,6 +85,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Write a light's attenuation volume as NRRD
     LightVolume(light_volume::LightVolumeArgs),
+    /// Write a volume in another format, as a whole or in part
+    Convert(convert::ConvertArgs),
     /// Say what is in a volume
     Info(info::InfoArgs),
     /// Measure how long pictures and light volumes take
@@ -125,13 +126,14 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         }
     };
     fault::choose(args.fault.clone());
-    signals::listen(LAST_ACTS);
-    let result = threads::start().and_then(|()| match args.command {
+    process::listen(LAST_ACTS);
+    let result = process::start().and_then(|()| match args.command {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Turntable(args)) => turntable::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::LightVolume(args)) => light_volume::run(&args),
+        Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         None => args.request().and_then(open_window),

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::CliError;
 use super::outputs::{keep_apart, print_line, warn_line};
-use super::scene::LoadArgs;
+use super::scene::{LoadArgs, corrected};
 use crate::data::{Dataset, plain};
 use crate::export::{Rows, check_picture, picture_size, read_picture, read_record, write_picture};
 use crate::gpu::{Distance, Renderer};
@@ -75,10 +75,13 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         keep_apart(&[&args.picture, &source], &[output], args.force)?;
     }
     let (volume, context) = args.load.open_chosen(&source, stated.map(|stated| &stated.choice))?;
-    if stated.is_some_and(|of| !of.is_of(volume.content_id())) {
+    if stated.is_some_and(|of| !of.is_of(volume.opened_id())) {
         return Err(unusable(format!("{} is another volume than the one that it shows", source.display())));
     }
+    let by = record.corrections_of(volume.opened_id()).unwrap_or_default();
+    let volume = corrected(&source, volume, &by)?;
     let (settings, warnings) = record.apply(&Settings::default(), &volume.ranges()).map_err(preset)?;
+    let settings = Settings { volume: by, ..settings };
     for warning in warnings {
         warn_line(&format!("warning: {warning} ({path})"));
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Bricks, Histogram, Shown, Volume};
+use super::{Bricks, Corrections, Histogram, Shown, Volume, VolumeError};
 
 /// A volume with the bounds of its bricks and its histogram, which are made from it and cannot be mixed up with
 /// those of another. Copies share the voxels.
@@ -26,6 +26,19 @@ impl Dataset {
     pub fn showing(&self, shown: impl Into<Shown>) -> Self {
         let shown = shown.into();
         if shown == self.volume.shown() { self.clone() } else { Self::new(self.volume.showing(shown)) }
+    }
+
+    /// The volume that was opened, corrected; where its values stay, at once.
+    ///
+    /// # Errors
+    /// As [`Volume::corrected`].
+    pub fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
+        let volume = self.volume.corrected(by)?;
+        if !volume.shares_voxels(&self.volume) {
+            return Ok(Self::new(volume));
+        }
+        let volume = Arc::new(volume.showing(self.volume.shown()));
+        Ok(Self { volume, ..self.clone() })
     }
 
     /// The voxels.

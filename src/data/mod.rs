@@ -29,6 +29,7 @@ pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{Samples, VoxelType};
 pub use volume::{
-    CountedLabel, DataKind, KindFound, KindName, LabelSet, MAX_CLASSES, Missing, Shown, Volume, VolumeError,
+    AxisOrder, Corrections, CountedLabel, DataKind, Flips, Headings, KindFound, KindName, LabelSet,
+    MAX_CLASSES, Missing, Orientation, PaddingValue, Shown, SpacingUnit, ValueScale, Volume, VolumeError,
     VolumeId, reduced_dims,
 };

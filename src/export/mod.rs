@@ -1,4 +1,4 @@
-//! Files that go out: pictures, pictures that move, and anything that must be whole or not there at all.
+//! Files that go out: pictures, pictures that move, volumes, and anything that must be whole or not there at all.
 //!
 //! Pictures come in bands of rows from the top, so that none need be in memory as a whole. Knows neither the
 //! renderer nor the window.
@@ -10,6 +10,7 @@ mod files;
 mod picture_file;
 mod png_file;
 mod rows;
+mod volumes;
 
 pub use animation::{Animation, AnimationFormat, AnimationSpec, frame_names};
 pub use error::{ExportError, ReadPictureError};
@@ -22,3 +23,6 @@ pub use picture_file::{
 };
 pub use png_file::{encode_png, export_png};
 pub use rows::Rows;
+pub use volumes::{
+    ConvertError, NumberWish, Orientation, Outgoing, VolumeFormat, nrrd_header_like, write_volume,
+};

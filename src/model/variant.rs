@@ -71,6 +71,8 @@ impl Variant {
                     settings.floor.height = current.floor.height;
                 }
                 settings.camera.clone_from(&current.camera);
+                // It is of the same file.
+                settings.volume = current.volume;
             }
         }
         settings

@@ -108,6 +108,8 @@ pub struct Reference<'a> {
     pyramid: Pyramid,
     /// The share of kernels that lies on voxels that are there, where some are missing.
     presence: Option<Pyramid>,
+    /// How that changes along x, y and z, where it is as it is stored.
+    presence_changes: Option<[Pyramid; 3]>,
     /// Voxels as the eye and light see them, where they are classified before kernels spread them.
     classified: Option<Box<[Classified; 2]>>,
 }
@@ -119,18 +121,23 @@ impl<'a> Reference<'a> {
         let range = volume.table_range();
         let field = Field::with_rounding(volume, options.rounding.unwrap_or(|density| density));
         let pyramid = Pyramid::of(&field, kernel_width(options.fault), options.rounding);
-        // Stored in eight bits.
-        let presence = Field::of_presence(volume).map(|field| {
-            let presence = Pyramid::of(&field, kernel_width(options.fault), None);
-            if options.rounding.is_some() { presence.in_steps(255.0) } else { presence }
-        });
+        let mut presence =
+            Field::of_presence(volume).map(|field| Pyramid::of(&field, kernel_width(options.fault), None));
+        let mut presence_changes = None;
+        if options.rounding.is_some() {
+            // Stored in eight bits, of which one says whether it rises or falls.
+            presence_changes = presence
+                .as_ref()
+                .map(|presence| [0, 1, 2].map(|axis| presence.changes(axis).in_steps(127.0)));
+            presence = presence.map(|presence| presence.in_steps(255.0));
+        }
         let scene = volume.scene();
         let classified = (settings.sampling.classification == Classification::Pre).then(|| {
             let tables = [settings.baked_eye(range, &scene), settings.baked_lighting(range, &scene)];
             let (width, rounding) = (kernel_width(options.fault), options.rounding);
             Box::new(tables.map(|table| Classified::of(&field, &table, presence.as_ref(), width, rounding)))
         });
-        Self { settings, options, scene, range, field, pyramid, presence, classified }
+        Self { settings, options, scene, range, field, pyramid, presence, presence_changes, classified }
     }
 
     /// Voxels as they are classified before kernels spread them, if they are.

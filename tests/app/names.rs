@@ -20,7 +20,7 @@ pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
     harness.remove_cursor();
     // Pictures of a window that high are larger than egui assumes to be safe.
     harness.input_mut().max_texture_side = Some(8192);
-    harness.set_size(Vec2::new(width, 2830.0));
+    harness.set_size(Vec2::new(width, 3060.0));
     harness.run_steps(3);
     for section in ["Shading", "Cut", "Floor", "Camera", "Compare", "Data"] {
         click(&mut harness, section);
@@ -31,6 +31,8 @@ pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
         harness.get_all_by_label("Advanced").nth(at).expect("as many as before").click();
         harness.run_steps(8);
     }
+    click(&mut harness, "Corrections");
+    harness.run_steps(8);
     harness
 }
 

@@ -6,14 +6,16 @@
 mod animation;
 mod bench;
 mod checks;
-mod info;
+mod convert;
+mod data;
 mod inputs;
 mod light_volume;
 mod limits;
 mod outputs;
-mod program;
 mod render;
 mod replay;
 mod results;
+mod support;
 mod usage;
-mod volumes;
+
+use support::{program, volumes};

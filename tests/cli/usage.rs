@@ -9,7 +9,7 @@ fn help_and_version_are_no_errors() {
     let folder = Folder::new();
     assert!(folder.succeed("--version").contains(env!("CARGO_PKG_VERSION")));
     let help = folder.succeed("--help");
-    for command in ["render", "compare", "light-volume", "info", "bench"] {
+    for command in ["render", "compare", "light-volume", "convert", "info", "bench"] {
         assert!(help.contains(command), "{command} is missing: {help}");
         assert!(!folder.succeed(&format!("{command} --help")).is_empty());
     }

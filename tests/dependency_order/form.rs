@@ -11,8 +11,9 @@ const LONGEST_FILE: usize = 400;
 /// Files and folders that a folder may hold side by side.
 const LARGEST_FOLDER: usize = 15;
 
-/// Folders of pictures, and of files that readers have failed on: they grow with what is pictured and read.
-const GROWING: [&str; 2] = ["snapshots", "found"];
+/// Folders of pictures, of files that readers have failed on, and of files that others have written to be read: they
+/// grow with what is pictured and read.
+const GROWING: [&str; 4] = ["snapshots", "found", "written", "phantom"];
 
 /// How a file of each language begins that says what it is.
 fn flaws(file: &Source, heading: &str) -> Vec<String> {

@@ -52,8 +52,16 @@ fn transfer(path: &Path) -> bool {
     import(path, &bytes, range()).is_ok()
 }
 
-/// Files of other programs, which take a program to write: `found/NAME/far` is one that is valid.
-const KEPT: [&str; 36] = [
+/// Names of files, with what `found/NAME/far` holds.
+macro_rules! kept {
+    ($($name:literal),+ $(,)?) => {
+        // Part of the program: the fuzz target, which has these samples too, is of another package.
+        [$(($name, include_bytes!(concat!("found/", $name, "/far")).as_slice())),+]
+    };
+}
+
+/// Files of other programs, which take a program to write, each one that is valid.
+const KEPT: [(&str, &[u8]); 36] = kept![
     "packed.nrrd",
     "digits.nrrd",
     "appended.vti",
@@ -92,7 +100,12 @@ const KEPT: [&str; 36] = [
     "list.mhd",
 ];
 
-fn gzip(bytes: &[u8]) -> Vec<u8> {
+/// The files of other programs, by their names.
+pub(crate) fn kept() -> Vec<(&'static str, Vec<u8>)> {
+    KEPT.map(|(name, bytes)| (name, bytes.to_vec())).to_vec()
+}
+
+pub(crate) fn gzip(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     encoder.write_all(bytes).expect("it is in memory");
     encoder.finish().expect("it is in memory")
@@ -114,9 +127,8 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     add("zipped.nrrd", [nrrd("gzip").into_bytes(), zipped.clone()].concat(), volume);
     add("bare_6x5x4_uint8.raw", voxels.clone(), volume);
     add("bare_6x5x4_uint8.raw.gz", zipped, volume);
-    for name in KEPT {
-        let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/found").join(name).join("far");
-        add(name, std::fs::read(kept).expect("it is kept"), volume);
+    for (name, bytes) in kept() {
+        add(name, bytes, volume);
     }
     // What headers and descriptions are of.
     std::fs::write(folder.join("described.raw"), [7; 24]).expect("room");

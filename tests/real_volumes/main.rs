@@ -9,6 +9,7 @@
 mod checks;
 mod harness;
 mod manifest;
+mod oracle;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -48,6 +49,15 @@ fn main() -> ExitCode {
         real("odd_nrrd_files_load_or_say_why_not", odd_nrrd_files_load_or_say_why_not),
         real("one_volume_is_the_same_in_every_form", one_volume_is_the_same_in_every_form),
         real("kinds_of_data_are_recognised", kinds_of_data_are_recognised),
+        real(
+            "test_data_are_read_as_other_libraries_read_them",
+            oracle::test_data_are_read_as_other_libraries_read_them,
+        ),
+        always(
+            "written_files_are_read_as_other_libraries_read_them",
+            oracle::written_files_are_read_as_other_libraries_read_them,
+        ),
+        always("a_wrong_row_is_noticed", oracle::a_wrong_row_is_noticed),
         always("built_in_volumes_have_good_first_looks", built_in_volumes_have_good_first_looks),
         always("wrong_facts_and_looks_are_noticed", checks::wrong_facts_and_looks_are_noticed),
         always("the_manifest_is_understood", manifest::the_manifest_is_understood),

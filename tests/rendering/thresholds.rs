@@ -209,6 +209,10 @@ pub(crate) const BYTE_STEP: f32 = 1e-3;
 /// among the values, and densities are rounded to 16 bits.
 pub(crate) const MIRRORED: Limit = Limit { max: 4.0 / 255.0, rmse: 0.25 / 255.0 };
 
+/// One head whose file counts other axes first and in other directions: a step of a picture of 8 bits. What remains is
+/// that passes add the same numbers in another order.
+pub(crate) const SAME_HEAD: Limit = Limit { max: 1.0 / 255.0, rmse: 0.1 / 255.0 };
+
 /// Light just below a lit face with rays nearby, RMSE: steps of ½ to 1½ voxels through densities that are prefiltered at
 /// voxels and interpolated between them; where τ is about 1, a tenth of a voxel is 0.02.
 pub(crate) const NEAR_A_FACE: f64 = 0.015;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::app::text::common::LengthUnit;
 use crate::app::worker::loader::Reading;
 use crate::data::load::Held;
 use crate::data::{
@@ -28,6 +29,8 @@ pub(crate) struct VolumeFacts {
     pub file_dims: [usize; 3],
     /// The type of the voxels, such as `uint8`.
     pub voxel_type: &'static str,
+    /// The volume, which knows what its file says.
+    pub of: Arc<Volume>,
     /// Millimetres between voxel centres along x, y, z.
     pub spacing_mm: [f64; 3],
     /// They are no millimetres: nobody knows how large voxels are.
@@ -112,6 +115,7 @@ impl VolumeFacts {
             dims: volume.dims(),
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
+            of: Arc::clone(volume),
             spacing_mm: volume.spacing_mm().into(),
             has_unknown_scale: volume.has_unknown_scale(),
             ranges: volume.ranges(),
@@ -126,6 +130,11 @@ impl VolumeFacts {
             labels: LabelRow::all_of(volume),
             histogram: Arc::clone(dataset.histogram()),
         }
+    }
+
+    /// The unit that suits lengths in the scene.
+    pub(crate) fn length_unit(&self) -> LengthUnit {
+        LengthUnit::showing(self.scene.mm_per_unit, self.has_unknown_scale)
     }
 
     /// Whether pictures with these settings show labels, which have looks by their numbers.

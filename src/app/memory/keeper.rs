@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
+use super::corrected::{self, Remembered};
 #[cfg(feature = "cli")]
 use super::earlier;
 use super::recent::RecentFile;
@@ -56,12 +57,15 @@ struct Due {
     opened: Vec<RecentFile>,
     /// How things stand that were turned, the latest last.
     stood: Vec<Standing>,
+    /// How files are corrected that were, the latest last.
+    corrected: Vec<Remembered>,
     closed: bool,
 }
 
 impl Due {
     fn is_empty(&self) -> bool {
-        self.look.is_none() && self.picture.is_none() && self.opened.is_empty() && self.stood.is_empty()
+        let has_lists = !(self.opened.is_empty() && self.stood.is_empty() && self.corrected.is_empty());
+        self.look.is_none() && self.picture.is_none() && !has_lists
     }
 }
 
@@ -102,7 +106,7 @@ impl Shared {
     /// Writes what is due. A look that could not be written is due again, unless there is a newer one; all else that could
     /// not is let go.
     fn write(&self, due: Due) {
-        let Due { look, picture, opened, stood, closed: _ } = due;
+        let Due { look, picture, opened, stood, corrected, closed: _ } = due;
         if let Some(look) = look {
             let failed =
                 write_atomically(&self.look, look.text().as_bytes()).err().map(|err| err.to_string());
@@ -131,6 +135,11 @@ impl Shared {
             && let Err(err) = standing::add(&self.folder, stood)
         {
             log::warn!("which way up the object stood was not noted: {err}");
+        }
+        if !corrected.is_empty()
+            && let Err(err) = corrected::add(&self.folder, corrected)
+        {
+            log::warn!("how the file was corrected was not noted: {err}");
         }
     }
 
@@ -251,6 +260,11 @@ impl Keeper {
     /// The object was turned.
     pub(super) fn stood(&self, standing: Standing) {
         self.change(|due| due.stood.push(standing));
+    }
+
+    /// A file was corrected.
+    pub(super) fn corrected(&self, remembered: Remembered) {
+        self.change(|due| due.corrected.push(remembered));
     }
 
     /// Why the look could not be kept; none if it was.

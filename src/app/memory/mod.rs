@@ -2,9 +2,11 @@
 //!
 //! Each run has files of its own, so that two windows never take anything from each other.
 
+mod corrected;
 mod damaged;
 mod earlier;
 mod keeper;
+mod kept_list;
 mod recent;
 mod recent_pictures;
 mod standing;
@@ -15,6 +17,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage};
 
+pub(crate) use self::corrected::{FileStamp, Remembered};
 pub(crate) use self::damaged::check_window_state;
 pub(crate) use self::earlier::EarlierRun;
 use self::earlier::ThisRun;
@@ -26,6 +29,7 @@ pub(crate) use self::recent::RecentFile;
 pub(crate) use self::recent_pictures::RecentPictures;
 use self::standing::Standing;
 use crate::app::text;
+use crate::data::Corrections;
 use crate::data::load::Choice;
 use crate::export;
 use crate::model::{SceneAxis, Settings};
@@ -42,10 +46,14 @@ fn is_builtin(source: &Path) -> bool {
     source.to_str().is_some_and(|name| name.starts_with("builtin:"))
 }
 
+/// The path of a file from the root; built-in volumes have none.
+fn whole_path(source: &Path) -> Option<PathBuf> {
+    (!is_builtin(source)).then(|| std::path::absolute(source).ok()).flatten()
+}
+
 /// The folder of a file from the root; built-in volumes have none.
 fn folder_of(source: &Path) -> Option<PathBuf> {
-    let whole = (!is_builtin(source)).then(|| std::path::absolute(source).ok()).flatten();
-    whole.and_then(|file| file.parent().map(Path::to_owned))
+    whole_path(source).and_then(|file| file.parent().map(Path::to_owned))
 }
 
 /// The look that was handed over last, and what it is of.
@@ -63,6 +71,8 @@ pub(crate) struct Memory {
     recent: Vec<RecentFile>,
     /// Which way up things stood in folders, the latest first.
     standing: Vec<Standing>,
+    /// How files were corrected, the latest first.
+    corrected: Vec<Remembered>,
     /// Runs that have ended, the latest first.
     earlier: Vec<EarlierRun>,
     /// There was no run before.
@@ -98,6 +108,9 @@ impl Memory {
         memory.recent.truncate(recent::MOST);
         let (standing, notice) = standing::read(folder);
         memory.standing = standing;
+        memory.notices.extend(notice);
+        let (corrected, notice) = corrected::read(folder);
+        memory.corrected = corrected;
         memory.notices.extend(notice);
         memory.is_troubled = starts_have_failed(folder);
         let (earlier, notices) = earlier::read(&runs);
@@ -160,6 +173,22 @@ impl Memory {
         standing::put_first(&mut self.standing, latest.clone());
         if let Some(keeper) = &self.keeper {
             keeper.stood(latest);
+        }
+    }
+
+    /// How a file was corrected when it was open last, if it was.
+    pub(crate) fn corrections_of(&self, source: &Path) -> Option<Remembered> {
+        let whole = whole_path(source)?;
+        self.corrected.iter().find(|known| known.is_at(&whole)).cloned()
+    }
+
+    /// Takes note of how the user has corrected a file. Built-in volumes are what they are.
+    pub(crate) fn corrected(&mut self, source: &Path, stamp: FileStamp, opened_id: u64, by: Corrections) {
+        let Some(file) = whole_path(source) else { return };
+        let latest = Remembered::new(file, stamp, opened_id, by);
+        corrected::put_first(&mut self.corrected, latest.clone());
+        if let Some(keeper) = &self.keeper {
+            keeper.corrected(latest);
         }
     }
 

@@ -139,6 +139,12 @@ pub(super) fn short(value: f64) -> String {
     digits.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
+/// Distances between voxels, in the unit that suits them.
+pub(super) fn spacing(spacing_mm: [f64; 3], is_unknown: bool) -> String {
+    let unit = text::data::unit_of_spacing(spacing_mm, is_unknown);
+    text::data::spacing(&spacing_mm.map(|length| short(length / unit.mm)), unit)
+}
+
 /// A switch.
 pub(super) fn switch(ui: &mut Ui, named: Named, value: &mut bool) -> Response {
     ui.checkbox(value, named.name).on_hover_text(named.tip)

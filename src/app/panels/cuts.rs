@@ -72,18 +72,19 @@ fn extent(ui: &mut Ui, crop: &mut CropBox, axis: usize, volume: &VolumeFacts) {
         if reset(ui, &text::cuts::crop(name), differs) {
             (crop.low[axis], crop.high[axis]) = (0.0, 1.0);
         }
-        ui.weak(text::cuts::length((to - from) * volume.spacing_mm[axis]));
+        ui.weak(text::cuts::length((to - from) * volume.spacing_mm[axis], volume.length_unit()));
     });
 }
 
 fn plane(ui: &mut Ui, plane: &mut ClipPlane, default: f64, volume: &VolumeFacts) {
-    let (mm, reach) = (volume.scene.mm_per_unit, volume.scene.support_radius());
-    let mut offset_mm = plane.offset * mm;
-    let before_mm = offset_mm;
+    let unit = volume.length_unit();
+    let (mm, reach) = (volume.scene.mm_per_unit / unit.mm, volume.scene.support_radius());
+    let mut moved = plane.offset * mm;
+    let before = moved;
     let offset = Number::new(text::cuts::OFFSET, -reach * mm..=reach * mm);
-    offset.unit(text::common::MM).decimals(1).show(ui, &mut offset_mm, default * mm);
-    if offset_mm != before_mm {
-        plane.offset = offset_mm / mm;
+    offset.unit(unit.suffix).decimals(1).show(ui, &mut moved, default * mm);
+    if moved != before {
+        plane.offset = moved / mm;
     }
 }
 

@@ -3,8 +3,8 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::controls::{choice, row, short};
-use super::{Panels, range, several};
+use super::controls::{choice, row, short, spacing};
+use super::{Panels, corrections, range, several};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{KindName, ValueRange, plain};
@@ -25,6 +25,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     range::show(ui, panels.settings, volume);
     averaging(ui, volume, panels.commands);
     opacity_unit(ui, panels.settings, panels.defaults, volume);
+    corrections::show(ui, panels.settings, volume);
 }
 
 fn facts(ui: &mut Ui, volume: &VolumeFacts) {
@@ -35,7 +36,7 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
         (text::data::DIMENSIONS, text::data::dimensions(volume.dims)),
         (text::data::VOXEL_TYPE, volume.voxel_type.to_owned()),
         (text::data::KIND, text::data::kind(volume.kind)),
-        (text::data::SPACING, text::data::spacing(&volume.spacing_mm.map(short), volume.has_unknown_scale)),
+        (text::data::SPACING, spacing(volume.spacing_mm, volume.has_unknown_scale)),
         (text::data::VALUES, text::data::values(&short(low), &short(high))),
         (text::data::MEMORY, text::data::memory(volume.bytes as f64 / f64::from(1 << 20))),
     ];

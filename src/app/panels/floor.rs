@@ -5,20 +5,23 @@ use eframe::egui::Ui;
 use super::super::text;
 use super::Panels;
 use super::controls::{Number, color, row, switch};
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text::common::LengthUnit;
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (floor, defaults) = (&mut panels.settings.floor, &panels.defaults.floor);
     switch(ui, text::floor::ON, &mut floor.on);
-    let mm = panels.volume.map_or(1.0, |volume| volume.scene.mm_per_unit);
+    let unit = panels.volume.map_or_else(|| LengthUnit::showing(1.0, true), VolumeFacts::length_unit);
+    let mm = panels.volume.map_or(1.0, |volume| volume.scene.mm_per_unit) / unit.mm;
     ui.add_enabled_ui(floor.on, |ui| {
-        let (mut height_mm, reach) =
+        let (mut length, reach) =
             (floor.height * mm, panels.volume.map_or(1.0, |v| v.scene.support_radius()));
-        let before_mm = height_mm;
+        let before = length;
         let height = Number::new(text::floor::HEIGHT, -reach * mm..=reach * mm);
-        height.unit(text::common::MM).decimals(1).show(ui, &mut height_mm, defaults.height * mm);
-        if height_mm != before_mm {
-            floor.height = height_mm / mm;
+        height.unit(unit.suffix).decimals(1).show(ui, &mut length, defaults.height * mm);
+        if length != before {
+            floor.height = length / mm;
         }
         let radius = Number::new(text::floor::RADIUS, 0.5..=20.0).log();
         radius.show(ui, &mut floor.radius, defaults.radius);

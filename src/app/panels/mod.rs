@@ -3,6 +3,7 @@
 mod camera;
 mod compare;
 pub(super) mod controls;
+mod corrections;
 mod cuts;
 mod data;
 mod floor;

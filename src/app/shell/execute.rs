@@ -115,10 +115,11 @@ impl App {
                 self.settings.lights = lights;
             }
             Command::UseLook(look) => {
-                // Views that were kept are no part of it, nor is how truly it is drawn, nor what is cut away.
+                // Views that were kept are no part of it, nor is how truly it is drawn, nor what is cut away, nor what is
+                // known of the file.
                 let look = look.drawn_as(&self.settings);
-                let Settings { cuts, views, .. } = std::mem::take(&mut self.settings);
-                self.settings = Settings { cuts, views, ..look };
+                let Settings { cuts, views, volume, .. } = std::mem::take(&mut self.settings);
+                self.settings = Settings { cuts, views, volume, ..look };
                 self.selected_light = 0;
             }
             Command::TryLooks => {
@@ -321,10 +322,12 @@ impl App {
             self.messages.note(text::messages::NO_PICTURE);
             return None;
         };
+        // Whatever is on its way: the picture is of the volume that there is.
+        let settings = Settings { volume: *dataset.volume().corrections(), ..self.settings.clone() };
         Some(export::Subject {
             context: self.viewport.context().clone(),
             dataset,
-            settings: self.settings.clone(),
+            settings,
             first: self.defaults.clone(),
             source: self.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
             selected_light: self.selected_light,

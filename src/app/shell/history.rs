@@ -33,6 +33,13 @@ impl Default for History {
 }
 
 impl History {
+    /// A history in which something has come before what is shown.
+    pub(crate) fn after(before: &Step) -> Self {
+        let mut history = Self::default();
+        history.undoer.add_undo(before);
+        history
+    }
+
     /// Takes note of the look, except while something is dragged: a drag is one step.
     pub(crate) fn observe(&mut self, ctx: &egui::Context, step: &Step) {
         if ctx.dragged_id().is_none() {

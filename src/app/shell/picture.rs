@@ -125,7 +125,10 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         nothing_seen::show(ui, canvas.rect, settings, defaults, dataset.volume(), facts);
     }
     settings.sanitise();
-    let result = if canvas.size.contains(&0) {
+    // Until the volume is there that the settings are for, the picture stays.
+    let is_correcting =
+        viewport.dataset().is_some_and(|dataset| *dataset.volume().corrections() != settings.volume);
+    let result = if canvas.size.contains(&0) || is_correcting {
         Ok(())
     } else {
         viewport.advance(compare.looks(settings), canvas.size, ui.ctx())

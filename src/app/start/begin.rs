@@ -11,10 +11,11 @@ use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::History;
 use crate::app::shell::keep_balanced::KeepBalanced;
 use crate::app::shell::messages::Messages;
+use crate::app::shell::object::corrected::Corrected;
+use crate::app::shell::object::treat_as::Treated;
+use crate::app::shell::object::upright::Upright;
 use crate::app::shell::session::Session;
 use crate::app::shell::status_file::StatusFile;
-use crate::app::shell::treat_as::Treated;
-use crate::app::shell::upright::Upright;
 use crate::app::transfer_editor::TransferEditor;
 use crate::app::viewport::Viewport;
 use crate::app::viewport::compare::Compare;
@@ -118,6 +119,7 @@ impl App {
             volume: None,
             treated: Treated::default(),
             upright: Upright::default(),
+            corrected: Corrected::default(),
             viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, storage.as_deref())?,

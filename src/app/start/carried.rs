@@ -10,9 +10,10 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::memory::Memory;
 use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::History;
+use crate::app::shell::object::corrected::Corrected;
+use crate::app::shell::object::treat_as::Treated;
 use crate::app::shell::opening::PendingLook;
 use crate::app::shell::session::Session;
-use crate::app::shell::treat_as::Treated;
 use crate::app::viewport::compare::Compare;
 use crate::app::windows::export::Export;
 use crate::app::windows::lost_again::Answer;
@@ -29,6 +30,7 @@ pub(in crate::app) struct Carried {
     defaults: Settings,
     history: History,
     treated: Treated,
+    corrected: Corrected,
     first_lights: FirstLights,
     volume: Option<VolumeFacts>,
     dataset: Option<Dataset>,
@@ -76,6 +78,7 @@ impl App {
             defaults: std::mem::take(&mut self.defaults),
             history: std::mem::take(&mut self.history),
             treated: std::mem::take(&mut self.treated),
+            corrected: std::mem::take(&mut self.corrected),
             first_lights: std::mem::take(&mut self.first_lights),
             volume: self.volume.take(),
             dataset: self.viewport.dataset(),
@@ -108,6 +111,7 @@ impl App {
             defaults,
             history,
             treated,
+            corrected,
             first_lights,
             volume,
             dataset,
@@ -128,7 +132,7 @@ impl App {
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
         app.keep_balanced.accept(&settings);
         (app.settings, app.defaults, app.history) = (settings, defaults, history);
-        (app.treated, app.first_lights) = (treated, first_lights.again());
+        (app.treated, app.corrected, app.first_lights) = (treated, corrected, first_lights.again());
         (app.volume, app.session, app.session_is_due) = (volume, session, session_is_due);
         (app.keeps_look, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
         (app.pending, app.trusts_paths, app.export) = (pending, trusts_paths, export);

@@ -4,7 +4,7 @@ use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
 
 use crate::app::common::theme;
-use crate::app::text;
+use crate::app::text::{self, common::LengthUnit};
 use crate::data::Volume;
 use crate::model::{Camera, Light, LightKind, Settings};
 use crate::plan::{Arrival, Probe, probe};
@@ -77,15 +77,16 @@ pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: P
 
 /// The answer in words and numbers.
 fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
-    let (voxel, mm) = (found.index.to_array(), found.world_mm.to_array());
+    let unit = LengthUnit::showing(volume.scene().mm_per_unit, volume.has_unknown_scale());
+    let place = text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit);
     let mut words = if settings.labels.is_empty() || volume.labels().is_none() {
-        text::probe::found(found.value, found.opacity, voxel, mm)
+        text::probe::found(found.value, found.opacity, &place)
     } else {
         let number = found.value as i64;
         let named =
             settings.labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
         let in_file = volume.hints().labels.get(number).map(|label| label.name.as_str());
-        text::probe::found_label(number, named.or(in_file).unwrap_or_default(), found.opacity, voxel, mm)
+        text::probe::found_label(number, named.or(in_file).unwrap_or_default(), found.opacity, &place)
     };
     for (light, arrival) in settings.lights.iter().zip(&found.lights) {
         words.push('\n');

@@ -136,6 +136,16 @@ impl Viewport {
         self.waiting.clear();
     }
 
+    /// Shows the same volume otherwise from now on, with the renderer that there is.
+    pub(super) fn set_dataset(&mut self, dataset: Dataset) {
+        self.generation += 1;
+        self.dataset = Some(dataset.clone());
+        self.thread.set_dataset(dataset);
+        (self.frame_request, self.shown, self.failed, self.waited_in_vain) = (None, None, None, false);
+        self.measurement = None;
+        self.waiting.clear();
+    }
+
     /// Asks for the balance of a look of the volume, which is measured when its picture is finished.
     pub(super) fn measure_balance(&mut self, settings: &Settings) {
         self.measurement = Some(self.thread.measure_balance(settings));

@@ -143,6 +143,46 @@ mod tests {
         }
     }
 
+    /// Heads with an L on their left, written by other programs with other axes first and in other directions.
+    #[test]
+    fn the_left_of_a_head_is_named_so_in_every_format() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle/phantom");
+        let (mut bodies, mut others) = (0, 0);
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            // Bare numbers are opened by their description.
+            if name.ends_with(".bin") {
+                continue;
+            }
+            let volume = load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap();
+            let is_body = [".nrrd", ".nii.gz", ".mha", ".dcm"].iter().any(|ending| name.ends_with(ending));
+            assert_eq!(volume.is_anatomical(), is_body, "{name}");
+            let ([nx, ny, _], scene) = (volume.dims(), volume.scene());
+            let marked: Vec<DVec3> = (0..volume.voxel_count())
+                .filter(|&voxel| volume.samples().value(voxel) == 120.0)
+                .map(|voxel| {
+                    DVec3::new((voxel % nx) as f64, (voxel / nx % ny) as f64, (voxel / nx / ny) as f64)
+                })
+                .map(|index| scene.scene_from_index.transform_point3(index))
+                .collect();
+            let middle = marked.iter().sum::<DVec3>() / marked.len() as f64;
+            // The side of the cube that it lies behind.
+            let (_, names) =
+                SIDES.into_iter().max_by(|a, b| a.0.dot(middle).total_cmp(&b.0.dot(middle))).unwrap();
+            assert_eq!(names, text::overlay::LEFT, "{name}");
+            assert_eq!(names[usize::from(is_body)], if is_body { "L" } else { "−x" }, "{name}");
+            // Seen from the front it is on the right, and the letter there says so.
+            let mut camera = Camera::default();
+            camera.look_from(StandardView::PlusY);
+            let (x, ..) = camera.pixel_from_scene(middle, 100.0, 100.0).unwrap();
+            assert!(x > 60.0, "{name}: {x}");
+            assert_eq!(around(&camera)[0], "L");
+            *(if is_body { &mut bodies } else { &mut others }) += 1;
+        }
+        assert!(bodies > 50 && others > 15, "{bodies} of bodies, {others} others");
+    }
+
     #[test]
     fn faces_are_seen_as_a_mirror_does_not_show_them() {
         // From the front, a patient's right is on the left; from above the head, the face at the bottom.

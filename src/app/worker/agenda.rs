@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::mailbox::Mailbox;
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, Scene};
+use crate::data::Dataset;
 
 /// A change this long ago is over: time to refine.
 const REST: Duration = Duration::from_millis(150);
@@ -34,6 +35,8 @@ pub(super) enum Due {
 pub(super) struct Agenda {
     /// A scene has come that replaces the one that is worked on.
     pub next_scene: Option<Scene>,
+    /// A volume has come that replaces the one that is worked on.
+    pub next_dataset: Option<Dataset>,
     /// The window has closed.
     pub is_closed: bool,
     frame_request: Option<FrameRequest>,
@@ -51,6 +54,7 @@ impl Agenda {
     pub(super) fn new() -> Self {
         Self {
             next_scene: None,
+            next_dataset: None,
             is_closed: false,
             frame_request: None,
             changed: Instant::now(),
@@ -64,7 +68,11 @@ impl Agenda {
     pub(super) fn read(&mut self, mailbox: &mut Mailbox) {
         self.is_closed = mailbox.closed;
         if let Some(scene) = mailbox.scene.take() {
-            self.next_scene = Some(scene);
+            (self.next_scene, self.next_dataset) = (Some(scene), None);
+            self.frame_request = None;
+        }
+        if let Some(dataset) = mailbox.dataset.take() {
+            self.next_dataset = Some(dataset);
             self.frame_request = None;
         }
         if let Some(frame_request) = mailbox.frame_request.take() {
@@ -90,11 +98,18 @@ impl Agenda {
         Some(scene)
     }
 
+    /// The volume that replaces the one that is worked on, once: nothing of it is on screen.
+    pub(super) fn take_dataset(&mut self) -> Option<Dataset> {
+        let dataset = self.next_dataset.take()?;
+        (self.shown, self.failed) = (None, None);
+        Some(dataset)
+    }
+
     /// Whether a picture must be dropped: the window closed or shows another volume, or a refinement is of something
     /// that is no longer requested.
     pub(super) fn is_obsolete(&self, purpose: Purpose, frame_request: &FrameRequest) -> bool {
         let is_other = purpose == Purpose::Refinement && Some(frame_request) != self.frame_request.as_ref();
-        self.is_closed || self.next_scene.is_some() || is_other
+        self.is_closed || self.next_scene.is_some() || self.next_dataset.is_some() || is_other
     }
 
     /// When the next picture is to be made.
@@ -120,7 +135,10 @@ impl Agenda {
 
     /// Whether nothing is to be drawn, now or soon.
     pub(super) fn is_at_rest(&self) -> bool {
-        matches!(self.due(), Due::WithNews) && !self.is_frame_pending && self.next_scene.is_none()
+        matches!(self.due(), Due::WithNews)
+            && !self.is_frame_pending
+            && self.next_scene.is_none()
+            && self.next_dataset.is_none()
     }
 
     /// A picture is on its way to the screen.

@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use eframe::egui;
 
 use super::task::Work;
+use crate::app::memory::{FileStamp, Remembered};
 use crate::app::text;
 use crate::data::load::{
     self, Choice, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, Several,
@@ -28,6 +29,15 @@ pub(crate) struct Reading {
     pub reduce: Option<usize>,
 }
 
+/// What is known of a file from earlier times.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Known {
+    /// The axis of the scene that points up, unless the file says what does.
+    pub up: SceneAxis,
+    /// How it was corrected.
+    pub corrected: Option<Remembered>,
+}
+
 /// A volume that is ready to be shown.
 #[derive(Debug)]
 pub(crate) struct Opened {
@@ -43,6 +53,8 @@ pub(crate) struct Opened {
     pub renderer: Renderer,
     /// A first look at it.
     pub settings: Settings,
+    /// What the file was before it was read.
+    pub stamp: FileStamp,
 }
 
 /// How an attempt to open a volume ended.
@@ -170,12 +182,12 @@ impl Loader {
         }
     }
 
-    /// Starts to open a file or a built-in volume, of which an axis of the scene points up unless it says what does.
+    /// Starts to open a file or a built-in volume, which is corrected and stood up as is known of it.
     pub(crate) fn open(
         &mut self,
         source: &Path,
         reading: Reading,
-        up: SceneAxis,
+        known: Known,
         ctx: &egui::Context,
     ) -> Result<(), String> {
         self.cancel();
@@ -191,7 +203,7 @@ impl Loader {
             let opening = Opening {
                 source: source.to_owned(),
                 reading,
-                up,
+                known,
                 options,
                 context: self.context.clone(),
                 shaders: self.shaders.clone(),
@@ -276,7 +288,7 @@ fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
 struct Opening {
     source: PathBuf,
     reading: Reading,
-    up: SceneAxis,
+    known: Known,
     options: LoadOptions,
     context: Context,
     shaders: ShaderLibrary,
@@ -297,9 +309,23 @@ fn open_first(source: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     Ok(volume.with_remarks(remarks))
 }
 
+/// A volume as it was corrected the last time, if it is the same.
+fn corrected(volume: Volume, known: Option<&Remembered>, stamp: FileStamp) -> Volume {
+    let by = known.and_then(|known| known.of(stamp, volume.opened_id()));
+    match by.map(|by| volume.corrected(&by)) {
+        Some(Ok(corrected)) => corrected,
+        Some(Err(err)) => {
+            log::warn!("the volume is not corrected as it was: {err}");
+            volume
+        }
+        None => volume,
+    }
+}
+
 fn open(opening: Opening) -> Outcome {
-    let Opening { source, reading, up, options, context, shaders, control, phase } = opening;
+    let Opening { source, reading, known, options, context, shaders, control, phase } = opening;
     may_panic(Place::Loader);
+    let stamp = FileStamp::of(&source);
     let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
@@ -329,14 +355,14 @@ fn open(opening: Opening) -> Outcome {
         return Outcome::Cancelled;
     }
     phase.store(2, Ordering::Relaxed);
-    let dataset = Dataset::new(volume);
+    let dataset = Dataset::new(corrected(volume, known.corrected.as_ref(), stamp));
     if control.is_cancelled() {
         return Outcome::Cancelled;
     }
     phase.store(3, Ordering::Relaxed);
     let look = Renderer::with_shaders(&context, shaders).and_then(|mut renderer| {
         phase.store(4, Ordering::Relaxed);
-        let settings = first_look_upright(&mut renderer, &dataset, up)?;
+        let settings = first_look_upright(&mut renderer, &dataset, known.up)?;
         Ok((renderer, settings))
     });
     if control.is_cancelled() {
@@ -344,7 +370,7 @@ fn open(opening: Opening) -> Outcome {
     }
     match look {
         Ok((renderer, settings)) => {
-            let opened = Opened { source, reading, dataset, too_many, renderer, settings };
+            let opened = Opened { source, reading, dataset, too_many, renderer, settings, stamp };
             Outcome::Opened(Box::new(opened))
         }
         Err(err) => not_shown(&err),

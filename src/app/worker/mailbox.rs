@@ -58,6 +58,8 @@ pub(crate) struct Measurement {
 #[derive(Default)]
 pub(crate) struct Mailbox {
     pub(crate) scene: Option<Scene>,
+    /// Takes the place of the volume, and leaves the renderer.
+    pub(crate) dataset: Option<Dataset>,
     pub(crate) frame_request: Option<FrameRequest>,
     pub(crate) closed: bool,
     /// Milliseconds per frame while something moves, if the user asked for other than usual.
@@ -75,7 +77,11 @@ impl Mailbox {
     /// Whether the window has left something that the thread has not read.
     pub(super) fn has_news(&self, is_frame_pending: bool) -> bool {
         let is_taken = is_frame_pending && self.frame.is_none();
-        self.closed || self.scene.is_some() || self.frame_request.is_some() || is_taken
+        self.closed
+            || self.scene.is_some()
+            || self.dataset.is_some()
+            || self.frame_request.is_some()
+            || is_taken
     }
 }
 

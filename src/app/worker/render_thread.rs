@@ -12,6 +12,7 @@ use super::mailbox::{Figures, Frame, Mailbox, Measurement, Shared};
 use super::render_worker::RenderWorker;
 use super::request::{FrameRequest, Scene};
 use super::task::panic_message;
+use crate::data::Dataset;
 use crate::gpu::{Context, GpuError};
 use crate::model::Settings;
 
@@ -58,7 +59,16 @@ impl RenderThread {
     /// Renders this from now on.
     pub(crate) fn set_scene(&self, scene: Scene) {
         let mut mailbox = self.shared.mailbox();
+        mailbox.dataset = None;
         (mailbox.scene, mailbox.frame_request, mailbox.frame) = (Some(scene), None, None);
+        (mailbox.measurement, mailbox.measured) = (None, None);
+        self.shared.changed.notify_one();
+    }
+
+    /// Renders another volume from now on, with the renderer that there is.
+    pub(crate) fn set_dataset(&self, dataset: Dataset) {
+        let mut mailbox = self.shared.mailbox();
+        (mailbox.dataset, mailbox.frame_request, mailbox.frame) = (Some(dataset), None, None);
         (mailbox.measurement, mailbox.measured) = (None, None);
         self.shared.changed.notify_one();
     }

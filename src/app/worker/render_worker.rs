@@ -104,6 +104,13 @@ impl RenderWorker {
                 self.last_full = None;
                 self.scene = Some(scene);
             }
+            if let Some(dataset) = self.agenda.take_dataset()
+                && let Some(scene) = &mut self.scene
+            {
+                self.brightness.forget();
+                self.last_full = None;
+                scene.dataset = dataset;
+            }
             self.measure_balance();
             let due = if self.scene.is_some() { self.agenda.due() } else { Due::WithNews };
             let rest = match due {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::report::round;
 use super::{Bench, MOST_SIZE};
 use crate::cli::CliError;
-use crate::cli::cpu_time::process_cpu_ms;
+use crate::cli::process::process_cpu_ms;
 use crate::data::DataKind;
 use crate::gpu::{
     LightSearch, RenderOptions, Sought, dark_share, first_look, mean_luminance, seen_share, shadowed_share,

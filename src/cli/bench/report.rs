@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::cli::cpu_time::process_cpu_ms;
+use crate::cli::process::process_cpu_ms;
 use crate::gpu::Report;
 
 /// Timings of one case.

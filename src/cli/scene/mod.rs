@@ -1,14 +1,17 @@
 //! Arguments that say what is rendered, common to most commands.
 
 mod choices;
+mod corrections;
 mod look;
 mod overlay;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use clap::{Args, ValueEnum};
 
 use self::choices::{EngineArg, KindArg, QualityArg, ShadowArg};
+pub(super) use self::corrections::{corrected, corrected_by};
 pub(super) use self::look::Look;
 use self::look::{Named, Proposed, proposal};
 use self::overlay::Overlay;
@@ -33,8 +36,8 @@ pub(super) struct LoadArgs {
     #[arg(long, value_name = "WxHxD", global = false)]
     dims: Option<String>,
     /// RAW input: uint8, int8, uint16, int16, uint32, int32, float32 or float64
-    #[arg(long = "type", value_name = "T")]
-    voxel_type: Option<String>,
+    #[arg(long = "type", value_name = "T", value_parser = parse_voxel_type)]
+    voxel_type: Option<VoxelType>,
     /// RAW input: distance between voxels in millimetres
     #[arg(long, value_name = "SXxSYxSZ")]
     spacing: Option<String>,
@@ -87,18 +90,11 @@ impl LoadArgs {
                 Some(triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?)
             }
         };
-        let voxel_type = match &self.voxel_type {
-            None => None,
-            Some(text) => {
-                let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
-                Some(known.ok_or_else(|| usage("type", text, "uint8, int8, … float64"))?)
-            }
-        };
         let endian = self.endian.map(|endian| match endian {
             EndianArg::Little => Endian::Little,
             EndianArg::Big => Endian::Big,
         });
-        let raw = RawFormat { dims, voxel_type, spacing_mm, endian, offset: self.offset };
+        let raw = RawFormat { dims, voxel_type: self.voxel_type, spacing_mm, endian, offset: self.offset };
         let choice = Choice {
             component: self.component,
             frame: self.frame,
@@ -148,6 +144,12 @@ fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result
     Ok(volume)
 }
 
+/// `uint8`
+pub(super) fn parse_voxel_type(text: &str) -> Result<VoxelType, String> {
+    let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
+    known.ok_or_else(|| format!("expected one of {}", VoxelType::ALL.map(VoxelType::name).join(", ")))
+}
+
 /// `1x2x3`.
 fn triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
     let parts: Vec<T> =
@@ -192,6 +194,9 @@ pub(super) struct LookArgs {
     engine: Option<EngineArg>,
     #[command(flatten)]
     load: LoadArgs,
+    /// Preset and session once they have been read, which a pipe allows once.
+    #[arg(skip)]
+    read: OnceLock<Vec<Overlay>>,
 }
 
 /// What is rendered, and how it looks.
@@ -221,7 +226,7 @@ impl SceneArgs {
     /// Loads the volume, and opens the adapter that shows it.
     pub(super) fn load(&self) -> Result<(Dataset, Context), CliError> {
         let (volume, context) = self.look.load.open(&self.file)?;
-        Ok((checked(volume), context))
+        Ok((checked(self.look.corrected(&self.file, volume)?), context))
     }
 
     /// What is to be loaded.
@@ -246,13 +251,28 @@ impl LookArgs {
     /// Loads a volume for an adapter that is open.
     pub(super) fn load(&self, source: &Path, context: &Context) -> Result<Dataset, CliError> {
         let whole = open(source, &self.load.load_options()?, &LoadControl::new())?;
-        Ok(checked(downsampled_to_fit(source, whole, context)?))
+        let volume = downsampled_to_fit(source, whole, context)?;
+        Ok(checked(self.corrected(source, volume)?))
     }
 
     /// The preset and the session that the arguments name, the one that counts last.
     fn overlays(&self) -> Result<Vec<Overlay>, CliError> {
+        if let Some(read) = self.read.get() {
+            return Ok(read.clone());
+        }
         let named = [("preset", &self.preset), ("session", &self.session)];
-        named.into_iter().filter_map(|(what, path)| Some(Overlay::read(what, path.as_ref()?))).collect()
+        let read = named.into_iter().filter_map(|(what, path)| Some(Overlay::read(what, path.as_ref()?)));
+        let read = read.collect::<Result<_, _>>()?;
+        Ok(self.read.get_or_init(|| read).clone())
+    }
+
+    /// A volume that was opened, corrected as its session and single settings say.
+    fn corrected(&self, source: &Path, volume: Volume) -> Result<Volume, CliError> {
+        let opened_id = volume.opened_id();
+        let overlays = self.overlays()?;
+        let of_session = overlays.iter().rev().find_map(|overlay| overlay.corrections_of(opened_id));
+        let by = corrections::laid_over(of_session.unwrap_or_default(), &self.set)?;
+        corrected(source, volume, &by)
     }
 
     /// The axis that is to point up, if preset, session or single settings name one.
@@ -315,6 +335,8 @@ impl LookArgs {
             settings = overlay.over(&settings, &volume.ranges(), &warn)?;
         }
         let mut settings = self.single_settings(settings, warn)?;
+        // It has been made into the volume.
+        settings.volume = *volume.corrections();
         named.add(|part| self.sets(part));
         let says_how_high = self.sets(FLOOR_HEIGHT) || overlays.iter().any(|one| one.names(FLOOR_HEIGHT));
         let shows = |look: &Settings| (look.transfer.clone(), look.range, look.camera.up);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::cli::CliError;
-use crate::data::{ValueRanges, read_small};
+use crate::data::{Corrections, ValueRanges, read_small};
 use crate::export::{PictureFormat, read_record};
 use crate::model::{Preset, Record, SceneAxis, Settings};
 
@@ -41,6 +41,11 @@ impl Overlay {
     /// Whether it says something of a setting, by its path.
     pub(super) fn names(&self, path: &str) -> bool {
         self.record.names(path)
+    }
+
+    /// How the volume was corrected that it is of, if that is what was opened.
+    pub(super) fn corrections_of(&self, opened_id: u64) -> Option<Corrections> {
+        self.record.corrections_of(opened_id)
     }
 
     /// The axis that points up, if it names one.

@@ -46,6 +46,24 @@ impl Modality {
         })
     }
 
+    /// Its code of DICOM (0008,0060); nothing where it is not known.
+    pub fn code(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Unknown => return None,
+            Self::Ct => "CT",
+            Self::Mr => "MR",
+            Self::Pet => "PT",
+            Self::Nuclear => "NM",
+            Self::Ultrasound => "US",
+            Self::XRay => "XA",
+            Self::OpticalCoherence => "OCT",
+            Self::LightMicroscopy => "SM",
+            // DICOM has none for it.
+            Self::ElectronMicroscopy => "EM",
+            Self::Segmentation => "SEG",
+        })
+    }
+
     /// What a code of DICOM (0008,0060), or a word for it, stands for.
     pub fn of_code(code: &str) -> Self {
         match code.trim().to_lowercase().as_str() {
@@ -98,5 +116,19 @@ mod tests {
             assert_eq!(Modality::of_code(code).key(), Some(code));
         }
         assert_eq!(Modality::Unknown.key(), None);
+        let all = [
+            Modality::Unknown,
+            Modality::Ct,
+            Modality::Mr,
+            Modality::Pet,
+            Modality::Nuclear,
+            Modality::Ultrasound,
+            Modality::XRay,
+            Modality::OpticalCoherence,
+            Modality::LightMicroscopy,
+            Modality::ElectronMicroscopy,
+            Modality::Segmentation,
+        ];
+        assert!(all.into_iter().all(|modality| Modality::of_code(modality.code().unwrap_or("")) == modality));
     }
 }

@@ -10,10 +10,14 @@ pub enum VolumeError {
     WrongCount { dims: [usize; 3], found: usize },
     #[error("the spacing or orientation is unusable ({what}): it must be finite and not flat")]
     BadGeometry { what: String },
+    #[error("the region is empty, or reaches beyond the {dims:?} voxels")]
+    Outside { dims: [usize; 3] },
     #[error("no voxel has a finite value")]
     NothingFinite,
     #[error(
         "the values reach {range}, further than 64-bit numbers can count: they must span less than 1.8e308"
     )]
     TooWide { range: String },
+    #[error("the memory for other values is not there ({bytes} bytes): close other programs")]
+    NoMemory { bytes: u64 },
 }

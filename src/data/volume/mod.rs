@@ -1,12 +1,17 @@
 //! A scalar volume on a regular grid, with its place in the world and its values in data units.
 
+mod corrections;
 mod error;
 mod kind;
 mod label_set;
 mod missing;
 mod reduce;
+mod region;
 mod shown;
 
+pub use corrections::{
+    AxisOrder, Corrections, Flips, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale,
+};
 pub use error::VolumeError;
 pub use kind::{DataKind, KindFound, KindName};
 pub use label_set::{CountedLabel, LabelSet, MAX_CLASSES};
@@ -18,6 +23,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use self::corrections::Corrected;
 use super::attempt::Held;
 use super::values::robust::quantile;
 use super::{Hints, Samples, ValueRange, ValueRanges};
@@ -39,6 +45,8 @@ pub struct Volume {
     name: String,
     dims: [usize; 3],
     file_dims: [usize; 3],
+    /// Voxels of the file along each axis of which one is the mean.
+    block: [usize; 3],
     world_from_index: DAffine3,
     samples: Arc<Samples>,
     ranges: ValueRanges,
@@ -57,6 +65,8 @@ pub struct Volume {
     /// Found when they are first asked for.
     labels: OnceLock<Option<Arc<LabelSet>>>,
     content_id: u64,
+    /// What it was made from, if somebody knows better than the file.
+    corrected: Option<Arc<Corrected>>,
 }
 
 impl Volume {
@@ -70,6 +80,16 @@ impl Volume {
         dims: [usize; 3],
         world_from_index: DAffine3,
         samples: Samples,
+    ) -> Result<Self, VolumeError> {
+        Self::sharing(name.into(), dims, world_from_index, Arc::new(samples))
+    }
+
+    /// As [`Self::new`], of voxels that others may have, too.
+    fn sharing(
+        name: String,
+        dims: [usize; 3],
+        world_from_index: DAffine3,
+        samples: Arc<Samples>,
     ) -> Result<Self, VolumeError> {
         if dims.contains(&0) {
             return Err(VolumeError::Empty { dims });
@@ -97,11 +117,12 @@ impl Volume {
             hash.rotate_left(17) ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15)
         });
         let volume = Self {
-            name: name.into(),
+            name,
             dims,
             file_dims: dims,
+            block: [1; 3],
             world_from_index,
-            samples: Arc::new(samples),
+            samples,
             ranges,
             shown: Shown::Range(ranges.robust),
             missing: None,
@@ -116,6 +137,7 @@ impl Volume {
             kind: OnceLock::new(),
             labels: OnceLock::new(),
             content_id,
+            corrected: None,
         };
         Ok(if non_finite_voxels > 0 { volume.with_missing() } else { volume })
     }

@@ -50,7 +50,8 @@ impl Volume {
             Some(padding) => reduced.with_padding(padding)?,
             None => reduced,
         };
-        Ok(reduced.standing_for(self))
+        let blocks = [0, 1, 2].map(|axis| self.block[axis] * block[axis]);
+        Ok(Self { block: blocks, ..reduced.standing_for(self) })
     }
 }
 

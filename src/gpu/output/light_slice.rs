@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use glam::{DAffine3, DMat3, DVec3};
+
 use crate::data::Volume;
-use crate::export::{ExportError, check_ending, encode_png, write_atomically};
+use crate::export::{ExportError, check_ending, encode_png, nrrd_header_like, write_atomically};
 use crate::gpu::resources::readback::Attenuation;
 use crate::math::false_color;
-use crate::model::made_by;
 
 /// Values in a plane of a light volume.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,23 +54,15 @@ pub fn export_slice(slice: &LightSlice, path: &Path) -> Result<(), ExportError> 
     write_atomically(path, &png)
 }
 
-/// The attenuation volume as an attached NRRD, in the place of the data (right-anterior-superior).
+/// The attenuation volume as an attached NRRD, in the place of the data.
 pub fn light_volume_nrrd(volume: &Volume, attenuation: &Attenuation) -> Vec<u8> {
     let world = volume.world_from_index();
     let step = attenuation.divisor as f64;
-    let vector = |v: glam::DVec3| format!("({},{},{})", v.x, v.y, v.z);
-    let origin = world.transform_point3(glam::DVec3::splat(step / 2.0 - 0.5));
-    let [nx, ny, nz] = attenuation.dims;
-    let header = format!(
-        "NRRD0005\n# {}\ncontent: light attenuation\ntype: float\ndimension: 3\nspace: right-anterior-superior\n\
-         sizes: {nx} {ny} {nz}\nspace directions: {} {} {}\nspace origin: {}\n\
-         endian: little\nencoding: raw\n\n",
-        made_by(),
-        vector(world.matrix3.x_axis * step),
-        vector(world.matrix3.y_axis * step),
-        vector(world.matrix3.z_axis * step),
-        vector(origin),
-    );
+    let block = DAffine3 {
+        matrix3: DMat3::from_diagonal(DVec3::splat(step)),
+        translation: DVec3::splat(step / 2.0 - 0.5),
+    };
+    let header = nrrd_header_like(volume, "light attenuation", attenuation.dims, world * block);
     let mut bytes = header.into_bytes();
     bytes.extend(attenuation.values.iter().flat_map(|value| value.to_le_bytes()));
     bytes

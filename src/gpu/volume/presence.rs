@@ -1,5 +1,5 @@
-//! Where voxels are missing: the share of kernels that lies on those that are there, in a texture beside the pyramid and
-//! like it, level by level. Made here and uploaded, since few volumes have any.
+//! Where voxels are missing: the share of kernels that lies on those that are there, and how it changes, in a texture
+//! beside the pyramid and like it, level by level. Made here and uploaded, since few volumes have any.
 
 use std::ops::Range;
 
@@ -13,6 +13,13 @@ use crate::plan::MAX_STRETCH_LEVEL;
 
 /// The coarsest level.
 const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
+
+/// Bytes of a texel: the share, and its changes along x, y and z.
+const TEXEL_BYTES: usize = 4;
+
+/// The byte of a change that is none, and how many more or fewer stand for a change from nothing to all.
+const NO_CHANGE: f32 = 128.0;
+const WHOLE_CHANGE: f32 = 127.0;
 
 /// Texels of level 0 per upload step: some 20 ms, and 16 MiB while it is made.
 const STEP_TEXELS: usize = 1 << 20;
@@ -42,7 +49,7 @@ impl Presence {
             ..texture_3d(
                 "Volume::presence",
                 padded(dims),
-                wgpu::TextureFormat::R8Unorm,
+                wgpu::TextureFormat::Rgba8Unorm,
                 wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             )
         })?;
@@ -75,7 +82,7 @@ impl Presence {
                 &slab.bytes(&kept),
                 wgpu::TexelCopyBufferLayout {
                     offset: 0,
-                    bytes_per_row: Some(width),
+                    bytes_per_row: Some(width * TEXEL_BYTES as u32),
                     rows_per_image: Some(height),
                 },
                 wgpu::Extent3d { width, height, depth_or_array_layers: kept.len() as u32 },
@@ -88,7 +95,7 @@ impl Presence {
         let size = self.texture.size();
         let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
         // The coarser levels add a seventh.
-        texels * 8 / 7
+        TEXEL_BYTES as u64 * texels * 8 / 7
     }
 }
 
@@ -103,11 +110,13 @@ struct Slab {
     shares: Vec<f32>,
 }
 
-/// Of every level, the finest first, at least the slices that lie in those of the coarsest.
+/// Of every level, the finest first, at least the slices that lie in those of the coarsest, and one to either side.
 fn levels_of(missing: &Missing, dims: [usize; 3], coarsest: Range<usize>) -> Vec<Slab> {
     let depth = padded(dims)[2];
+    // Changes are seen from the neighbours of a slice.
+    let widened = coarsest.start.saturating_sub(1)..(coarsest.end + 1).min(depth >> MAX_LEVEL);
     // Of each level those that the next is made from: texel i of 2i − 1 … 2i + 2.
-    let mut slices = vec![coarsest];
+    let mut slices = vec![widened];
     for level in (0..MAX_LEVEL).rev() {
         let Range { start, end } = slices[slices.len() - 1].clone();
         slices.push((2 * start).saturating_sub(1)..(2 * end + 1).min(depth >> level));
@@ -192,11 +201,24 @@ impl Slab {
         Self { dims, first, depth, shares }
     }
 
-    /// Some of its slices in eight bits.
+    /// Some of its slices as texels.
     fn bytes(&self, slices: &Range<usize>) -> Vec<u8> {
         let slice = self.dims[0] * self.dims[1];
         let kept = (slices.start - self.first) * slice..(slices.end - self.first) * slice;
-        self.shares[kept].par_iter().map(|share| (share * 255.0).round() as u8).collect()
+        kept.into_par_iter().flat_map_iter(|at| self.texel(at)).collect()
+    }
+
+    /// The share at a place of its list, and the differences of its neighbours; beyond the outermost texel is the
+    /// outermost, as a sampler has it.
+    fn texel(&self, at: usize) -> [u8; TEXEL_BYTES] {
+        let change = |axis: usize| {
+            let stride: usize = self.dims[..axis].iter().product();
+            let place = at / stride % self.dims[axis];
+            let before = if place > 0 { at - stride } else { at };
+            let behind = if place + 1 < self.dims[axis] { at + stride } else { at };
+            (NO_CHANGE + WHOLE_CHANGE * (self.shares[behind] - self.shares[before])).round() as u8
+        };
+        [(self.shares[at] * 255.0).round() as u8, change(0), change(1), change(2)]
     }
 }
 
@@ -226,6 +248,23 @@ mod tests {
             // Coarse texels at the outermost edge count what spreads beyond twice.
             assert!((sum / there - 1.0).abs() < 0.02, "level {level}: {sum} of {there}");
         }
+    }
+
+    #[test]
+    fn changes_lead_from_what_is_missing_to_what_is_there() {
+        let dims = [16, 5, 5];
+        let values: Vec<f32> =
+            (0..dims.iter().product::<usize>()).map(|at| if at % 16 < 8 { f32::NAN } else { 1.0 }).collect();
+        let volume = Volume::with_spacing("t", dims, DVec3::ONE, Samples::F32(values)).unwrap();
+        let slabs = levels_of(volume.missing().unwrap(), dims, 0..padded(dims)[2] >> MAX_LEVEL);
+        let [nx, ny, _] = slabs[0].dims;
+        let row = nx * (PYRAMID_PADDING + 2 + ny * (PYRAMID_PADDING + 2));
+        let along_x: Vec<[u8; TEXEL_BYTES]> =
+            (0..16).map(|x| slabs[0].texel(row + PYRAMID_PADDING + x)).collect();
+        // The prefilter of a step: 1/12, 11/12, 1.
+        assert_eq!([6, 7, 8, 9].map(|x: usize| along_x[x][0]), [0, 21, 234, 255]);
+        assert_eq!([5, 6, 7, 8, 9, 10].map(|x: usize| along_x[x][1]), [128, 139, 244, 244, 139, 128]);
+        assert!(along_x.iter().all(|texel| texel[2..] == [NO_CHANGE as u8; 2]), "{along_x:?}");
     }
 
     #[test]

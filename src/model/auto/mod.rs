@@ -85,6 +85,7 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
         shading: shading(found.domain),
         // A look that nobody has made by hand stays as bright as without shadows.
         shadows: Shadows { keep_balanced: true, ..Shadows::default() },
+        volume: *volume.corrections(),
         ..Settings::default()
     };
     Quality::Standard.apply(&mut settings);

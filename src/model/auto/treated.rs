@@ -24,7 +24,7 @@ pub fn treated_as(
 /// what the floor looks like, and saved views.
 #[must_use]
 pub fn in_place_of(look: Settings, settings: &Settings) -> Settings {
-    let Settings { cuts, output, shadows, sampling, floor, views, .. } = settings.clone();
+    let Settings { cuts, output, shadows, sampling, floor, views, volume, .. } = settings.clone();
     Settings {
         sampling: Sampling { classification: look.sampling.classification, ..sampling },
         floor: Floor { height: look.floor.height, ..floor },
@@ -32,6 +32,7 @@ pub fn in_place_of(look: Settings, settings: &Settings) -> Settings {
         output,
         shadows,
         views,
+        volume,
         ..look
     }
 }

@@ -1,6 +1,7 @@
 //! The one value that is the whole look of a picture.
 
 pub(super) mod camera;
+mod corrected;
 pub(super) mod cut;
 pub(super) mod floor;
 pub(super) mod labels;
@@ -23,14 +24,14 @@ use super::{
     Length, Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder,
     Slabs, TransferFunction,
 };
-use crate::data::{BOUNDED_SIGMA, SIGMA_TOLERANCE, ValueRange};
+use crate::data::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
 
 /// Version of the JSON form. Files of every version are read as far as possible: what they lack keeps its
 /// default, and what is not known here is reported.
 pub const SCHEMA: u32 = 2;
 
-/// Everything that decides what a picture of a volume looks like.
+/// Everything that decides what a picture of a volume looks like, and what of its file is corrected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
@@ -65,6 +66,9 @@ pub struct Settings {
     pub output: Output,
     /// Views that are kept, by their digit; they are no part of the picture.
     pub views: BTreeMap<u8, Camera>,
+    /// What somebody knows better than the file of the volume. It belongs to that file: looks for any volume neither have
+    /// nor change it.
+    pub volume: Corrections,
 }
 
 impl Default for Settings {
@@ -85,6 +89,7 @@ impl Default for Settings {
             sampling: Sampling::default(),
             output: Output::default(),
             views: BTreeMap::new(),
+            volume: Corrections::default(),
         }
     }
 }

@@ -83,6 +83,7 @@ impl Settings {
             function.sort();
         }
         self.range = self.range.sane();
+        self.volume.sanitise();
         self.labels.sanitise();
         number(&mut self.lighting.scale, 0.0, 1e3, 1.0);
         let Cuts { crop, plane } = &mut self.cuts;

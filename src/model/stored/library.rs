@@ -93,7 +93,8 @@ impl Preset {
     }
 }
 
-/// As [`apply_json`], for presets whose values may be shares of the range that the look chooses of a volume's values.
+/// As [`apply_json`], for looks whose values may be shares of the range that the look chooses of a volume's values. What is
+/// corrected of a volume stays as it is.
 ///
 /// # Errors
 /// As [`apply_json`].
@@ -102,7 +103,16 @@ pub fn apply_relative(
     overlay: &Value,
     ranges: &ValueRanges,
 ) -> Result<(Settings, Vec<String>), PresetError> {
-    let (mut applied, warnings) = apply_json(settings, overlay)?;
+    let (mut applied, mut warnings) = apply_json(settings, overlay)?;
+    // A look is of any volume; what is known of a file, of that alone.
+    let applied_corrections = std::mem::replace(&mut applied.volume, settings.volume);
+    if applied_corrections != settings.volume
+        && !applied_corrections.is_none()
+        && overlay.get("_volume").is_none()
+    {
+        warnings
+            .push("corrections of a volume (`volume`) were ignored: a preset is of any volume".to_owned());
+    }
     let range = applied.range.of(ranges);
     if overlay.get("_values").and_then(Value::as_str) == Some("relative") {
         let has = |path: &str| overlay.pointer(path).is_some();
@@ -155,6 +165,26 @@ mod tests {
             }
         }
         assert_eq!(found, PRESETS.len());
+    }
+
+    #[test]
+    fn what_is_known_of_a_file_is_neither_in_a_preset_nor_changed_by_one() {
+        let ranges = ValueRanges::same(ValueRange::new(-1000.0, 3000.0));
+        let mut over = Settings::default();
+        over.volume.spacing = Some([0.5, 0.5, 2.0]);
+        for preset in PRESETS {
+            let own: Value = serde_json::from_str(preset.text).unwrap();
+            assert_eq!(own.get("volume"), None, "{}", preset.name);
+            assert_eq!(preset.apply(&over, &ranges).unwrap().volume, over.volume);
+        }
+        let own = serde_json::json!({"shadows": {"gain": 2.0}, "volume": {"flip": {"x": true}}});
+        let (applied, warnings) = apply_relative(&over, &own, &ranges).unwrap();
+        assert_eq!((applied.volume, applied.shadows.gain), (over.volume, 2.0));
+        assert!(warnings.len() == 1 && warnings[0].contains("`volume`"), "{warnings:?}");
+        // A whole look without corrections has nothing to say of them.
+        let whole = serde_json::to_value(Settings::default()).unwrap();
+        let (applied, warnings) = apply_relative(&over, &whole, &ranges).unwrap();
+        assert_eq!((applied.volume, warnings), (over.volume, Vec::<String>::new()));
     }
 
     #[test]

@@ -14,9 +14,12 @@ use super::path_text::{decode_path, encode_path};
 use super::renames::rename;
 use super::schemas::complete;
 use super::unknown;
-use crate::data::ValueRanges;
 use crate::data::load::Choice;
+use crate::data::{Corrections, ValueRanges};
 use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_relative};
+
+/// The name of the setting that is of the volume of a record, and not of its look.
+const CORRECTIONS: &str = "volume";
 
 /// The volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -26,7 +29,7 @@ pub struct VolumeRecord {
     /// Every byte of that file's path ([`encode_path`]), where `source` cannot say it: not all names are text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source_bytes: Option<String>,
-    /// Identifies values and geometry, in hexadecimal digits.
+    /// Identifies values and geometry of the file, in hexadecimal digits.
     pub content_id: String,
     /// Which of several volumes of the file it is.
     #[serde(default, skip_serializing_if = "Choice::is_empty")]
@@ -217,8 +220,18 @@ impl Record {
         given.pointer(&format!("/{}", path.replace('.', "/"))).is_some()
     }
 
+    /// How the volume of the record was corrected, if a volume is that one: `opened_id` is that of the file. Records from
+    /// before there were corrections are of volumes without any.
+    pub fn corrections_of(&self, opened_id: u64) -> Option<Corrections> {
+        self.volume.as_ref().filter(|of| of.is_of(opened_id))?;
+        let said = self.overlay.get(CORRECTIONS).and_then(|said| Corrections::deserialize(said).ok());
+        let mut corrections = said.unwrap_or_default();
+        corrections.sanitise();
+        Some(corrections)
+    }
+
     /// The settings of the record laid over others, for a volume with these values, and warnings of what was not
-    /// understood.
+    /// understood. What is corrected of the volume stays as it is: see [`Self::corrections_of`].
     ///
     /// # Errors
     /// As [`apply_relative`].
@@ -278,6 +291,24 @@ mod tests {
             Record::read(r#"{"_volume": {"source": "a", "content_id": "", "choice": {"frame": -1}}}"#)
                 .is_err()
         );
+    }
+
+    #[test]
+    fn corrections_go_with_the_volume_of_a_record_and_with_no_other() {
+        let mut settings = Settings::default();
+        settings.volume.spacing = Some([0.5, 0.5, 2.0]);
+        settings.volume.flip.z = true;
+        let volume = VolumeRecord::new("a.nrrd", 7, None);
+        let record = Record::read(&Record::text(&settings, Some(&volume), None)).unwrap();
+        assert_eq!(record.corrections_of(7), Some(settings.volume));
+        assert_eq!(record.corrections_of(8), None);
+        let (applied, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
+        assert!(applied.volume.is_none() && warnings.is_empty() && record.is_understood(), "{warnings:?}");
+        // From before there were any, and of no volume.
+        let before = r#"{"schema": 2, "_volume": {"source": "a.nrrd", "content_id": "0000000000000007"}}"#;
+        assert_eq!(Record::read(before).unwrap().corrections_of(7), Some(Corrections::default()));
+        let of_none = Record::read(&Record::text(&settings, None, None)).unwrap();
+        assert_eq!(of_none.corrections_of(7), None);
     }
 
     #[test]

@@ -111,6 +111,8 @@ impl EyeKey {
             sampling: _,
             output: _,
             views: _,
+            // In the identity of the volume that it is made into.
+            volume: _,
         } = settings;
         let lit = LitLights::of(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };

@@ -81,6 +81,8 @@ impl LightKey {
                 },
             output: _,
             views: _,
+            // In the identity of the volume that it is made into.
+            volume: _,
         } = &request.settings;
         let light = lights.get(index)?.in_scene(camera);
         let SceneLight {

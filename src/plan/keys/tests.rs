@@ -150,6 +150,17 @@ fn every_setting_causes_what_the_design_says() {
         ("output.background.bottom", "[0,0,0]", Effect::Display),
         ("output.tone_map", "clip", Effect::Display),
         ("output.exposure", "2", Effect::Display),
+        // They make another volume, which changes every key, and are in none.
+        ("volume.spacing", "[0.5, 0.5, 2]", Effect::Nothing),
+        ("volume.unit", "um", Effect::Nothing),
+        ("volume.flip.x", "true", Effect::Nothing),
+        ("volume.flip.y", "true", Effect::Nothing),
+        ("volume.flip.z", "true", Effect::Nothing),
+        ("volume.axis_order", "zyx", Effect::Nothing),
+        ("volume.orientation", "LPS", Effect::Nothing),
+        ("volume.padding_value", "-2000", Effect::Nothing),
+        ("volume.value_scale.slope", "2", Effect::Nothing),
+        ("volume.value_scale.intercept", "-1024", Effect::Nothing),
     ];
     for (path, value, expected) in &table {
         assert_eq!(&effect_of(&request(), path, value), expected, "{path} = {value}");
@@ -265,6 +276,28 @@ fn another_volume_changes_every_key() {
     let (before, after) = (keys(&request()), keys(&other));
     assert!(before.volume != after.volume && before.tables != after.tables && before.eye != after.eye);
     assert_eq!(after.lights_missing_in(&before), 3);
+}
+
+#[test]
+fn a_corrected_volume_changes_every_key() {
+    let samples = crate::data::Samples::U8((0..64).collect());
+    let opened = crate::data::Volume::with_spacing("t", [4; 3], glam::DVec3::ONE, samples).unwrap();
+    let before = Request { volume: opened.id(), ..request() };
+    for (path, value) in [
+        ("volume.spacing", "0.5,0.5,2"),
+        ("volume.unit", "um"),
+        ("volume.flip.x", "true"),
+        ("volume.axis_order", "zyx"),
+        ("volume.orientation", "LPS"),
+        ("volume.padding_value", "3"),
+        ("volume.value_scale.slope", "2"),
+    ] {
+        let settings = apply_path(&before.settings, path, value).unwrap();
+        let volume = opened.corrected(&settings.volume).unwrap().id();
+        let (old, new) = (keys(&before), keys(&Request { volume, settings, ..before.clone() }));
+        assert!(old.volume != new.volume && old.eye != new.eye, "{path}");
+        assert_eq!(new.lights_missing_in(&old), 3, "{path}");
+    }
 }
 
 #[test]

@@ -67,6 +67,23 @@ impl Pyramid {
         self
     }
 
+    /// How values change from the texel before to the one behind along an axis, level by level.
+    pub(in crate::reference) fn changes(&self, axis: usize) -> Self {
+        let change = |level: &Level| {
+            let Level { dims, values } = level;
+            let at = |texel: [usize; 3], along: usize| {
+                let [x, y, z] = std::array::from_fn(|i| if i == axis { along } else { texel[i] });
+                values[x + dims[0] * (y + dims[1] * z)]
+            };
+            let values = texels(*dims, |texel| {
+                let behind = (texel[axis] + 1).min(dims[axis] - 1);
+                at(texel, behind) - at(texel, texel[axis].saturating_sub(1))
+            });
+            Level { dims: *dims, values }
+        };
+        Self { levels: self.levels.iter().map(change).collect() }
+    }
+
     /// The value at an index-space point: trilinear in the two levels around `level`, linear
     /// between them.
     pub fn fetch(&self, point: DVec3, level: f64) -> f64 {

@@ -35,6 +35,9 @@ impl Reference<'_> {
     /// ∇ presence in index space: central differences over as many voxels as the kernel is stretched.
     fn presence_slope(&self, profile: &Profile, point: DVec3, level: f64) -> DVec3 {
         let step = level.clamp(0.0, MAX_LEVEL as f64).exp2();
+        if let Some(changes) = &self.presence_changes {
+            return DVec3::from(changes.each_ref().map(|along| along.fetch(point, level))) / (2.0 * step);
+        }
         let at = |point| self.presence(profile, point, level);
         let along = |axis: DVec3| (at(point + axis * step) - at(point - axis * step)) / (2.0 * step);
         DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))

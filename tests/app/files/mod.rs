@@ -1,6 +1,7 @@
 //! Files that the window opens, writes, and keeps from one run to the next.
 
 mod choosing;
+mod corrections;
 mod export;
 mod foreign_paths;
 mod opening;

@@ -25,7 +25,7 @@ pub(super) fn all(folder: &Path, forbidden: &Path) -> Vec<Hostile> {
 }
 
 /// Names that lead out of a folder, or to what is no file.
-fn names(folder: &Path, forbidden: &Path) -> Vec<String> {
+pub(super) fn names(folder: &Path, forbidden: &Path) -> Vec<String> {
     let target = forbidden.join("voxels.raw");
     #[cfg(unix)]
     for (link, to) in [("link.raw", target.as_path()), ("link", forbidden)] {

@@ -3,6 +3,7 @@
 
 mod files;
 mod runner;
+mod volumes;
 
 use self::files::{Hostile, all};
 use self::runner::{Trace, watch};

@@ -5,6 +5,7 @@ mod cuts;
 mod floor;
 mod near_field;
 mod peaks;
+mod phantom;
 mod sides;
 mod stretch;
 mod variants;

@@ -139,6 +139,46 @@ fn files_stand_as_those_of_their_folder_did() {
     assert!(memory.standing.is_empty() && memory.take_notices().len() == 1, "put aside, and said");
 }
 
+#[test]
+fn files_are_corrected_as_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = tempfile::tempdir().unwrap();
+    let [file, other] = ["a.nrrd", "b.nrrd"].map(|name| data.path().join(name));
+    fs::write(&file, "voxels").unwrap();
+    let (stamp, no_stamp) = (FileStamp::of(&file), FileStamp::of(&other));
+    let wide = Corrections { spacing: Some([0.5, 0.5, 2.0]), ..Corrections::default() };
+    let mut memory = remember(folder.path());
+    assert!(memory.corrections_of(&file).is_none());
+    memory.corrected(&file, stamp, 7, wide);
+    memory.corrected(&other, no_stamp, 9, Corrections { unit: wide.unit, ..wide });
+    memory.corrected(Path::new("builtin:chair"), no_stamp, 3, wide);
+    assert!(memory.corrections_of(Path::new("builtin:chair")).is_none());
+    drop(memory);
+    let mut memory = remember(folder.path());
+    let known = memory.corrections_of(&file).unwrap();
+    // Of a file that was not touched, or that holds the same all the same; of nothing else at its place.
+    assert_eq!((known.of(stamp, 8), known.of(no_stamp, 7)), (Some(wide), Some(wide)));
+    fs::write(&file, "other voxels").unwrap();
+    assert_eq!(known.of(FileStamp::of(&file), 8), None);
+    assert_eq!(memory.corrections_of(&other).unwrap().of(no_stamp, 8), None);
+    // What the file says need not be remembered.
+    memory.corrected(&file, stamp, 7, Corrections::default());
+    assert!(memory.corrections_of(&file).is_none());
+    for at in 0..2 * corrected::MOST {
+        let file = PathBuf::from(format!("/{at}.nrrd"));
+        memory.corrected(&file, stamp, at as u64, wide);
+    }
+    drop(memory);
+    let memory = remember(folder.path());
+    assert_eq!(memory.corrected.len(), corrected::MOST);
+    assert!(memory.corrections_of(Path::new("/1.nrrd")).is_none());
+    assert_eq!(memory.corrections_of(Path::new("/999.nrrd")).unwrap().of(no_stamp, 999), Some(wide));
+    drop(memory);
+    fs::write(folder.path().join("corrected.json"), "[{}]").unwrap();
+    let mut memory = remember(folder.path());
+    assert!(memory.corrected.is_empty() && memory.take_notices().len() == 1, "put aside, and said");
+}
+
 /// A change is on the disk soon, though nothing happens after it: no frame, no further change.
 #[test]
 fn the_last_change_is_kept_within_two_seconds() {

@@ -224,6 +224,7 @@ fn brightness(settings: &Settings) -> Settings {
         sampling,
         output: _,
         views: _,
+        volume,
     } = settings;
     let mut lights = lights.clone();
     for light in &mut lights {
@@ -243,6 +244,7 @@ fn brightness(settings: &Settings) -> Settings {
         cuts: cuts.clone(),
         // Both engines make the same picture.
         sampling: Sampling { engine: Engine::Gather, ..sampling.clone() },
+        volume: *volume,
         ..Settings::default()
     }
 }

@@ -29,7 +29,7 @@ impl App {
                 VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
                 VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
             },
-            Some(_) => drop(self.apply_record(&record, &self.value_ranges())),
+            Some(_) => drop(self.apply_record(&record, &self.value_ranges(), self.opened_id())),
             None => self.use_look(record, ctx),
         }
     }
@@ -57,7 +57,7 @@ impl App {
         } else if self.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
         } else {
-            self.apply_record(&record, &self.value_ranges());
+            self.apply_record(&record, &self.value_ranges(), self.opened_id());
         }
     }
 
@@ -99,7 +99,7 @@ impl App {
                 if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
                     self.messages.note(text::opening::OF_ANOTHER_VOLUME);
                 }
-                self.apply_record(&record, &self.value_ranges());
+                self.apply_record(&record, &self.value_ranges(), self.opened_id());
             }
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
         }
@@ -119,11 +119,21 @@ impl App {
         Ok(settings)
     }
 
-    /// Lays a record over the settings; whether that could be done.
-    pub(super) fn apply_record(&mut self, record: &Record, ranges: &ValueRanges) -> bool {
+    /// Lays a record over the settings; whether that could be done. It corrects the volume, if that is the one that it is
+    /// of.
+    pub(super) fn apply_record(
+        &mut self,
+        record: &Record,
+        ranges: &ValueRanges,
+        opened_id: Option<u64>,
+    ) -> bool {
         match self.with_record(record, ranges) {
             Ok(settings) => {
                 self.settings = settings;
+                if let Some(by) = opened_id.and_then(|open| record.corrections_of(open)) {
+                    self.settings.volume = by;
+                    self.corrected.accept(by);
+                }
                 if record.names_balance() {
                     self.keep_balanced.accept(&self.settings);
                 }
@@ -138,8 +148,7 @@ impl App {
 
     /// The open volume, for records.
     pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
-        let dataset = self.viewport.dataset()?;
-        Some((&self.volume.as_ref()?.source, dataset.volume().content_id()))
+        Some((&self.volume.as_ref()?.source, self.opened_id()?))
     }
 
     /// Where Ctrl+S writes, if it may; else why not is said.
@@ -151,9 +160,8 @@ impl App {
     }
 
     pub(crate) fn save_settings(&mut self, path: &Path) {
-        let open = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
-        let record = self.volume.as_ref().zip(open).map(|(volume, content_id)| {
-            VolumeRecord::new(&volume.source, content_id, path.parent()).choosing(volume.held.choice())
+        let record = self.volume.as_ref().zip(self.opened_id()).map(|(volume, opened_id)| {
+            VolumeRecord::new(&volume.source, opened_id, path.parent()).choosing(volume.held.choice())
         });
         match Session::save(&mut self.session, path, &self.settings, record.as_ref()) {
             Ok(()) => self.messages.note(text::opening::saved(path)),

@@ -11,15 +11,17 @@ use eframe::egui;
 
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::shell::first_lights::FirstLights;
-use crate::app::shell::history::History;
+use crate::app::shell::history::{History, Step};
 use crate::app::shell::keep_balanced::KeepBalanced;
-use crate::app::shell::treat_as::Treated;
-use crate::app::shell::upright::Upright;
+use crate::app::shell::object::corrected::Corrected;
+use crate::app::shell::object::treat_as::Treated;
+use crate::app::shell::object::upright::Upright;
 use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
-use crate::app::worker::loader::{Opened, Reading};
+use crate::app::worker::loader::{Known, Opened, Reading};
 use crate::app::{App, text};
 use crate::data::load::Choice;
+use crate::data::{Corrections, Volume};
 use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, made_by};
 
 use self::folders::Likeness;
@@ -144,12 +146,28 @@ impl App {
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
-        let up = self.memory.up_of(source);
-        let started = self.loader.open(source, reading, up, ctx);
+        let known = Known { up: self.memory.up_of(source), corrected: self.memory.corrections_of(source) };
+        let started = self.loader.open(source, reading, known, ctx);
         if let Err(err) = &started {
             self.messages.error(text::opening::NOT_OPENED, err.clone());
         }
         started.is_ok()
+    }
+
+    /// What can be undone of a volume that has just been opened: that it was corrected as the last time.
+    fn history_of(&self, volume: &Volume) -> History {
+        let by = self.settings.volume;
+        if by.is_none() || by != *volume.corrections() {
+            return History::default();
+        }
+        let mut settings = self.settings.clone();
+        settings.correct(Corrections::default(), volume);
+        History::after(&Step { settings, treated_as: None })
+    }
+
+    /// Identifies the file that is open.
+    pub(super) fn opened_id(&self) -> Option<u64> {
+        self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
     }
 
     /// Something was found before there was a window to say it.
@@ -161,9 +179,8 @@ impl App {
 
     /// Keeps the look as it is now, so that nothing is lost however this run ends; and says what could not be kept.
     pub(crate) fn keep_look(&mut self) {
-        let open = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
-        if let Some((volume, content_id)) = self.volume.as_ref().zip(open) {
-            self.memory.keep(&self.settings, &volume.source, content_id, &volume.held.choice());
+        if let Some((volume, opened_id)) = self.volume.as_ref().zip(self.opened_id()) {
+            self.memory.keep(&self.settings, &volume.source, opened_id, &volume.held.choice());
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.show(picture);
             }
@@ -177,7 +194,7 @@ impl App {
 
     /// A volume is ready: it replaces the one before.
     pub(crate) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
-        let Opened { source, reading, dataset, too_many, renderer, settings } = opened;
+        let Opened { source, reading, dataset, too_many, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
         let likeness = match (&self.pending, &self.volume) {
@@ -187,7 +204,10 @@ impl App {
         if let Some(PendingLook::IfAlike) = self.pending {
             self.pending = (likeness == Likeness::Grid).then_some(PendingLook::Current);
         }
-        let current = matches!(self.pending, Some(PendingLook::Current)).then(|| self.settings.clone());
+        // Another file has corrections of its own.
+        let by = if likeness == Likeness::Grid { settings.volume } else { self.settings.volume };
+        let is_current = matches!(self.pending, Some(PendingLook::Current));
+        let current = is_current.then(|| Settings { volume: by, ..self.settings.clone() });
         let selected_light = if current.is_some() { self.selected_light } else { 0 };
         if let Some(before) = too_many {
             self.messages.note(text::opening::averaged(before, volume.dims()));
@@ -195,13 +215,16 @@ impl App {
         for remark in volume.remarks() {
             self.messages.note(remark.clone());
         }
+        if !volume.corrections().is_none() {
+            self.messages.note(text::corrections::as_last_time(&volume.corrections().in_words()));
+        }
         self.defaults = settings.clone();
         let is_kept = (self.keeps_look || likeness == Likeness::Kind) && self.volume.is_some();
         if is_kept {
             // As it was, but for where the object is: that is another one, and may stand another way up.
             let mut before = std::mem::take(&mut self.settings);
             before.turn_object(ObjectTurn::Upright(settings.camera.up));
-            let mut kept = Settings { camera: settings.camera.clone(), ..before };
+            let mut kept = Settings { camera: settings.camera.clone(), volume: settings.volume, ..before };
             kept.floor.height = settings.floor.height;
             self.settings = kept;
         } else {
@@ -212,7 +235,7 @@ impl App {
         let has_session =
             self.session_is_due && self.session.as_ref().is_some_and(|session| session.path().exists());
         let is_named = is_kept || has_session || self.pending.is_some() || self.adjust.is_some();
-        let ranges = volume.ranges();
+        let (ranges, opened_id) = (volume.ranges(), Some(volume.opened_id()));
         // Session and command line speak of the first volume.
         if std::mem::take(&mut self.session_is_due)
             && let Some(mut session) = self.session.take_if(|session| session.path().exists())
@@ -220,7 +243,7 @@ impl App {
             let found = files::load_record(session.path());
             session.found(found.as_ref());
             match found {
-                Ok(record) if !self.apply_record(&record, &ranges) => session.not_understood(),
+                Ok(record) if !self.apply_record(&record, &ranges, opened_id) => session.not_understood(),
                 Ok(_) => {}
                 Err(err) => self.messages.error(text::opening::SESSION_NOT_LOADED, err),
             }
@@ -239,10 +262,10 @@ impl App {
                 self.keep_balanced.accept(&self.settings);
             }
             Some(PendingLook::Record(record)) => {
-                if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.content_id())) {
+                if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.opened_id())) {
                     self.messages.note(text::opening::OF_OTHER_VALUES);
                 }
-                self.apply_record(&record, &ranges);
+                self.apply_record(&record, &ranges, opened_id);
             }
         }
         if let Some(adjust) = self.adjust.take() {
@@ -257,7 +280,8 @@ impl App {
         // With its own look, as it stands there.
         (self.treated, self.upright) = (Treated::default(), Upright::default());
         self.viewport.set_scene(renderer, dataset);
-        self.history = History::default();
+        self.history = self.history_of(&volume);
+        self.corrected = Corrected::new(stamp, self.settings.volume);
         self.selected_light = selected_light;
         let title = text::opening::title(self.volume_name().unwrap_or_default());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));

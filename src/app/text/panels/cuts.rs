@@ -1,5 +1,6 @@
 //! The section of cuts: the crop box and the clip plane.
 
+use crate::app::text::common::LengthUnit;
 use crate::app::text::{Named, named};
 
 /// In place of the section while no volume is open.
@@ -51,8 +52,9 @@ pub(crate) fn crop_to(axis: &str) -> String {
 }
 
 /// How long the box is along an axis.
-pub(crate) fn length(mm: f64) -> String {
-    if mm < 100.0 { format!("{mm:.1} mm") } else { format!("{mm:.0} mm") }
+pub(crate) fn length(length_mm: f64, unit: LengthUnit) -> String {
+    let length = length_mm / unit.mm;
+    if length < 100.0 { format!("{length:.1}{}", unit.suffix) } else { format!("{length:.0}{}", unit.suffix) }
 }
 
 /// The tip of the button that turns the plane across an axis.

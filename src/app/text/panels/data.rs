@@ -1,5 +1,6 @@
 //! The section of data: what the volume is.
 
+use crate::app::text::common::LengthUnit;
 use crate::app::text::{Named, named};
 use crate::data::{DataKind, KindName};
 
@@ -102,14 +103,17 @@ pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {
     format!("{x} × {y} × {z}")
 }
 
-/// The unit of distances between voxels.
-pub(crate) fn unit_of_spacing(is_unknown: bool) -> &'static str {
-    if is_unknown { "(unit unknown)" } else { "mm" }
+/// The unit in which distances between voxels are written.
+pub(crate) fn unit_of_spacing(spacing_mm: [f64; 3], is_unknown: bool) -> LengthUnit {
+    let longest = spacing_mm.into_iter().fold(0.0, f64::max);
+    // Down to a hundredth of a millimetre there are digits enough behind the point.
+    let unit = LengthUnit::showing(100.0 * longest, is_unknown);
+    if is_unknown { LengthUnit { suffix: " (unit unknown)", ..unit } } else { unit }
 }
 
 /// Distances between voxels along x, y and z, in digits.
-pub(crate) fn spacing([x, y, z]: &[String; 3], is_unknown: bool) -> String {
-    format!("{x} × {y} × {z} {}", unit_of_spacing(is_unknown))
+pub(crate) fn spacing([x, y, z]: &[String; 3], unit: LengthUnit) -> String {
+    format!("{x} × {y} × {z}{}", unit.suffix)
 }
 
 /// The smallest and the largest value, in digits.

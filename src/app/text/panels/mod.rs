@@ -1,6 +1,7 @@
 //! Words of the side panels.
 
 pub(in crate::app) mod camera;
+pub(in crate::app) mod corrections;
 pub(in crate::app) mod cuts;
 pub(in crate::app) mod data;
 pub(in crate::app) mod floor;

@@ -43,6 +43,7 @@ pub(crate) fn title(
     [sx, sy, sz]: [f64; 3],
     has_unknown_scale: bool,
 ) -> String {
-    let unit = crate::app::text::panels::data::unit_of_spacing(has_unknown_scale);
-    format!("{name} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3} {unit}")
+    let unit = crate::app::text::panels::data::unit_of_spacing([sx, sy, sz], has_unknown_scale);
+    let [sx, sy, sz] = [sx, sy, sz].map(|length| length / unit.mm);
+    format!("{name} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3}{}", unit.suffix)
 }

@@ -1,5 +1,7 @@
 //! "Why is this dark?": what is under the pointer, and what of every light gets there.
 
+use crate::app::text::common::LengthUnit;
+
 pub(crate) const NOTHING: &str = "Nothing is seen here";
 
 /// Why a light does not light a point, or is not weakened on its way; behind the name of the light.
@@ -9,19 +11,21 @@ pub(crate) const FACES_AWAY: &str = "the surface faces away from it";
 pub(crate) const CASTS_NO_SHADOWS: &str = "casts no shadows";
 pub(crate) const IN_ITS_WAY: &str = "nothing arrives: something stands in its way";
 
-/// What is there: value, opacity, voxel, and the place in millimetres.
-pub(crate) fn found(value: f64, opacity: f64, voxel: [f64; 3], mm: [f64; 3]) -> String {
-    format!("Value {value:.4}, opacity {:.0} %\n{}", 100.0 * opacity, place(voxel, mm))
+/// What is there: value, opacity, and where it is.
+pub(crate) fn found(value: f64, opacity: f64, place: &str) -> String {
+    format!("Value {value:.4}, opacity {:.0} %\n{place}", 100.0 * opacity)
 }
 
 /// The label that is there, and as [`found`].
-pub(crate) fn found_label(number: i64, name: &str, opacity: f64, voxel: [f64; 3], mm: [f64; 3]) -> String {
+pub(crate) fn found_label(number: i64, name: &str, opacity: f64, place: &str) -> String {
     let name = if name.is_empty() { String::new() } else { format!(": {name}") };
-    format!("Label {number}{name}, opacity {:.0} %\n{}", 100.0 * opacity, place(voxel, mm))
+    format!("Label {number}{name}, opacity {:.0} %\n{place}", 100.0 * opacity)
 }
 
-fn place([i, j, k]: [f64; 3], [x, y, z]: [f64; 3]) -> String {
-    format!("voxel {i:.0}, {j:.0}, {k:.0} · {x:.1}, {y:.1}, {z:.1} mm")
+/// A voxel, and its place in the world.
+pub(crate) fn place([i, j, k]: [f64; 3], world_mm: [f64; 3], unit: LengthUnit) -> String {
+    let [x, y, z] = world_mm.map(|length| length / unit.mm);
+    format!("voxel {i:.0}, {j:.0}, {k:.0} · {x:.1}, {y:.1}, {z:.1}{}", unit.suffix)
 }
 
 /// A light, and what of it gets there or why nothing does.

@@ -6,7 +6,6 @@ pub(crate) const TITLE: &str = "Slices";
 
 /// What is known of the cursor.
 pub(crate) const VOXEL: &str = "Voxel";
-pub(crate) const PLACE_MM: &str = "mm";
 pub(crate) const VALUE: &str = "Value";
 pub(crate) const OPACITY: &str = "Opacity";
 

@@ -139,7 +139,7 @@ impl Worker {
         folder: Option<&Path>,
     ) -> String {
         let of = subject.dataset.volume();
-        let volume = VolumeRecord::new(&subject.source, of.content_id(), folder).choosing(of.held().choice());
+        let volume = VolumeRecord::new(&subject.source, of.opened_id(), folder).choosing(of.held().choice());
         let how = PictureRecord::new(*shot, self.adapter.clone());
         Record::text(settings, Some(&volume), Some(&how))
     }

@@ -114,6 +114,7 @@ impl Slices {
     ) {
         let [x, y, z] = self.cursor;
         let value = volume.value(x, y, z);
+        let unit = facts.length_unit();
         let world = volume.world_from_index().transform_point3(DVec3::from(self.cursor.map(|at| at as f64)));
         egui::Grid::new("cursor").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
             let mut line = |what: &str, found: String| {
@@ -122,7 +123,8 @@ impl Slices {
                 ui.end_row();
             };
             line(text::slices::VOXEL, format!("{x}, {y}, {z}"));
-            line(text::slices::PLACE_MM, format!("{:.1}, {:.1}, {:.1}", world.x, world.y, world.z));
+            let [x, y, z] = (world / unit.mm).to_array();
+            line(unit.symbol(), format!("{x:.1}, {y:.1}, {z:.1}"));
             let digits = if facts.levels.is_some() { format!("{value}") } else { format!("{value:.5}") };
             line(text::slices::VALUE, digits);
             let place = volume.table_range().at(volume.density_of(value));

@@ -8,6 +8,11 @@ use std::path::{Path, PathBuf};
 use super::LoadError;
 use crate::data::attempt::{Attempt, quoted};
 
+/// Longest name that is looked for, and its longest part between slashes: as long as files' names can be (`NAME_MAX`),
+/// and four of those.
+const MOST_PART_BYTES: usize = 255;
+const MOST_NAME_BYTES: usize = 1024;
+
 /// The path of the file that the header in `attempt` names in a field.
 ///
 /// # Errors
@@ -32,6 +37,10 @@ pub(in crate::data::load) fn resolve(
     let path = beside.canonicalize().map_err(|error| of_data.io(error))?;
     // By component: as strings, /data would also contain /database.
     if path.starts_with(&folder) {
+        if path.is_dir() {
+            let why = format!("{} is a folder", quoted(name));
+            return Err(attempt.bad_input(field, why, "write the name of the data file"));
+        }
         Ok(path)
     } else {
         Err(attempt.bad_input(
@@ -49,6 +58,9 @@ fn leaves_by_text(name: &str) -> Option<&'static str> {
     let bytes = name.as_bytes();
     if name.is_empty() {
         Some("is empty")
+    } else if name.len() > MOST_NAME_BYTES || name.split(['/', '\\']).any(|part| part.len() > MOST_PART_BYTES)
+    {
+        Some("is too long for a name")
     } else if name.contains('\0') {
         Some("contains a zero byte")
     } else if name.contains("://") {
@@ -86,6 +98,8 @@ mod tests {
             "file:///etc/passwd",
             "a\0b",
             "a/.. /x",
+            &"x".repeat(256),
+            &"x/".repeat(600),
         ] {
             assert!(leaves_by_text(name).is_some(), "{name:?}");
         }

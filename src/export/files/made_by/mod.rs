@@ -4,9 +4,10 @@
 
 mod film;
 mod pictures;
+mod volumes;
 
 use std::fs::File;
-use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom};
+use std::io::{BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
 use serde::Deserialize;
@@ -43,7 +44,13 @@ fn has_mark(mut file: BufReader<File>) -> std::io::Result<bool> {
         [b'G', b'I', b'F', b'8', ..] => pictures::gif(file),
         [0x76, 0x2f, 0x31, 0x01, ..] => pictures::exr(file),
         [_, _, _, _, b'f', b't', b'y', b'p', ..] => film::mp4(file),
-        [b'N', b'R', b'R', b'D', ..] => nrrd(file),
+        [b'N', b'R', b'R', b'D', ..] => volumes::nrrd(file),
+        [b'O', b'b', b'j', b'e', b'c', b't', b'T', ..] => volumes::metaimage(file),
+        [b'<', b'?', b'x', b'm', b'l', ..] => volumes::vti(file),
+        // Their lengths, with which headers of NIfTI begin.
+        [0x5c, 1, 0, 0, ..] | [0x1c, 2, 0, 0, ..] => volumes::nifti(file),
+        [0x1f, 0x8b, ..] => volumes::gzip(file),
+        [b'I', b'I', 42 | 43, 0, ..] => volumes::tiff(file),
         _ => json(file),
     }
 }
@@ -51,17 +58,6 @@ fn has_mark(mut file: BufReader<File>) -> std::io::Result<bool> {
 /// Whether a text says that this program made what it stands in.
 fn is_mark(text: &[u8]) -> bool {
     text.strip_prefix(MADE_BY.as_bytes()).is_some_and(|rest| rest.is_empty() || rest.starts_with(b", "))
-}
-
-/// The comment that follows the first line.
-fn nrrd(file: BufReader<File>) -> std::io::Result<bool> {
-    let mut lines = file.take(2 * LONGEST_MARK);
-    let mut line = Vec::new();
-    lines.read_until(b'\n', &mut line)?;
-    line.clear();
-    lines.read_until(b'\n', &mut line)?;
-    let text = line.strip_prefix(b"# ").unwrap_or_default();
-    Ok(is_mark(text.trim_ascii_end()))
 }
 
 /// What tells a look or a report; nothing else of it is kept.

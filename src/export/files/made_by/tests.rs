@@ -3,7 +3,11 @@
 use std::path::Path;
 
 use super::*;
-use crate::export::{Animation, AnimationSpec, ExportError, Rows, encode_png, export_png, write_picture};
+use crate::data::{Samples, Volume};
+use crate::export::{
+    Animation, AnimationSpec, ExportError, Outgoing, Rows, VolumeFormat, encode_png, export_png,
+    write_picture, write_volume,
+};
 use crate::model::{Depth, ImageSpec, Record, Settings, made_by, tells_maker};
 
 /// Whether a file with these contents is ours.
@@ -39,6 +43,61 @@ fn pictures_of_ours_are_known() {
         let written: Result<(), ExportError> = write_picture(&path, &shot, None, &mut || Ok(rows.next()));
         written.unwrap();
         check_ours(&std::fs::read(&path).unwrap());
+    }
+}
+
+#[test]
+fn volumes_of_ours_are_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let volume = Volume::with_spacing("t", [2, 1, 1], glam::DVec3::ONE, Samples::U8(vec![1, 2])).unwrap();
+    // An axis that is longer than NIfTI-1 can say, too.
+    let long = Samples::U8((0..40_000).map(|at| at as u8).collect());
+    let long = Volume::with_spacing("t", [40_000, 1, 1], glam::DVec3::ONE, long).unwrap();
+    for (name, volume) in [("a.nrrd", &volume), ("a.mha", &volume), ("a.nii", &volume), ("b.nii", &long)]
+        .into_iter()
+        .chain([("a.tif", &volume), ("a.vti", &volume), ("a.nii.gz", &volume), ("a.npy", &volume)])
+    {
+        let path = folder.path().join(name);
+        let format = VolumeFormat::of_path(&path).unwrap();
+        write_volume(&path, format, &Outgoing::of(volume), false).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        match name {
+            // There is no place for a mark in it.
+            "a.npy" => assert!(!is_ours(&path)),
+            "a.nii.gz" => {
+                assert!(is_ours(&path));
+                assert!((1..bytes.len() / 2).all(|end| !is_ours_with(&bytes[..end])));
+            }
+            _ => check_ours(&bytes),
+        }
+    }
+}
+
+#[test]
+fn volumes_of_others_that_speak_of_it_are_not_ours() {
+    let mark = MADE_BY;
+    for text in [
+        format!("ObjectType = Image\nComment = {mark}\n0018|1020 = another, {mark}\n"),
+        format!("ObjectType = Image\nElementDataFile = LOCAL\n\n0018|1020 = {mark}\n"),
+        format!("<?xml version=\"1.0\"?>\n<!-- not by {mark} -->\n<VTKFile>"),
+        format!("<?xml version=\"1.0\"?>\n<VTKFile><!-- {mark} -->\n"),
+    ] {
+        assert!(!is_ours_with(&text), "{text}");
+    }
+    // A header of NIfTI, with the mark as the description and without an extension.
+    let mut header = vec![0; 400];
+    header[..4].copy_from_slice(&348i32.to_le_bytes());
+    header[344..348].copy_from_slice(b"n+1\0");
+    header[148..148 + mark.len()].copy_from_slice(mark.as_bytes());
+    header[360..360 + mark.len()].copy_from_slice(mark.as_bytes());
+    assert!(!is_ours_with(&header));
+    // Places beyond the end of a TIFF file.
+    for bytes in [
+        &b"II*\0\xff\xff\xff\xff"[..],
+        b"II+\0\x08\0\0\0\xff\xff\xff\xff\xff\xff\xff\xff",
+        b"II*\0\x08\0\0\0\xff\xff",
+    ] {
+        assert!(!is_ours_with(bytes));
     }
 }
 

@@ -14,6 +14,9 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
     let spacing = header.numbers(attempt, &["ElementSpacing", "ElementSize"], count)?;
     let origin = header.numbers(attempt, &["Offset", "Position", "Origin"], count)?;
     let matrix = header.numbers(attempt, &["TransformMatrix", "Rotation", "Orientation"], count * count)?;
+    // MetaIO's words for what it does not know.
+    let is_scale_known = header.get("DistanceUnits") != Some("?");
+    let is_of_a_body = header.get("AnatomicalOrientation") != Some("???");
     let mm = header.get("DistanceUnits").and_then(mm_of).unwrap_or(1.0);
 
     let Some(spacing) = spacing else {
@@ -21,7 +24,8 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
         return Ok(Placement::unknown());
     };
     let length = |axis: usize| spacing.get(axis).or(spacing.get(1)).map_or(1.0, |length| length * mm);
-    let spaced = Placement::spaced([length(0), length(1), length(2)]);
+    let mut spaced = Placement::spaced([length(0), length(1), length(2)]);
+    spaced.is_scale_known = is_scale_known;
     // A picture lies in no body.
     let directions = if count < 3 { None } else { matrix.map(|matrix| rows(&matrix, count)) };
     let named = || header.get("AnatomicalOrientation").filter(|_| count > 2).and_then(directions_of);
@@ -33,6 +37,8 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
     let matrix3 = directions * spaced.world_from_index.matrix3;
     let mut placed = Placement::lps(DAffine3 { matrix3, translation: origin });
     placed.remarks.extend(spaced.remarks);
+    placed.is_scale_known = is_scale_known;
+    placed.is_anatomical &= is_of_a_body;
     Ok(placed)
 }
 

@@ -8,7 +8,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::super::LoadError;
 use super::super::placement::Placement;
 use super::header::Header;
-use super::space::{directions, flips, is_anatomical, mm_per_unit, origin};
+use super::space::{counts_voxels, directions, flips, is_anatomical, mm_per_unit, origin};
 use crate::data::attempt::{Attempt, quoted};
 
 /// The largest dimension that NRRD allows.
@@ -77,6 +77,7 @@ impl Geometry {
         let size = |axis: usize| spatial.get(axis).map_or(1, |axis| axis.size);
         let dims = [size(0), size(1), size(2)];
         let placement = placement(attempt, header, &spatial)?;
+        let placement = if counts_voxels(header) { placement.of_unknown_scale() } else { placement };
 
         let before: Vec<&Axis> = all.iter().take_while(|axis| !axis.spatial).collect();
         let behind = all.iter().rev().take_while(|axis| !axis.spatial);

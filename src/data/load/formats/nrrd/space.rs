@@ -108,6 +108,15 @@ pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
     units.split('"').skip(1).step_by(2).find_map(length)
 }
 
+/// Whether lengths are counted in voxels: how long they are is not known then.
+pub(super) fn counts_voxels(header: &Header) -> bool {
+    let is_voxel =
+        |unit: &str| matches!(unit.trim().to_lowercase().as_str(), "voxel" | "voxels" | "pixel" | "pixels");
+    ["space units", "units"]
+        .iter()
+        .any(|field| header.get(field).unwrap_or_default().split('"').skip(1).step_by(2).any(is_voxel))
+}
+
 /// The name of the space, without time.
 fn name(header: &Header) -> String {
     let space = header.get("space").unwrap_or_default().to_lowercase();

@@ -68,6 +68,10 @@ fn distances_have_units_and_are_mended() {
         let volume = read(&fields, &VOXELS);
         assert_eq!(volume.spacing_mm(), DVec3::new(1.0, 2.0, 3.0) * mm);
         assert_eq!(volume.world_from_index().translation, DVec3::new(-4.0, -5.0, 6.0) * mm, "{unit}");
+        assert_eq!(volume.has_unknown_scale(), unit == "?");
+        let no_body = read(&[&fields[..], &["AnatomicalOrientation = ???"]].concat(), &VOXELS);
+        assert!(volume.is_anatomical() && !no_body.is_anatomical());
+        assert_eq!(no_body.world_from_index(), volume.world_from_index());
     }
     let identity = "TransformMatrix = 1 0 0 0 1 0 0 0 1";
     let volume = read(&[identity, "ElementSpacing = 0 -2 nan"], &VOXELS);

@@ -104,6 +104,10 @@ fn what_values_mean_is_told() {
     ] {
         assert_eq!(read(&[field], &VOXELS).hints().modality, modality, "{field}");
     }
+    let stored =
+        ["0028|0120 = 3", "0028|1052 = -1", "0028|1053 = 2", "0028|1050 = 40\\80", "0028|1051 = 400\\20"];
+    let hints = read(&stored, &VOXELS).hints().clone();
+    assert_eq!((hints.padding, hints.window), (Some(5.0), Some([-160.0, 240.0])));
     let scaled = ["ElementToIntensityFunctionSlope = 0.5", "ElementToIntensityFunctionOffset = -1"];
     let expected = VOXELS.map(|value| f32::from(value) * 0.5 - 1.0).to_vec();
     assert_eq!(*read(&scaled, &VOXELS).samples(), Samples::F32(expected));

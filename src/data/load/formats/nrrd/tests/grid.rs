@@ -53,6 +53,13 @@ fn spacings_without_a_space_are_used() {
     assert!(!is_unknown(&["space: RAS", "space directions: (1,0,0) (0,1,0) (0,0,1)"]));
     assert_eq!(spacing(&["spacings: 0.5 0.5 3"]), DVec3::new(0.5, 0.5, 3.0));
     assert_eq!(spacing(&["spacings: 0.5 NaN 3"]), DVec3::new(0.5, 1.0, 3.0));
+    for (field, steps) in
+        [("units", "spacings: 1 1 2"), ("space units", "space directions: (1,0,0) (0,1,0) (0,0,2)")]
+    {
+        let units = format!("{field}: \"voxel\" \"voxel\" \"voxel\"");
+        let fields = ["space dimension: 3", steps, &units];
+        assert!(is_unknown(&fields) && spacing(&fields) == DVec3::new(1.0, 1.0, 2.0), "{field}");
+    }
     assert_eq!(spacing(&["spacings: 2 2 3", "units: \"cm\" \"cm\" \"cm\""]), DVec3::new(20.0, 20.0, 30.0));
     let squeezed = ["dimension: 4", "sizes: 1 2 2 2", "spacings: nan 1 2 3"];
     assert_eq!(spacing(&squeezed), DVec3::new(1.0, 2.0, 3.0));

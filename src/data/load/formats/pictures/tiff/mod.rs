@@ -45,7 +45,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let mut tiff = Tiff::open(attempt, input, control)?;
     let description = tiff.text(tag::DESCRIPTION, ome::MOST_XML_BYTES).unwrap_or_default();
     let choice = &options.choice;
-    let stack = if ome::is_ome(&description) {
+    let mut stack = if ome::is_ome(&description) {
         ome::stack(attempt, &tiff, &description, choice)?
     } else if imagej::is_imagej(&description) {
         imagej::stack(attempt, &mut tiff, &description, choice)?
@@ -54,5 +54,11 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     } else {
         plain::stack(attempt, &tiff, choice)?
     };
+    // A number needs no more.
+    let no_data = tiff.text(tag::NO_DATA, 64).unwrap_or_default();
+    if let Ok(stored) = no_data.trim().parse::<f64>() {
+        let [slope, intercept] = stack.scale;
+        stack.hints.set_padding(slope.mul_add(stored, intercept));
+    }
     stack.volume(attempt, tiff, options, control)
 }

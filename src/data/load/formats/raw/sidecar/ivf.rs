@@ -17,7 +17,8 @@ pub(super) fn is_ivf(start: &[u8]) -> bool {
 
 pub(super) fn parse(attempt: Attempt<'_>, text: &str) -> Result<Described, LoadError> {
     let document = Document::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
-        attempt.bad_input("XML", format!("it is not valid: {error}"), "copy the description again")
+        let why = crate::data::plain(&format!("it is not valid: {error}"), 200);
+        attempt.bad_input("XML", why, "copy the description again")
     })?;
     let node = |name: &str| document.descendants().find(|node| node.has_tag_name(name));
     let content = |name: &str| node(name).and_then(|node| node.attribute("content")).map(str::trim);

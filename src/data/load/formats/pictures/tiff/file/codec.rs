@@ -36,6 +36,22 @@ impl Codec {
         })
     }
 
+    /// The most bytes that so many compressed ones can stand for.
+    pub(super) fn most(self, packed: usize) -> u64 {
+        let times = match self {
+            Self::None => 1,
+            // A code of at least 9 bits stands for one of 4096 strings, each a byte longer than another.
+            Self::Lzw => 4096,
+            // 258 bytes by two codes of a bit each, as zlib's authors say: <https://zlib.net/zlib_tech.html>.
+            Self::Deflate => 1032,
+            // 128 bytes by two.
+            Self::PackBits => 64,
+            // A block of 128 KiB of the same byte takes four (RFC 8878, 3.1.1.2).
+            Self::Zstd => 32 << 10,
+        };
+        (packed as u64).saturating_mul(times)
+    }
+
     /// Fills `out` as far as the compressed bytes go; how far that is. What would come after is not looked at.
     pub(super) fn expand(self, packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
         match self {
@@ -134,6 +150,15 @@ mod tests {
         assert_eq!(expanded(Codec::PackBits, &packed, 5).unwrap(), whole[..5]);
         assert_eq!(expanded(Codec::PackBits, &packed[..4], 100).unwrap(), whole[..4], "cut off in a run");
         assert_eq!(expanded(Codec::PackBits, &[0xFE], 100).unwrap(), [0u8; 0]);
+    }
+
+    #[test]
+    fn what_cannot_be_in_so_few_bytes_is_known() {
+        let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+        std::io::Write::write_all(&mut encoder, &vec![0; 1 << 22]).unwrap();
+        let packed = encoder.finish().unwrap().len();
+        assert!(Codec::Deflate.most(packed) >= 1 << 22 && Codec::Deflate.most(packed) < 5 << 20);
+        assert_eq!(Codec::None.most(20), 20);
     }
 
     #[test]

@@ -245,6 +245,7 @@ impl Packed {
         let planes = (self.parts.len() / (across * down).max(1)).max(1);
         let row_bytes = page.width as usize * self.samples * size;
         let bytes = (row_bytes as u64).saturating_mul(page.height).saturating_mul(planes as u64);
+        self.check_room(attempt, &field)?;
         let mut all = zeroed(attempt, &field, bytes)?;
         let plane_bytes = all.len() / planes;
         for (plane, parts) in all.chunks_exact_mut(plane_bytes).zip(self.parts.chunks(across * down)) {
@@ -262,6 +263,24 @@ impl Packed {
             invert(&mut all, page.bits);
         }
         Ok(if planes > 1 { woven(&all, planes, size) } else { all })
+    }
+
+    /// Refuses parts that cannot hold as much as they should, before memory is taken for that.
+    fn check_room(&self, attempt: Attempt<'_>, field: &str) -> Result<(), LoadError> {
+        let [across, down] = self.page.grid().map(|count| (count as usize).max(1));
+        let Some(codec) = Codec::of(self.page.compression) else { return Ok(()) };
+        for (at, packed) in self.parts.iter().enumerate().filter(|(_, packed)| !packed.is_empty()) {
+            let wanted = self.page.part_bytes(self.samples, (at / across % down) as u64);
+            let room = codec.most(packed.len());
+            if room < wanted {
+                return Err(attempt.bad_input(
+                    field,
+                    format!("a strip or tile ends too early: {wanted} bytes expected, room for {room} found"),
+                    HELP,
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Puts what a part holds where it belongs among some rows.

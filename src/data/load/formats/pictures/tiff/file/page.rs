@@ -31,6 +31,8 @@ pub(in super::super) mod tag {
     pub(in super::super::super) const TILE_COUNTS: u16 = 325;
     pub(in super::super::super) const EXTRA_SAMPLES: u16 = 338;
     pub(in super::super::super) const SAMPLE_FORMAT: u16 = 339;
+    /// Of GDAL, in text: the value of what was not measured.
+    pub(in super::super::super) const NO_DATA: u16 = 42113;
     /// Of Zeiss' laser scanning microscopes.
     pub(in super::super::super) const LSM_INFO: u16 = 34412;
 }

@@ -1,0 +1,119 @@
+//! How files were corrected, in all windows of this user: they are opened so again.
+
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use serde::{Deserialize, Serialize};
+
+use super::kept_list;
+use super::recent::{path_of, text_of};
+use crate::data::Corrections;
+
+/// Files that are remembered: some hundred bytes each, and more than anybody corrects in a year.
+pub(super) const MOST: usize = 500;
+
+/// What can be seen of a file without reading it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(crate) struct FileStamp {
+    bytes: Option<u64>,
+    modified_ns: Option<u64>,
+}
+
+impl FileStamp {
+    /// That of a file as it is now.
+    pub(crate) fn of(file: &Path) -> Self {
+        let Ok(facts) = std::fs::metadata(file) else { return Self::default() };
+        let modified = facts.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+        let modified_ns = modified.and_then(|since| u64::try_from(since.as_nanos()).ok());
+        Self { bytes: Some(facts.len()), modified_ns }
+    }
+
+    /// Whether both are known, and those of the same file.
+    fn is_same(self, other: Self) -> bool {
+        self.bytes.is_some() && self.modified_ns.is_some() && self == other
+    }
+}
+
+/// A file, and how it was corrected last.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Remembered {
+    file: PathBuf,
+    stamp: FileStamp,
+    opened_id: u64,
+    by: Corrections,
+}
+
+impl Remembered {
+    /// What was corrected of a file, with its path from the root.
+    pub(super) fn new(file: PathBuf, stamp: FileStamp, opened_id: u64, by: Corrections) -> Self {
+        Self { file, stamp, opened_id, by }
+    }
+
+    /// The corrections, for a volume that was opened: if its file was not touched, or holds the same volume all the same.
+    pub(crate) fn of(&self, stamp: FileStamp, opened_id: u64) -> Option<Corrections> {
+        (self.stamp.is_same(stamp) || self.opened_id == opened_id).then_some(self.by)
+    }
+
+    /// Of which file it is.
+    pub(super) fn is_at(&self, file: &Path) -> bool {
+        self.file == file
+    }
+}
+
+/// How it is written.
+#[derive(Debug, Serialize, Deserialize)]
+struct Written {
+    file: String,
+    #[serde(flatten)]
+    stamp: FileStamp,
+    content_id: String,
+    corrections: Corrections,
+}
+
+impl From<&Remembered> for Written {
+    fn from(known: &Remembered) -> Self {
+        let Remembered { file, stamp, opened_id, by } = known;
+        let content_id = format!("{opened_id:016x}");
+        Self { file: text_of(file), stamp: *stamp, content_id, corrections: *by }
+    }
+}
+
+impl From<Written> for Remembered {
+    fn from(written: Written) -> Self {
+        let Written { file, stamp, content_id, corrections: mut by } = written;
+        by.sanitise();
+        // No file has the identity of one that cannot be read.
+        let opened_id = u64::from_str_radix(&content_id, 16).unwrap_or_default();
+        Self { file: path_of(&file), stamp, opened_id, by }
+    }
+}
+
+/// The list of a folder, the latest first; with a notice if it was damaged and has been put aside.
+pub(super) fn read(folder: &Path) -> (Vec<Remembered>, Option<String>) {
+    let (list, notice) = kept_list::read::<Written>(&path(folder));
+    (list.into_iter().take(MOST).map(Remembered::from).collect(), notice)
+}
+
+fn path(folder: &Path) -> PathBuf {
+    folder.join("corrected.json")
+}
+
+/// A list with what was chosen last at its head; without it, if that is what the file says.
+pub(super) fn put_first(list: &mut Vec<Remembered>, latest: Remembered) {
+    list.retain(|known| known.file != latest.file);
+    if !latest.by.is_none() {
+        list.insert(0, latest);
+    }
+    list.truncate(MOST);
+}
+
+/// Adds to the list of a folder, the latest last. What another window has added stays.
+pub(super) fn add(folder: &Path, chosen: Vec<Remembered>) -> Result<(), String> {
+    kept_list::change::<Written>(&path(folder), |list| {
+        let mut list: Vec<_> = list.into_iter().map(Remembered::from).collect();
+        for latest in chosen {
+            put_first(&mut list, latest);
+        }
+        list.iter().map(Written::from).collect()
+    })
+}

@@ -1,0 +1,218 @@
+//! `chiaroscuro convert`.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::CliError;
+use super::outputs::{destination, finish, keep_apart, warn_line};
+use super::scene::{LoadArgs, parse_voxel_type};
+use crate::data::load::{LoadControl, LoadOptions};
+use crate::data::{ValueRange, Volume, VolumeError, VoxelType, open};
+use crate::export::{
+    ConvertError, NumberWish, Orientation, Outgoing, VolumeFormat, check_writable, write_volume,
+};
+
+/// What standard output is for.
+const STANDARD_OUTPUT: &str = "-";
+
+/// Arguments of `convert`.
+#[derive(Debug, Args)]
+// `--type` is what is written.
+#[command(mut_arg("voxel_type", |arg| arg.long("input-type")))]
+pub(super) struct ConvertArgs {
+    #[arg(help = "Volume: a file, a folder of slices, or builtin:NAME[:N]")]
+    input: PathBuf,
+    #[arg(help = "File to write: .nrrd, .mha, .nii, .nii.gz, .tif, .npy or .vti; - is standard output")]
+    output: PathBuf,
+    /// Format of standard output: an ending of those of files
+    #[arg(long, value_name = "ENDING", value_parser = parse_format)]
+    format: Option<VolumeFormat>,
+    /// Number type to write: uint8, int8, uint16, int16, uint32, int32, float32 or float64
+    #[arg(long = "type", value_name = "T", value_parser = parse_voxel_type, id = "written_type")]
+    written_type: Option<VoxelType>,
+    /// Values that become the lowest and the highest number of a whole --type, those beyond with them
+    #[arg(long, value_name = "LOW:HIGH", value_parser = parse_values, allow_hyphen_values = true)]
+    rescale: Option<ValueRange>,
+    /// Number for voxels that hold nothing: not finite, or what the file declares as padding
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    padding: Option<f64>,
+    /// Voxels to write, along each axis from the first to before the last, counted from 0; an end may be left out
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = parse_region)]
+    region: Option<Region>,
+    /// Sides of the body towards which the axes are to go, fastest first: RAS, LPS or another of the 48
+    #[arg(long, value_name = "LETTERS")]
+    orient: Option<Orientation>,
+    /// Compress the voxels within .nrrd (gzip) or .mha (zlib); .nii.gz always is
+    #[arg(long)]
+    compress: bool,
+    /// Replace files that this program has not made
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    load: LoadArgs,
+}
+
+/// A box of voxels, whose ends may be left to the volume.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Region([Part; 3]);
+
+/// Voxels along an axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Part {
+    first: usize,
+    /// The first that is not among them any more.
+    end: Option<usize>,
+}
+
+impl Region {
+    /// The box in a grid.
+    fn of(&self, dims: [usize; 3]) -> [Range<usize>; 3] {
+        std::array::from_fn(|axis| self.0[axis].first..self.0[axis].end.unwrap_or(dims[axis]))
+    }
+}
+
+/// `0:10,5:,:`
+fn parse_region(text: &str) -> Result<Region, String> {
+    let expected =
+        || format!("expected first and end along x, y and z, as in 0:64,0:64,10:20, found {text:?}");
+    let part = |text: &str| {
+        let (first, end) = text.split_once(':')?;
+        let number =
+            |text: &str, default| if text.is_empty() { Some(default) } else { text.parse().ok().map(Some) };
+        Some(Part { first: number(first.trim(), Some(0))??, end: number(end.trim(), None)? })
+    };
+    let parts: Option<Vec<Part>> = text.split(',').map(part).collect();
+    parts.and_then(|parts| parts.try_into().ok()).map(Region).ok_or_else(expected)
+}
+
+/// `-1000:3000`
+fn parse_values(text: &str) -> Result<ValueRange, String> {
+    let parsed = text.split_once(':').and_then(|(low, high)| {
+        let [low, high]: [f64; 2] = [low.trim().parse().ok()?, high.trim().parse().ok()?];
+        ValueRange::spread(low, high).filter(|range| range.span().is_finite())
+    });
+    parsed.ok_or_else(|| format!("expected two values, the lower first, as in -1000:3000, found {text:?}"))
+}
+
+/// `nii.gz`
+fn parse_format(text: &str) -> Result<VolumeFormat, String> {
+    let name = format!("volume.{}", text.trim_start_matches('.'));
+    VolumeFormat::of_path(Path::new(&name)).ok_or_else(|| format!("expected {}", endings()))
+}
+
+/// All endings, for messages.
+fn endings() -> String {
+    let all: Vec<String> = VolumeFormat::ALL
+        .iter()
+        .flat_map(|format| format.endings())
+        .map(|ending| format!(".{ending}"))
+        .collect();
+    all.join(", ")
+}
+
+impl ConvertArgs {
+    fn usage(&self, why: &dyn std::fmt::Display) -> CliError {
+        CliError::Usage(format!("{}: {why}", self.input.display()))
+    }
+
+    /// The format that is written.
+    fn output_format(&self) -> Result<VolumeFormat, CliError> {
+        let is_standard_output = self.output == Path::new(STANDARD_OUTPUT);
+        let by_name = VolumeFormat::of_path(&self.output);
+        let format = match (is_standard_output, by_name, self.format) {
+            (true, _, format) => format.unwrap_or(VolumeFormat::Nrrd),
+            (false, Some(by_name), None) => by_name,
+            (false, Some(by_name), Some(format)) if by_name == format => by_name,
+            (false, ..) if self.format.is_some() => {
+                return Err(CliError::Usage(
+                    "--format is for standard output; files have the format of their ending (command line, --format)"
+                        .to_owned(),
+                ));
+            }
+            (false, ..) => {
+                return Err(CliError::Usage(format!(
+                    "{}: volumes are written as {}, and the name says as which",
+                    self.output.display(),
+                    endings()
+                )));
+            }
+        };
+        if self.compress && !format.may_be_compressed() && format != VolumeFormat::NiftiGzip {
+            return Err(CliError::Usage(format!(
+                "--compress: voxels in .{} stay as they are; .nrrd, .mha or .nii.gz helps (command line, --compress)",
+                format.endings()[0]
+            )));
+        }
+        Ok(format)
+    }
+
+    /// The volume that is written, before its axes and numbers are others: first what is asked of it, and then that with
+    /// blocks averaged.
+    fn volume(&self) -> Result<Volume, CliError> {
+        let options = self.load.load_options()?;
+        let block = options.reduce;
+        let whole = open(&self.input, &LoadOptions { reduce: 1, ..options }, &LoadControl::new())?;
+        let dims = whole.dims();
+        let refused = |err: VolumeError| match err {
+            VolumeError::Outside { dims: [x, y, z] } => CliError::Usage(format!(
+                "--region: there are {x} x {y} x {z} voxels; a region of at least one of them helps (command line, \
+                 --region)"
+            )),
+            other => self.usage(&other),
+        };
+        let volume = match &self.region {
+            None => whole,
+            Some(region) => whole.cropped(&region.of(dims)).map_err(refused)?,
+        };
+        volume.reduced([block; 3]).map_err(|err| self.usage(&err))
+    }
+}
+
+/// Writes a volume in another format.
+pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
+    let format = args.output_format()?;
+    keep_apart(&[&args.input], &[&args.output], args.force)?;
+    let output = destination(&args.output, format.endings()[0])?;
+    // Before anything is read that may take its time.
+    check_writable(output.path())?;
+    let volume = args.volume()?;
+    let wish = NumberWish { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
+    let refused = |err: ConvertError| args.usage(&err);
+    let mut outgoing = Outgoing::of(&volume).in_numbers(&wish).map_err(refused)?;
+    if let Some(orientation) = args.orient {
+        outgoing = outgoing.oriented(orientation).map_err(refused)?;
+    }
+    write_volume(output.path(), format, &outgoing, args.compress)?;
+    let lost = format.lost(&outgoing);
+    if !lost.is_empty() {
+        warn_line(&format!(
+            "warning: .{} has no place for {}; .nrrd has",
+            format.endings()[0],
+            lost.join(", nor for ")
+        ));
+    }
+    finish(output)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_and_ranges_are_understood() {
+        let region = parse_region("1:4,:,2:").unwrap();
+        assert_eq!(region.of([5, 6, 7]), [1..4, 0..6, 2..7]);
+        for text in ["", "1:2", "1:2,3:4", "1:2,3:4,5", "a:2,3:4,5:6", "-1:2,3:4,5:6", "1:2,3:4,5:6,7:8"] {
+            assert!(parse_region(text).is_err(), "{text}");
+        }
+        assert_eq!(parse_values("-1000:3e3"), Ok(ValueRange::new(-1000.0, 3000.0)));
+        for text in ["", "1", "2:1", "1:1", "nan:1", "0:inf", "0:1:2"] {
+            assert!(parse_values(text).is_err(), "{text}");
+        }
+        assert_eq!(parse_format(".nii.gz"), Ok(VolumeFormat::NiftiGzip));
+        assert_eq!(parse_format("tiff"), Ok(VolumeFormat::Tiff));
+        assert!(parse_format("mhd").unwrap_err().contains(".vti"));
+    }
+}

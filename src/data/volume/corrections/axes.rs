@@ -1,0 +1,204 @@
+//! Which way the axes of a file run: signed permutations, in words.
+
+use std::fmt;
+use std::str::FromStr;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// Axes of the file along which voxels run the other way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Flips {
+    /// Along the first axis.
+    pub x: bool,
+    /// Along the second axis.
+    pub y: bool,
+    /// Along the third axis.
+    pub z: bool,
+}
+
+impl Flips {
+    /// One for each axis.
+    pub fn axes(self) -> [bool; 3] {
+        [self.x, self.y, self.z]
+    }
+}
+
+/// Where the first, the second and the third axis of a file run: where the axes of these names would.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum AxisOrder {
+    #[default]
+    Xyz,
+    Xzy,
+    Yxz,
+    Yzx,
+    Zxy,
+    Zyx,
+}
+
+impl AxisOrder {
+    /// All of them.
+    pub const ALL: [Self; 6] = [Self::Xyz, Self::Xzy, Self::Yxz, Self::Yzx, Self::Zxy, Self::Zyx];
+
+    /// For each axis of the file the one where it runs.
+    pub fn places(self) -> [usize; 3] {
+        match self {
+            Self::Xyz => [0, 1, 2],
+            Self::Xzy => [0, 2, 1],
+            Self::Yxz => [1, 0, 2],
+            Self::Yzx => [1, 2, 0],
+            Self::Zxy => [2, 0, 1],
+            Self::Zyx => [2, 1, 0],
+        }
+    }
+
+    /// The order that undoes this one.
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        match self {
+            Self::Yzx => Self::Zxy,
+            Self::Zxy => Self::Yzx,
+            own => own,
+        }
+    }
+
+    /// How it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Xyz => "x y z",
+            Self::Xzy => "x z y",
+            Self::Yxz => "y x z",
+            Self::Yzx => "y z x",
+            Self::Zxy => "z x y",
+            Self::Zyx => "z y x",
+        }
+    }
+}
+
+/// Where the axes of a file run in a body; written as three letters, or `unknown`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Orientation {
+    /// There is no body, or nobody knows how it lies.
+    Unknown,
+    /// Towards these parts of a body.
+    Towards(Headings),
+}
+
+/// A part of the body for each axis, each of another pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Headings([Heading; 3]);
+
+/// A side of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Heading {
+    /// From left to right, from back to front, from feet to head.
+    axis: usize,
+    is_backwards: bool,
+}
+
+/// For each axis of a body the letters of where it leads, and of where it comes from.
+const LETTERS: [[char; 2]; 3] = [['R', 'L'], ['A', 'P'], ['S', 'I']];
+
+impl Heading {
+    fn of_letter(letter: char) -> Option<Self> {
+        let letter = letter.to_ascii_uppercase();
+        let axis = LETTERS.iter().position(|pair| pair.contains(&letter))?;
+        Some(Self { axis, is_backwards: letter == LETTERS[axis][1] })
+    }
+
+    fn letter(self) -> char {
+        LETTERS[self.axis][usize::from(self.is_backwards)]
+    }
+
+    /// In right-anterior-superior space.
+    fn direction(self) -> DVec3 {
+        if self.is_backwards { -DVec3::AXES[self.axis] } else { DVec3::AXES[self.axis] }
+    }
+}
+
+impl Headings {
+    /// The directions of the three axes, in right-anterior-superior space.
+    pub fn directions(self) -> [DVec3; 3] {
+        self.0.map(Heading::direction)
+    }
+
+    /// The sides to which three axes run most, each pair of sides once: the one that runs most clearly chooses first.
+    pub fn nearest(axes: [DVec3; 3]) -> Self {
+        let mut headings = [0, 1, 2].map(|axis| Heading { axis, is_backwards: false });
+        let (mut left, mut sides) = (vec![0, 1, 2], vec![0, 1, 2]);
+        while !left.is_empty() {
+            let pairs = left.iter().flat_map(|&axis| sides.iter().map(move |&side| (axis, side)));
+            let share = |(axis, side): &(usize, usize)| axes[*axis].normalize_or_zero()[*side].abs();
+            let Some((axis, side)) = pairs.max_by(|a, b| share(a).total_cmp(&share(b))) else { break };
+            headings[axis] = Heading { axis: side, is_backwards: axes[axis][side] < 0.0 };
+            left.retain(|&other| other != axis);
+            sides.retain(|&other| other != side);
+        }
+        Self(headings)
+    }
+}
+
+impl Orientation {
+    /// All ways in which three axes can run in a body, for lists: those along its own axes first.
+    pub fn all_towards() -> impl Iterator<Item = Self> {
+        AxisOrder::ALL.into_iter().flat_map(|order| {
+            (0..8).map(move |signs: usize| {
+                let heading = |place: usize| Heading { axis: place, is_backwards: signs >> place & 1 == 1 };
+                Self::Towards(Headings(order.places().map(heading)))
+            })
+        })
+    }
+}
+
+impl fmt::Display for Headings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|heading| write!(f, "{}", heading.letter()))
+    }
+}
+
+impl fmt::Display for Orientation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown => f.write_str("unknown"),
+            Self::Towards(headings) => headings.fmt(f),
+        }
+    }
+}
+
+impl FromStr for Orientation {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim().eq_ignore_ascii_case("unknown") {
+            return Ok(Self::Unknown);
+        }
+        let refused = || {
+            let shown = crate::data::plain(text, 40);
+            format!(
+                "expected one letter of each of R/L, A/P and S/I, as in RAS or LPS, or unknown; found {shown:?}"
+            )
+        };
+        let headings: Option<Vec<_>> = text.trim().chars().map(Heading::of_letter).collect();
+        let headings: [Heading; 3] = headings.and_then(|all| all.try_into().ok()).ok_or_else(refused)?;
+        let has_all = (0..3).all(|axis| headings.iter().any(|heading| heading.axis == axis));
+        if has_all { Ok(Self::Towards(Headings(headings))) } else { Err(refused()) }
+    }
+}
+
+impl TryFrom<String> for Orientation {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<Orientation> for String {
+    fn from(orientation: Orientation) -> Self {
+        orientation.to_string()
+    }
+}

@@ -1,0 +1,78 @@
+//! Numbers of a file with another meaning, in a type that can hold them.
+
+use super::ValueScale;
+use crate::data::values::samples::with_samples;
+use crate::data::{Hints, Samples, ValueRange, VolumeError};
+
+/// Whole numbers of these types keep a whole slope and intercept; all others become numbers with a point.
+macro_rules! narrowest {
+    ($($variant:ident: $type:ty),+) => {
+        /// The values in the narrowest type of whole numbers that holds them all; `None` where none does.
+        #[expect(trivial_numeric_casts, reason = "one of the eight types is f64 already")]
+        fn whole(samples: &Samples, scale: ValueScale, range: ValueRange) -> Result<Option<Samples>, VolumeError> {
+            $(
+                if range.low >= f64::from(<$type>::MIN) && range.high <= f64::from(<$type>::MAX) {
+                    let values = with_samples!(samples, values => each(values, |&number| {
+                        scale.value(number as f64) as $type
+                    }))?;
+                    return Ok(Some(Samples::$variant(values)));
+                }
+            )+
+            Ok(None)
+        }
+    };
+}
+
+narrowest!(U8: u8, I8: i8, U16: u16, I16: i16, U32: u32, I32: i32);
+
+/// One value for each, where the memory for them is there.
+fn each<T, R>(values: &[T], value: impl Fn(&T) -> R) -> Result<Vec<R>, VolumeError> {
+    let mut scaled = Vec::new();
+    let no_memory =
+        |_| VolumeError::NoMemory { bytes: (values.len() as u64).saturating_mul(size_of::<R>() as u64) };
+    scaled.try_reserve_exact(values.len()).map_err(no_memory)?;
+    scaled.extend(values.iter().map(value));
+    Ok(scaled)
+}
+
+/// What numbers mean: whole numbers stay whole where slope and intercept are.
+#[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
+pub(super) fn scaled(samples: &Samples, scale: ValueScale) -> Result<Samples, VolumeError> {
+    let (numbers, _) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+    let ends = [numbers.low, numbers.high].map(|number| scale.value(number));
+    let range = ValueRange::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
+    let has_point = matches!(samples, Samples::F32(_) | Samples::F64(_));
+    if !has_point
+        && scale.slope.fract() == 0.0
+        && scale.intercept.fract() == 0.0
+        && let Some(whole) = whole(samples, scale, range)?
+    {
+        return Ok(whole);
+    }
+    // 32 bits hold every number of 16 bits, and what they were in a file.
+    let is_short = !matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
+    if is_short && range.low.abs().max(range.high.abs()) < f64::from(f32::MAX) {
+        let value = |number: f64| scale.value(number) as f32;
+        return with_samples!(samples, values => each(values, |&number| value(number as f64)))
+            .map(Samples::F32);
+    }
+    with_samples!(samples, values => each(values, |&number| scale.value(number as f64))).map(Samples::F64)
+}
+
+/// What a file says of its numbers, of the values that these mean.
+pub(super) fn scaled_hints(hints: &Hints, scale: ValueScale) -> Hints {
+    let mut scaled = hints.clone();
+    scaled.padding = hints.padding.map(|number| scale.value(number));
+    if let Some([low, high]) = hints.window {
+        let [a, b] = [low, high].map(|number| scale.value(number));
+        scaled.window = Some([a.min(b), a.max(b)]);
+    }
+    scaled.labels = crate::data::Labels::default();
+    for (number, label) in hints.labels.iter() {
+        let value = scale.value(number as f64);
+        if value.fract() == 0.0 && value.abs() < (1_i64 << 53) as f64 {
+            scaled.labels.insert(value as i64, &label.name, label.color);
+        }
+    }
+    scaled
+}

@@ -1,0 +1,78 @@
+//! Distances between voxels as users write them, and their units.
+
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// The unit of distances between voxels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SpacingUnit {
+    /// Nanometres.
+    Nm,
+    /// Micrometres.
+    #[serde(alias = "µm", alias = "μm")]
+    Um,
+    /// Millimetres.
+    Mm,
+    /// Centimetres.
+    Cm,
+    /// Metres.
+    M,
+    /// Nobody knows: distances can only be compared with each other.
+    Voxels,
+}
+
+impl SpacingUnit {
+    /// All of them, the shortest first.
+    pub const ALL: [Self; 6] = [Self::Nm, Self::Um, Self::Mm, Self::Cm, Self::M, Self::Voxels];
+
+    /// How many millimetres it is long; 1 where nobody knows.
+    pub fn mm(self) -> f64 {
+        match self {
+            Self::Nm => 1e-6,
+            Self::Um => 1e-3,
+            Self::Mm | Self::Voxels => 1.0,
+            Self::Cm => 10.0,
+            Self::M => 1e3,
+        }
+    }
+
+    /// How it is written behind a number.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Nm => "nm",
+            Self::Um => "µm",
+            Self::Mm => "mm",
+            Self::Cm => "cm",
+            Self::M => "m",
+            Self::Voxels => "voxels",
+        }
+    }
+}
+
+/// Three distances, one for all three, or a text of either.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected three numbers, as in 0.5,0.5,2, or one for all axes")]
+enum Written {
+    Three([f64; 3]),
+    One(f64),
+    Text(String),
+}
+
+/// Reads distances; null for those of the file.
+pub(super) fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 3]>, D::Error> {
+    let Some(written) = Option::<Written>::deserialize(deserializer)? else { return Ok(None) };
+    let parsed = match written {
+        Written::Three(three) => Some(three),
+        Written::One(one) => Some([one; 3]),
+        Written::Text(text) => numbers(&text),
+    };
+    let refused = || serde::de::Error::custom("expected three numbers, as in 0.5,0.5,2, or one for all axes");
+    parsed.ok_or_else(refused).map(Some)
+}
+
+/// `0.5,0.5,2` and `0.5x0.5x2`.
+fn numbers(text: &str) -> Option<[f64; 3]> {
+    let parts: Vec<f64> =
+        text.split(['x', 'X', '×', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
+    parts.try_into().ok()
+}

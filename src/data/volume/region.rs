@@ -1,0 +1,82 @@
+//! A box of a volume's voxels as a volume.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::{Samples, Volume, VolumeError};
+use crate::data::values::samples::with_samples;
+
+impl Volume {
+    /// The voxels of a box alone, from the first to before the last along x, y and z, where they were in the world. Where
+    /// nobody else holds the volume's voxels this takes no memory beside them.
+    ///
+    /// # Errors
+    /// When the box is empty or reaches beyond the grid, or none of its voxels is finite.
+    pub fn cropped(self, region: &[Range<usize>; 3]) -> Result<Self, VolumeError> {
+        let dims = self.dims();
+        if region.iter().zip(dims).any(|(range, count)| range.is_empty() || range.end > count) {
+            return Err(VolumeError::Outside { dims });
+        }
+        let first = DVec3::from(region.clone().map(|range| range.start as f64));
+        let world_from_index = self.world_from_index() * DAffine3::from_translation(first);
+        let found = region.clone().map(|range| range.len());
+        let mut whole = self;
+        let shared = std::mem::replace(&mut whole.samples, Arc::new(Samples::U8(Vec::new())));
+        let mut samples = Arc::unwrap_or_clone(shared);
+        keep_box(&mut samples, dims, region);
+        let cropped = Self::new(whole.name(), found, world_from_index, samples)?;
+        // A box of padding alone is shown as it is.
+        let cropped = match whole.padding_value() {
+            Some(padding) => cropped.clone().with_padding(padding).unwrap_or(cropped),
+            None => cropped,
+        };
+        Ok(Self { file_dims: found, ..cropped.standing_for(&whole) })
+    }
+}
+
+/// Moves the values of a box of a grid to the front, and lets go of the others.
+fn keep_box(samples: &mut Samples, [nx, ny, _]: [usize; 3], [xs, ys, zs]: &[Range<usize>; 3]) {
+    with_samples!(samples, values => {
+        // What is moved comes from where it goes to, or from behind it: nothing is overwritten that is still needed.
+        let mut to = 0;
+        for z in zs.clone() {
+            for y in ys.clone() {
+                let row = (z * ny + y) * nx;
+                values.copy_within(row + xs.start..row + xs.end, to);
+                to += xs.len();
+            }
+        }
+        values.truncate(to);
+        values.shrink_to_fit();
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Hints, ValueRange};
+
+    #[test]
+    fn a_box_stays_where_it_was() {
+        let values = (0..4 * 3 * 2).map(|value| value as i16).collect();
+        let mut hints = Hints::default();
+        hints.set_unit("HU");
+        let volume = Volume::with_spacing("t", [4, 3, 2], DVec3::new(1.0, 2.0, 3.0), Samples::I16(values));
+        let volume = volume.unwrap().with_hints(hints).with_padding(7.0).unwrap();
+        let part = volume.clone().cropped(&[1..4, 1..3, 1..2]).unwrap();
+        assert_eq!((part.dims(), part.file_dims()), ([3, 2, 1], [3, 2, 1]));
+        assert_eq!(part.samples(), &Samples::I16(vec![17, 18, 19, 21, 22, 23]));
+        let place = |volume: &Volume, index| volume.world_from_index().transform_point3(index);
+        assert_eq!(place(&part, DVec3::ZERO), place(&volume, DVec3::ONE));
+        assert_eq!((part.hints().unit(), part.padding_value()), (Some("HU"), Some(7.0)));
+        let all = volume.clone().cropped(&[0..4, 0..3, 0..2]).unwrap();
+        assert_eq!(all.content_id(), volume.content_id());
+        let padding = volume.clone().cropped(&[3..4, 1..2, 0..1]).unwrap();
+        assert_eq!(padding.value_range(), ValueRange::new(7.0, 7.0), "of padding alone");
+        for region in [[0..0, 0..3, 0..2], [0..5, 0..3, 0..2], [0..4, 0..3, 2..3]] {
+            assert!(matches!(volume.clone().cropped(&region), Err(VolumeError::Outside { .. })));
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! `MetaImage`: a header in text, and the voxels behind it, as they are or in zlib.
+//!
+//! After <https://itk.org/Wiki/MetaIO/Documentation>. World space is left-posterior-superior millimetres. What the format
+//! has no field for has the tag of DICOM as its name, as programs of ITK write it.
+
+use std::io::{Result, Write};
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::outgoing::Outgoing;
+use crate::data::{VoxelType, single_line};
+use crate::model::made_by;
+
+/// The field that says which program made a file: Software Versions of DICOM.
+const MADE_BY_FIELD: &str = "0018|1020";
+
+/// Characters of the longest value that `MetaIO` reads.
+const LONGEST_VALUE: usize = 200;
+
+/// Counts what is written to it.
+struct Count(u64);
+
+impl Write for Count {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// Writes a volume.
+pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_compressed: bool) -> Result<()> {
+    let size = if is_compressed {
+        // The length stands before them, and they need not be in memory: they are compressed twice.
+        let mut count = Count(0);
+        write_compressed(&mut count, volume)?;
+        Some(count.0)
+    } else {
+        None
+    };
+    out.write_all(header(volume, size).as_bytes())?;
+    if is_compressed { write_compressed(out, volume) } else { volume.write_voxels(out) }
+}
+
+fn write_compressed(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
+    let mut encoder = ZlibEncoder::new(out, Compression::default());
+    volume.write_voxels(&mut encoder)?;
+    encoder.finish().map(drop)
+}
+
+/// The header of voxels that have so many bytes when they are compressed.
+fn header(volume: &Outgoing<'_>, compressed: Option<u64>) -> String {
+    let mut text = String::new();
+    let mut add = |field: &str, value: &str| {
+        if !value.is_empty() {
+            text.extend([field, " = ", &single_line(value, LONGEST_VALUE), "\n"]);
+        }
+    };
+    add("ObjectType", "Image");
+    add("NDims", "3");
+    add(MADE_BY_FIELD, &made_by());
+    add("Name", volume.name());
+    let hints = volume.hints();
+    add("0008|0060", hints.modality.code().unwrap_or_default());
+    add("0008|103e", hints.acquisition().unwrap_or_default());
+    add("0028|1054", volume.unit().unwrap_or_default());
+    if let Some(padding) = hints.padding {
+        add("0028|0120", &padding.to_string());
+    }
+    if let Some([low, high]) = hints.window {
+        add("0028|1050", &f64::midpoint(low, high).to_string());
+        add("0028|1051", &(high - low).to_string());
+    }
+    add("BinaryData", "True");
+    add("BinaryDataByteOrderMSB", "False");
+    add("CompressedData", if compressed.is_some() { "True" } else { "False" });
+    if let Some(size) = compressed {
+        add("CompressedDataSize", &size.to_string());
+    }
+    if !volume.has_no_place() {
+        add_place(&mut add, volume);
+    }
+    add("DimSize", &words(&volume.dims().map(|n| n.to_string())));
+    add("ElementType", element_type(volume.voxel_type()));
+    add("ElementDataFile", "LOCAL");
+    text
+}
+
+/// The fields that say where voxels lie. What is not known has the words that `MetaIO` has for that.
+fn add_place(add: &mut impl FnMut(&str, &str), volume: &Outgoing<'_>) {
+    let lps_from_ras = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0)));
+    let DAffine3 { matrix3, translation } = lps_from_ras * volume.world_from_index();
+    let directions = [matrix3.x_axis, matrix3.y_axis, matrix3.z_axis]
+        .map(|axis| words(&(axis / axis.length()).to_array().map(plus_zero)));
+    add("TransformMatrix", &directions.join(" "));
+    add("Offset", &words(&translation.to_array().map(plus_zero)));
+    add("CenterOfRotation", "0 0 0");
+    if !volume.is_anatomical() {
+        add("AnatomicalOrientation", "???");
+    }
+    add("ElementSpacing", &words(&volume.spacing_mm().map(|length| length.to_string())));
+    add("DistanceUnits", if volume.has_unknown_scale() { "?" } else { "mm" });
+}
+
+fn words(all: &[String; 3]) -> String {
+    all.join(" ")
+}
+
+/// A number, without the sign that a zero may have.
+fn plus_zero(number: f64) -> String {
+    (number + 0.0).to_string()
+}
+
+/// The word for a number type.
+fn element_type(voxel_type: VoxelType) -> &'static str {
+    match voxel_type {
+        VoxelType::U8 => "MET_UCHAR",
+        VoxelType::I8 => "MET_CHAR",
+        VoxelType::U16 => "MET_USHORT",
+        VoxelType::I16 => "MET_SHORT",
+        VoxelType::U32 => "MET_UINT",
+        VoxelType::I32 => "MET_INT",
+        VoxelType::F32 => "MET_FLOAT",
+        VoxelType::F64 => "MET_DOUBLE",
+    }
+}

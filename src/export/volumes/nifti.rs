@@ -1,0 +1,255 @@
+//! `NIfTI`: a binary header, an extension that says who made the file, and the voxels, as they are or in gzip.
+//!
+//! After `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>): NIfTI-1, or NIfTI-2 where an axis has more voxels than
+//! 16 bits count. World space is right-anterior-superior millimetres; where no body is known, distances alone are said.
+
+use std::io::{Result, Write};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use glam::{DMat3, DQuat, DVec3};
+
+use super::outgoing::Outgoing;
+use crate::data::{Meaning, Modality, VoxelType};
+use crate::model::made_by;
+
+/// The kind of an extension that is text (`NIFTI_ECODE_COMMENT`).
+const COMMENT: u32 = 6;
+
+/// Bytes of both headers, which they begin with.
+const BYTES_1: usize = 348;
+const BYTES_2: usize = 540;
+
+/// Bytes between a header and its first extension; the first of them says that there is one.
+const EXTENDER_BYTES: usize = 4;
+
+/// Bytes of an extension before its text: its length, and its kind.
+const BEFORE_TEXT: usize = 8;
+
+/// Lengths in millimetres (`NIFTI_UNITS_MM`).
+const UNITS_MM: u8 = 2;
+
+/// The place comes from the scanner (`NIFTI_XFORM_SCANNER_ANAT`).
+const SCANNER: u8 = 1;
+
+/// Numbers of labels (`NIFTI_INTENT_LABEL`).
+const LABELS: i16 = 1002;
+
+/// Cosine of axes up to which a turn is written beside the matrix, for programs that know nothing else: what is a
+/// thousandth askew is half a voxel off after five hundred.
+const MOST_ASKEW: f64 = 1e-3;
+
+/// Bytes of a description, the last of them zero.
+const DESCRIPTION: usize = 79;
+
+/// Writes a volume.
+pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -> Result<()> {
+    if !is_gzip {
+        out.write_all(&beginning(volume))?;
+        return volume.write_voxels(out);
+    }
+    let mut encoder = GzEncoder::new(out, Compression::default());
+    encoder.write_all(&beginning(volume))?;
+    volume.write_voxels(&mut encoder)?;
+    encoder.finish().map(drop)
+}
+
+/// All that stands before the voxels.
+fn beginning(volume: &Outgoing<'_>) -> Vec<u8> {
+    let comment = comment();
+    let is_long = volume.dims().iter().any(|&n| i16::try_from(n).is_err());
+    let header = if is_long { BYTES_2 } else { BYTES_1 };
+    // Voxels begin at a multiple of 16, as NIfTI-1 asks; extensions have such lengths.
+    let start = (header + EXTENDER_BYTES + comment.len()).next_multiple_of(16);
+    let mut bytes = if is_long { second(volume, start) } else { first(volume, start) };
+    bytes.extend([1, 0, 0, 0]);
+    bytes.extend(comment);
+    bytes.resize(start, 0);
+    bytes
+}
+
+/// The extension that says who made the file.
+fn comment() -> Vec<u8> {
+    let text = made_by();
+    let length = (BEFORE_TEXT + text.len()).next_multiple_of(16);
+    let mut bytes = (length as u32).to_le_bytes().to_vec();
+    bytes.extend(COMMENT.to_le_bytes());
+    bytes.extend(text.as_bytes());
+    bytes.resize(length, 0);
+    bytes
+}
+
+/// What both headers say, in their own widths.
+struct Facts {
+    /// The code of the number type.
+    kind: i16,
+    bits: i16,
+    /// Whether the volume lies in a body.
+    is_placed: bool,
+    /// Whether its axes are as good as square to each other, so that a turn says where it lies, too.
+    is_square: bool,
+    /// -1 where the grid is mirrored.
+    mirror: f64,
+    spacing: [f64; 3],
+    turn: [f64; 3],
+    /// Rows of the matrix.
+    rows: [[f64; 4]; 3],
+    units: u8,
+    intent: i16,
+    window: [f64; 2],
+    description: Vec<u8>,
+}
+
+impl Facts {
+    fn of(volume: &Outgoing<'_>) -> Self {
+        let world = volume.world_from_index();
+        let axes = world.matrix3;
+        let directions = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::normalize);
+        let [x, y, z] = directions;
+        let across = x.cross(y).normalize();
+        let mirror = if across.dot(z) < 0.0 { -1.0 } else { 1.0 };
+        let is_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cosine| cosine.abs() < MOST_ASKEW);
+        let turn = DQuat::from_mat3(&DMat3::from_cols(x, across.cross(x), across));
+        let turn = if turn.w < 0.0 { -turn } else { turn };
+        let is_placed = volume.is_anatomical();
+        let of_unknown_size = volume.has_unknown_scale();
+        let row = |at: usize| {
+            [axes.x_axis[at], axes.y_axis[at], axes.z_axis[at], world.translation[at]].map(|n| n + 0.0)
+        };
+        let [kind, bits] = type_code(volume.voxel_type());
+        Self {
+            kind,
+            bits,
+            is_placed,
+            is_square,
+            mirror: if is_placed { mirror } else { 1.0 },
+            spacing: volume.spacing_mm(),
+            turn: [turn.x, turn.y, turn.z],
+            rows: [row(0), row(1), row(2)],
+            units: if of_unknown_size { 0 } else { UNITS_MM },
+            intent: if volume.hints().meaning == Meaning::Labels { LABELS } else { 0 },
+            window: volume.hints().window.unwrap_or_default(),
+            description: description(volume),
+        }
+    }
+
+    fn turn_code(&self) -> u8 {
+        if self.is_placed && self.is_square { SCANNER } else { 0 }
+    }
+
+    fn matrix_code(&self) -> u8 {
+        if self.is_placed { SCANNER } else { 0 }
+    }
+}
+
+/// The code of a number type, and its bits.
+fn type_code(voxel_type: VoxelType) -> [i16; 2] {
+    match voxel_type {
+        VoxelType::U8 => [2, 8],
+        VoxelType::I8 => [256, 8],
+        VoxelType::U16 => [512, 16],
+        VoxelType::I16 => [4, 16],
+        VoxelType::U32 => [768, 32],
+        VoxelType::I32 => [8, 32],
+        VoxelType::F32 => [16, 32],
+        VoxelType::F64 => [64, 64],
+    }
+}
+
+/// How the data were acquired, in words that also name the modality, as far as there is room.
+fn description(volume: &Outgoing<'_>) -> Vec<u8> {
+    let hints = volume.hints();
+    let acquisition = hints.acquisition().unwrap_or_default();
+    let word = match hints.modality {
+        Modality::Ct => "CT",
+        Modality::Mr => "MR",
+        Modality::Pet => "PET",
+        Modality::Nuclear => "SPECT",
+        _ => "",
+    };
+    let is_said = word.is_empty() || Modality::of_description(acquisition) == hints.modality;
+    let text = match (is_said, acquisition) {
+        (true, said) => said.to_owned(),
+        (false, "") => word.to_owned(),
+        (false, said) => format!("{word}, {said}"),
+    };
+    text.as_bytes()[..text.floor_char_boundary(DESCRIPTION)].to_vec()
+}
+
+/// A header that is filled at places.
+struct Filled(Vec<u8>);
+
+impl Filled {
+    fn put(&mut self, at: usize, bytes: impl AsRef<[u8]>) {
+        let bytes = bytes.as_ref();
+        self.0[at..at + bytes.len()].copy_from_slice(bytes);
+    }
+
+    fn put_f32s(&mut self, at: usize, numbers: &[f64]) {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|&number| (number as f32).to_le_bytes()).collect();
+        self.put(at, bytes);
+    }
+
+    fn put_f64s(&mut self, at: usize, numbers: &[f64]) {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        self.put(at, bytes);
+    }
+}
+
+/// The header of NIfTI-1.
+fn first(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
+    let facts = Facts::of(volume);
+    let [x, y, z] = facts.spacing;
+    let mut header = Filled(vec![0; BYTES_1]);
+    header.put(0, (BYTES_1 as i32).to_le_bytes());
+    header.put(38, b"r");
+    let [nx, ny, nz] = volume.dims().map(|n| n as i16);
+    header.put(40, [3, nx, ny, nz, 1, 1, 1, 1].map(i16::to_le_bytes).concat());
+    header.put(68, facts.intent.to_le_bytes());
+    header.put(70, facts.kind.to_le_bytes());
+    header.put(72, facts.bits.to_le_bytes());
+    header.put_f32s(76, &[facts.mirror, x, y, z]);
+    header.put_f32s(108, &[start as f64, 1.0, 0.0]);
+    header.put(123, [facts.units]);
+    let [low, high] = facts.window;
+    header.put_f32s(124, &[high, low]);
+    header.put(148, &facts.description);
+    header.put(252, i16::from(facts.turn_code()).to_le_bytes());
+    header.put(254, i16::from(facts.matrix_code()).to_le_bytes());
+    if facts.is_placed {
+        let origin = facts.rows.map(|row| row[3]);
+        header.put_f32s(256, &[facts.turn, origin].concat());
+        header.put_f32s(280, &facts.rows.concat());
+    }
+    header.put(344, b"n+1\0");
+    header.0
+}
+
+/// The header of NIfTI-2.
+fn second(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
+    let facts = Facts::of(volume);
+    let [x, y, z] = facts.spacing;
+    let mut header = Filled(vec![0; BYTES_2]);
+    header.put(0, (BYTES_2 as i32).to_le_bytes());
+    header.put(4, b"n+2\0\r\n\x1a\n");
+    header.put(12, facts.kind.to_le_bytes());
+    header.put(14, facts.bits.to_le_bytes());
+    let [nx, ny, nz] = volume.dims().map(|n| n as i64);
+    header.put(16, [3, nx, ny, nz, 1, 1, 1, 1].map(i64::to_le_bytes).concat());
+    header.put_f64s(104, &[facts.mirror, x, y, z]);
+    header.put(168, (start as i64).to_le_bytes());
+    header.put_f64s(176, &[1.0, 0.0]);
+    let [low, high] = facts.window;
+    header.put_f64s(192, &[high, low]);
+    header.put(240, &facts.description);
+    header.put(344, i32::from(facts.turn_code()).to_le_bytes());
+    header.put(348, i32::from(facts.matrix_code()).to_le_bytes());
+    if facts.is_placed {
+        let origin = facts.rows.map(|row| row[3]);
+        header.put_f64s(352, &[facts.turn, origin].concat());
+        header.put_f64s(400, &facts.rows.concat());
+    }
+    header.put(500, i32::from(facts.units).to_le_bytes());
+    header.put(504, i32::from(facts.intent).to_le_bytes());
+    header.0
+}

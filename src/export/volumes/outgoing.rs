@@ -1,0 +1,189 @@
+//! A volume as it goes out: turned, and in other numbers, without a second copy of its voxels.
+
+use std::io::{Result, Write};
+
+use glam::DAffine3;
+
+use super::numbers::{ConvertError, NumberWish, Numbers, put};
+use super::orientation::Orientation;
+use crate::data::{Hints, Meaning, Samples, Volume, VoxelType};
+
+/// A volume that is to be written. Its voxels are turned and converted while they are.
+#[derive(Debug, Clone)]
+pub struct Outgoing<'a> {
+    volume: &'a Volume,
+    dims: [usize; 3],
+    /// Voxel indices (centres at whole numbers) to millimetres.
+    world_from_index: DAffine3,
+    /// Where the first voxel is among those of the volume, and how far it is to the next along each axis.
+    first: isize,
+    steps: [isize; 3],
+    numbers: Numbers,
+    hints: Hints,
+}
+
+impl<'a> Outgoing<'a> {
+    /// A volume as it is.
+    pub fn of(volume: &'a Volume) -> Self {
+        let dims = volume.dims();
+        let mut hints = volume.hints().clone();
+        hints.padding = volume.padding_value().or(hints.padding);
+        Self {
+            volume,
+            dims,
+            world_from_index: volume.world_from_index(),
+            first: 0,
+            steps: [1, dims[0] as isize, (dims[0] * dims[1]) as isize],
+            numbers: Numbers::of(volume.samples()),
+            hints,
+        }
+    }
+
+    /// The same with its axes in another order, some of them backwards, so that they go towards some sides of the body.
+    /// Every voxel stays where it is in the world.
+    ///
+    /// # Errors
+    /// When it is not known which way the body lies.
+    pub fn oriented(self, orientation: Orientation) -> std::result::Result<Self, ConvertError> {
+        if !self.volume.is_anatomical() {
+            return Err(ConvertError::NoOrientation);
+        }
+        let turn = orientation.turn(self.world_from_index);
+        let (mut first, mut steps) = (self.first, [0; 3]);
+        for (axis, source) in turn.sources.into_iter().enumerate() {
+            let step = self.steps[source];
+            let is_reversed = turn.is_reversed[axis];
+            steps[axis] = if is_reversed { -step } else { step };
+            if is_reversed {
+                first += step * (self.dims[source] as isize - 1);
+            }
+        }
+        let world_from_index = self.world_from_index * turn.index_from_turned(self.dims);
+        Ok(Self {
+            dims: turn.sources.map(|source| self.dims[source]),
+            world_from_index,
+            first,
+            steps,
+            ..self
+        })
+    }
+
+    /// The same in other numbers.
+    ///
+    /// # Errors
+    /// When a value has no such number.
+    pub fn in_numbers(self, wish: &NumberWish) -> std::result::Result<Self, ConvertError> {
+        let numbers = Numbers::wished(self.volume.samples(), self.hints.padding, wish)?;
+        let mut hints = self.hints;
+        hints.padding = numbers.padding();
+        if numbers.is_rescaled() {
+            // What was said of the values is not true of these numbers.
+            let mut rescaled = Hints::default();
+            rescaled.modality = hints.modality;
+            rescaled.is_rescaled = true;
+            rescaled.padding = hints.padding;
+            rescaled.window = hints.window.map(|window| window.map(|value| numbers.number(value)));
+            rescaled.set_acquisition(hints.acquisition().unwrap_or_default());
+            hints = rescaled;
+        }
+        Ok(Self { numbers, hints, ..self })
+    }
+
+    /// What it is called.
+    pub(super) fn name(&self) -> &str {
+        self.volume.name()
+    }
+
+    /// Voxels along x, y, z.
+    pub fn dims(&self) -> [usize; 3] {
+        self.dims
+    }
+
+    /// Voxel indices (centres at whole numbers) to millimetres.
+    pub fn world_from_index(&self) -> DAffine3 {
+        self.world_from_index
+    }
+
+    /// Distances between voxels.
+    pub(super) fn spacing_mm(&self) -> [f64; 3] {
+        let axes = self.world_from_index.matrix3;
+        [axes.x_axis, axes.y_axis, axes.z_axis].map(glam::DVec3::length)
+    }
+
+    /// Whether +x, +y and +z of the world are known to be a body's right, front and head.
+    pub(super) fn is_anatomical(&self) -> bool {
+        self.volume.is_anatomical()
+    }
+
+    /// Whether lengths are in voxels.
+    pub(super) fn has_unknown_scale(&self) -> bool {
+        self.volume.has_unknown_scale()
+    }
+
+    /// Whether nothing is known of where it lies, how large it is, or which way its axes go.
+    pub(super) fn has_no_place(&self) -> bool {
+        self.has_unknown_scale() && self.world_from_index == DAffine3::IDENTITY
+    }
+
+    /// Whether all that is known of where it lies is how far apart its voxels are.
+    pub(super) fn has_distances_alone(&self) -> bool {
+        let straight = glam::DMat3::from_diagonal(self.spacing_mm().into());
+        !self.is_anatomical() && self.world_from_index == DAffine3::from_mat3(straight)
+    }
+
+    /// The number type that is written.
+    pub fn voxel_type(&self) -> VoxelType {
+        self.numbers.voxel_type
+    }
+
+    /// What is known of the values, as they are written.
+    pub(super) fn hints(&self) -> &Hints {
+        &self.hints
+    }
+
+    /// The unit of the values: also where it is known by what they mean.
+    pub(super) fn unit(&self) -> Option<&str> {
+        self.hints.unit().or((self.hints.meaning == Meaning::HounsfieldUnits).then_some("HU"))
+    }
+
+    /// Bytes of all voxels.
+    pub(super) fn bytes(&self) -> u64 {
+        self.dims.iter().fold(self.voxel_type().bytes() as u64, |bytes, &n| bytes * n as u64)
+    }
+
+    /// Writes all voxels, x fastest, the lowest byte of each first, a row at a time.
+    pub(super) fn write_voxels(&self, out: &mut dyn Write) -> Result<()> {
+        let mut bytes = Vec::new();
+        for z in 0..self.dims[2] as isize {
+            for y in 0..self.dims[1] as isize {
+                bytes.clear();
+                self.put_row(self.first + y * self.steps[1] + z * self.steps[2], &mut bytes);
+                out.write_all(&bytes)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Appends the row that begins with some voxel of the volume.
+    fn put_row(&self, first: isize, bytes: &mut Vec<u8>) {
+        let samples = self.volume.samples();
+        let step = self.steps[0];
+        let places = (0..self.dims[0] as isize).map(|x| (first + x * step) as usize);
+        if !self.numbers.is_as_found(samples) {
+            for place in places {
+                put(bytes, self.numbers.voxel_type, self.numbers.number(samples.value(place)));
+            }
+            return;
+        }
+        macro_rules! put_all {
+            ($($variant:ident),+) => {
+                match samples {
+                    $(Samples::$variant(values) => {
+                        bytes.extend(places.flat_map(|place| values[place].to_le_bytes()));
+                    })+
+                }
+            };
+        }
+        put_all!(U8, I8, U16, I16, U32, I32, F32, F64);
+    }
+}

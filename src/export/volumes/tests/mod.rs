@@ -1,0 +1,104 @@
+//! What is written is read back: every format, number type and orientation; and what is refused.
+
+mod numbers;
+mod round_trips;
+
+use std::path::PathBuf;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::*;
+use crate::data::load::{LoadControl, LoadOptions, load};
+use crate::data::{Hints, Meaning, Modality, Samples};
+
+/// Voxels of the volumes of these tests: all unlike, so that no axis is mistaken for another.
+const DIMS: [usize; 3] = [5, 4, 3];
+
+/// A file in a folder of its own.
+struct Written {
+    _folder: tempfile::TempDir,
+    path: PathBuf,
+}
+
+/// Writes a volume under some ending.
+fn written(format: VolumeFormat, volume: &Outgoing<'_>, is_compressed: bool) -> Written {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan").with_extension(format.endings()[0]);
+    write_volume(&path, format, volume, is_compressed).unwrap();
+    Written { _folder: folder, path }
+}
+
+/// What a file holds.
+fn read(written: &Written) -> Volume {
+    load(&written.path, &LoadOptions::default(), &LoadControl::new()).unwrap()
+}
+
+/// Numbers of every type, the lowest and the highest among them.
+fn samples(voxel_type: VoxelType) -> Samples {
+    let count = DIMS.iter().product::<usize>();
+    // Numbers without a pattern that an exchange of axes would keep.
+    let mixed = |at: usize| (at as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 16;
+    macro_rules! whole {
+        ($variant:ident, $number:ty) => {{
+            let mut values: Vec<$number> = (0..count).map(|at| mixed(at) as $number).collect();
+            (values[1], values[count - 2]) = (<$number>::MIN, <$number>::MAX);
+            Samples::$variant(values)
+        }};
+    }
+    let real = |at: usize| (mixed(at) % 100_003) as f64 / 7.0 - 5000.0;
+    match voxel_type {
+        VoxelType::U8 => whole!(U8, u8),
+        VoxelType::I8 => whole!(I8, i8),
+        VoxelType::U16 => whole!(U16, u16),
+        VoxelType::I16 => whole!(I16, i16),
+        VoxelType::U32 => whole!(U32, u32),
+        VoxelType::I32 => whole!(I32, i32),
+        VoxelType::F32 => {
+            let mut values: Vec<f32> = (0..count).map(|at| real(at) as f32).collect();
+            (values[2], values[3], values[4]) = (f32::NAN, -0.0, f32::MIN_POSITIVE / 8.0);
+            Samples::F32(values)
+        }
+        VoxelType::F64 => {
+            let mut values: Vec<f64> = (0..count).map(real).collect();
+            (values[2], values[3], values[4]) = (f64::NAN, -0.0, f64::from_bits(3));
+            Samples::F64(values)
+        }
+    }
+}
+
+/// A grid that lies askew, mirrored, and far from the origin.
+fn askew() -> DAffine3 {
+    let turn = DMat3::from_axis_angle(DVec3::new(0.3, -0.9, 0.4).normalize(), 0.7);
+    let matrix3 = turn * DMat3::from_diagonal(DVec3::new(0.488_281_25, 0.7, -2.5));
+    DAffine3 { matrix3, translation: DVec3::new(-123.456, 78.9, 1012.3) }
+}
+
+fn volume(samples: Samples, world_from_index: DAffine3) -> Volume {
+    Volume::new("scan", DIMS, world_from_index, samples).unwrap()
+}
+
+/// Bytes of all voxels in their order, the lowest of each first.
+fn bytes(volume: &Volume) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    Outgoing::of(volume).write_voxels(&mut bytes).unwrap();
+    bytes
+}
+
+/// Where two volumes differ: in their grid, their numbers, their voxels, or in their place by more than some part of it.
+fn difference(found: &Volume, wanted: &Volume, tolerance: f64) -> Option<String> {
+    let kind = |volume: &Volume| volume.samples().voxel_type().name();
+    if (found.dims(), kind(found)) != (wanted.dims(), kind(wanted)) {
+        return Some(format!("{:?} {} for {:?} {}", found.dims(), kind(found), wanted.dims(), kind(wanted)));
+    }
+    let (a, b) = (bytes(found), bytes(wanted));
+    if let Some(at) = (0..a.len()).find(|&at| a[at] != b[at]) {
+        return Some(format!("byte {at}: {} for {}", a[at], b[at]));
+    }
+    let numbers = |volume: &Volume| volume.world_from_index().to_cols_array();
+    let (a, b) = (numbers(found), numbers(wanted));
+    // Of an axis, or of the origin, the longest of its parts counts.
+    let length =
+        |at: usize| b[at / 3 * 3..at / 3 * 3 + 3].iter().fold(1.0f64, |most, part| most.max(part.abs()));
+    let far = (0..12).find(|&at| (a[at] - b[at]).abs() > tolerance * length(at))?;
+    Some(format!("affine {far}: {} for {}", a[far], b[far]))
+}

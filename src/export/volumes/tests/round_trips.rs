@@ -1,0 +1,239 @@
+//! Every format, number type and orientation: what is written is what is read.
+
+use super::*;
+use crate::export::is_ours;
+
+/// How near affines must be, by the numbers that they are written in: those of NIfTI-1 have 24 bits.
+fn tolerance(format: VolumeFormat) -> f64 {
+    match format {
+        VolumeFormat::Nifti | VolumeFormat::NiftiGzip => f64::from(f32::EPSILON),
+        _ => 1e-12,
+    }
+}
+
+/// Whether a format says which way axes go and where they begin.
+fn has_place(format: VolumeFormat) -> bool {
+    !matches!(format, VolumeFormat::Tiff | VolumeFormat::Npy)
+}
+
+/// As much of a volume as a format has room for.
+fn kept(format: VolumeFormat, volume: &Outgoing<'_>, samples: &Samples) -> Volume {
+    let world = match format {
+        VolumeFormat::Tiff => DAffine3::from_mat3(DMat3::from_diagonal(volume.spacing_mm().into())),
+        VolumeFormat::Npy => DAffine3::IDENTITY,
+        _ => volume.world_from_index(),
+    };
+    Volume::new("scan", volume.dims(), world, samples.clone()).unwrap()
+}
+
+/// The voxels of a turned volume, by their places in the world.
+fn turned(volume: &Volume, outgoing: &Outgoing<'_>) -> Samples {
+    let index_from_turned = volume.world_from_index().inverse() * outgoing.world_from_index();
+    let [nx, ny, nz] = outgoing.dims();
+    let places: Vec<usize> = (0..nx * ny * nz)
+        .map(|at| {
+            let index = DVec3::new((at % nx) as f64, (at / nx % ny) as f64, (at / (nx * ny)) as f64);
+            let [x, y, z] = index_from_turned.transform_point3(index).to_array().map(|n| n.round() as usize);
+            x + DIMS[0] * (y + DIMS[1] * z)
+        })
+        .collect();
+    macro_rules! at_places {
+        ($($variant:ident),+) => {
+            match volume.samples() {
+                $(Samples::$variant(values) => {
+                    Samples::$variant(places.iter().map(|&place| values[place]).collect())
+                })+
+            }
+        };
+    }
+    at_places!(U8, I8, U16, I16, U32, I32, F32, F64)
+}
+
+#[test]
+fn every_format_keeps_every_type_and_orientation() {
+    let mut tried = 0;
+    for voxel_type in VoxelType::ALL {
+        for (world, is_anatomical) in
+            [(DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.5, 0.25, 3.0))), false), (askew(), true)]
+        {
+            let volume = volume(samples(voxel_type), world).with_anatomy(is_anatomical);
+            let names = if is_anatomical { orientation::all() } else { Vec::new() };
+            for name in std::iter::once(None).chain(names.iter().map(Some)) {
+                let outgoing = Outgoing::of(&volume);
+                let outgoing = match name {
+                    Some(name) => outgoing.oriented(name.parse().unwrap()).unwrap(),
+                    None => outgoing,
+                };
+                let samples = turned(&volume, &outgoing);
+                for format in VolumeFormat::ALL {
+                    let wanted = kept(format, &outgoing, &samples);
+                    for is_compressed in [false, true] {
+                        if is_compressed && !format.may_be_compressed() {
+                            continue;
+                        }
+                        let file = written(format, &outgoing, is_compressed);
+                        let found = read(&file);
+                        let about = format!("{format:?} {voxel_type:?} {name:?} {is_compressed}");
+                        assert_eq!(difference(&found, &wanted, tolerance(format)), None, "{about}");
+                        let is_named = has_place(format) && format != VolumeFormat::Vti;
+                        assert_eq!(found.is_anatomical(), is_anatomical && is_named, "{about}");
+                        assert_eq!(found.has_unknown_scale(), format == VolumeFormat::Npy, "{about}");
+                        assert_eq!(is_ours(&file.path), format != VolumeFormat::Npy, "{about}");
+                        tried += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(tried, 8 * (1 + 49) * 9, "types, orientations and none, formats and compressed ones");
+}
+
+#[test]
+fn a_wrong_voxel_a_wrong_place_and_a_wrong_type_are_noticed() {
+    let right = volume(samples(VoxelType::U16), askew());
+    let Samples::U16(mut values) = right.samples().clone() else { panic!("another type") };
+    values[17] ^= 1;
+    let wrong = volume(Samples::U16(values), askew());
+    assert!(difference(&wrong, &right, 1e-6).is_some_and(|said| said.starts_with("byte 34")));
+    let mut moved = askew();
+    moved.translation.x += 1e-2;
+    let moved = volume(samples(VoxelType::U16), moved);
+    assert!(difference(&moved, &right, 1e-6).is_some_and(|said| said.starts_with("affine 9")));
+    let other = volume(samples(VoxelType::I16), askew());
+    assert!(difference(&other, &right, 1e-6).is_some());
+    assert_eq!(difference(&right, &right.clone(), 0.0), None);
+    // Turned the wrong way it is another volume.
+    let body = right.clone().with_anatomy(true);
+    let file =
+        written(VolumeFormat::Nrrd, &Outgoing::of(&body).oriented("LPS".parse().unwrap()).unwrap(), false);
+    assert!(difference(&read(&file), &right, 1e-6).is_some());
+}
+
+#[test]
+fn what_nobody_knows_stays_unknown() {
+    let place = |affine| volume(samples(VoxelType::I16), affine).with_unknown_scale();
+    let nowhere = place(DAffine3::IDENTITY);
+    for format in VolumeFormat::ALL {
+        let outgoing = Outgoing::of(&nowhere);
+        let found = read(&written(format, &outgoing, false));
+        assert!(found.has_unknown_scale() && !found.is_anatomical(), "{format:?}");
+        assert_eq!(difference(&found, &nowhere, 0.0), None, "{format:?}");
+        assert_eq!(format.lost(&outgoing), Vec::<&str>::new(), "{format:?}");
+    }
+    // How lengths compare is known, and where a part of it was.
+    let part = place(DAffine3 {
+        matrix3: DMat3::from_diagonal(DVec3::new(1.0, 1.0, 2.5)),
+        translation: DVec3::new(10.0, 0.0, 5.0),
+    });
+    let outgoing = Outgoing::of(&part);
+    for format in [VolumeFormat::Nrrd, VolumeFormat::MetaImage] {
+        let found = read(&written(format, &outgoing, false));
+        assert!(found.has_unknown_scale() && difference(&found, &part, 1e-12).is_none(), "{format:?}");
+    }
+    let pages = read(&written(VolumeFormat::Tiff, &outgoing, false));
+    assert!(pages.has_unknown_scale());
+    assert_eq!(pages.spacing_mm(), part.spacing_mm());
+    assert!(VolumeFormat::Nifti.lost(&outgoing).contains(&"that nobody knows how large voxels are"));
+    // Cells of a body of unknown size have sides all the same.
+    let body = place(DAffine3::IDENTITY).with_anatomy(true);
+    for format in [VolumeFormat::Nrrd, VolumeFormat::MetaImage] {
+        let found = read(&written(format, &Outgoing::of(&body), false));
+        assert!(found.has_unknown_scale(), "{format:?}");
+    }
+}
+
+/// All that can be known of values.
+fn all_hints() -> Hints {
+    let mut hints = Hints::default();
+    hints.modality = Modality::Mr;
+    hints.set_unit("mg/ml");
+    hints.set_padding(-32768.0);
+    hints.set_window(-100.0, 300.5);
+    hints.set_acquisition("T1, sagittal");
+    hints.is_rescaled = true;
+    hints
+}
+
+#[test]
+fn what_is_known_of_values_is_kept_where_it_has_a_place() {
+    let hints = all_hints();
+    let known = volume(samples(VoxelType::I16), askew()).with_anatomy(true).with_hints(hints.clone());
+    let known = known.with_padding(-32768.0).unwrap();
+    let outgoing = Outgoing::of(&known);
+    for format in VolumeFormat::ALL {
+        let found = read(&written(format, &outgoing, false));
+        let lost = format.lost(&outgoing);
+        let keeps = |what: &str| !lost.contains(&what);
+        assert_eq!(found.hints().padding.is_some(), keeps("the padding value"), "{format:?}");
+        assert_eq!(found.hints().unit().is_some(), keeps("the unit of the values"), "{format:?}");
+        if keeps("the padding value") {
+            assert_eq!(found.padding_value(), Some(-32768.0), "{format:?}");
+        }
+        if keeps("the unit of the values") {
+            assert_eq!(found.hints().unit(), Some("mg/ml"), "{format:?}");
+        }
+        if !matches!(format, VolumeFormat::Npy | VolumeFormat::Vti) {
+            assert_eq!(found.hints().window, Some([-100.0, 300.5]), "{format:?}");
+        }
+        let has_words = [VolumeFormat::Nrrd, VolumeFormat::MetaImage].contains(&format);
+        if has_words {
+            assert_eq!(found.hints().modality, Modality::Mr);
+            assert_eq!(found.hints().acquisition(), Some("T1, sagittal"));
+            assert_eq!((found.name(), found.ranges()), ("scan", known.ranges()));
+        }
+        if matches!(format, VolumeFormat::Nifti | VolumeFormat::NiftiGzip) {
+            assert_eq!(found.hints().modality, Modality::Mr);
+            assert_eq!(found.hints().acquisition(), Some("MR, T1, sagittal"));
+        }
+    }
+    assert_eq!(read(&written(VolumeFormat::Nrrd, &outgoing, true)).hints(), &hints);
+    // A unit is there where values mean something.
+    let mut hints = Hints::default();
+    hints.meaning = Meaning::HounsfieldUnits;
+    let ct = volume(samples(VoxelType::I16), askew()).with_hints(hints);
+    let found = read(&written(VolumeFormat::MetaImage, &Outgoing::of(&ct), false));
+    assert_eq!((found.hints().meaning, found.hints().unit()), (Meaning::HounsfieldUnits, Some("HU")));
+}
+
+#[test]
+fn labels_have_their_names_in_nrrd() {
+    let mut hints = Hints::default();
+    hints.meaning = Meaning::Labels;
+    hints.modality = Modality::Segmentation;
+    hints.labels.insert(2, "Left: kidney = \"good\"", Some([0.25, 0.5, 1.0]));
+    hints.labels.insert(-7, "", None);
+    let labels = volume(samples(VoxelType::I8), askew()).with_hints(hints.clone());
+    let outgoing = Outgoing::of(&labels);
+    assert_eq!(read(&written(VolumeFormat::Nrrd, &outgoing, false)).hints(), &hints);
+    assert!(VolumeFormat::MetaImage.lost(&outgoing).contains(&"names and colours of labels"));
+    let found = read(&written(VolumeFormat::Nifti, &outgoing, false));
+    assert_eq!(found.hints().meaning, Meaning::Labels);
+}
+
+#[test]
+fn long_axes_and_small_voxels_have_their_forms() {
+    // More than 16 bits count: NIfTI-2.
+    let long: Vec<u8> = (0..40_000 * 2).map(|at| (at % 251) as u8).collect();
+    let world = DAffine3 { translation: DVec3::new(1.0 / 3.0, 0.1, 1e5), ..askew() };
+    let long = Volume::new("scan", [40_000, 2, 1], world, Samples::U8(long)).unwrap().with_anatomy(true);
+    for format in [VolumeFormat::Nifti, VolumeFormat::NiftiGzip] {
+        let file = written(format, &Outgoing::of(&long), false);
+        assert_eq!(difference(&read(&file), &long, 1e-15), None, "64-bit numbers");
+        assert!(is_ours(&file.path));
+    }
+    // Micrometres in TIFF.
+    let small = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(0.000_65, 0.000_65, 0.002)));
+    let small = volume(samples(VoxelType::U16), small);
+    let file = written(VolumeFormat::Tiff, &Outgoing::of(&small), false);
+    assert_eq!(difference(&read(&file), &small, 1e-12), None);
+    assert!(std::fs::read(&file.path).unwrap().windows(12).any(|text| text == b"unit=micron\n"));
+    // One slice alone, and one voxel.
+    for dims in [[5, 12, 1], [1, 1, 60], [60, 1, 1]] {
+        let flat = Volume::new("scan", dims, DAffine3::IDENTITY, samples(VoxelType::I16)).unwrap();
+        let flat = flat.with_unknown_scale();
+        for format in VolumeFormat::ALL {
+            let found = read(&written(format, &Outgoing::of(&flat), false));
+            assert_eq!(difference(&found, &flat, 0.0), None, "{format:?} {dims:?}");
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! TIFF: a page for each slice, with `ImageJ`'s words for distances and units, and the voxels as they are.
+//!
+//! After TIFF 6.0 (Adobe, 1992), and `BigTIFF` (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>) beyond 4 GiB. All
+//! pages come first and then all slices behind each other, so that every place is known before anything is written.
+
+use std::io::{Result, Write};
+
+use super::outgoing::Outgoing;
+use crate::data::{VoxelType, single_line};
+use crate::model::made_by;
+
+/// Tag of the text that says which program made a file.
+const SOFTWARE: u16 = 305;
+
+/// Kinds of values, by their codes.
+const ASCII: u16 = 2;
+const SHORT: u16 = 3;
+const LONG: u16 = 4;
+const RATIONAL: u16 = 5;
+const LONG8: u16 = 16;
+
+/// Below this, distances are said in micrometres, as microscopes do.
+const SMALL_MM: f64 = 0.01;
+
+/// The slices begin at a multiple of so many bytes: of the longest number, twice.
+const ALIGNMENT: u64 = 16;
+
+/// An entry of a directory.
+struct Entry {
+    tag: u16,
+    kind: u16,
+    count: u64,
+    value: Vec<u8>,
+}
+
+impl Entry {
+    fn short(tag: u16, value: u16) -> Self {
+        Self { tag, kind: SHORT, count: 1, value: value.to_le_bytes().to_vec() }
+    }
+
+    fn long(tag: u16, value: u32) -> Self {
+        Self { tag, kind: LONG, count: 1, value: value.to_le_bytes().to_vec() }
+    }
+
+    /// A place or a length, in as many bits as the file counts with.
+    fn place(tag: u16, value: u64, is_big: bool) -> Self {
+        if is_big {
+            return Self { tag, kind: LONG8, count: 1, value: value.to_le_bytes().to_vec() };
+        }
+        Self::long(tag, value as u32)
+    }
+
+    fn text(tag: u16, text: &str) -> Self {
+        let value = [text.as_bytes(), b"\0"].concat();
+        Self { tag, kind: ASCII, count: value.len() as u64, value }
+    }
+
+    fn rational(tag: u16, value: f64) -> Self {
+        let [above, below] = fraction(value);
+        let value = [above.to_le_bytes(), below.to_le_bytes()].concat();
+        Self { tag, kind: RATIONAL, count: 1, value }
+    }
+}
+
+/// The fraction of two numbers of 32 bits that is nearest to a value: continued, until they do not fit or nothing is left.
+fn fraction(value: f64) -> [u32; 2] {
+    let (mut above, mut below) = ([1.0, 0.0], [0.0, 1.0]);
+    let mut rest = value;
+    // Sixty-four bits end after some forty steps, whatever the value.
+    for _ in 0..64 {
+        let whole = rest.floor();
+        let next = |last: [f64; 2]| whole * last[0] + last[1];
+        let (up, down) = (next(above), next(below));
+        if up.max(down) > f64::from(u32::MAX) {
+            break;
+        }
+        (above, below) = ([up, above[0]], [down, below[0]]);
+        let is_exact = (up / down - value).abs() <= 1e-15 * value;
+        if is_exact || rest == whole {
+            break;
+        }
+        rest = 1.0 / (rest - whole);
+    }
+    // What is larger or smaller than any fraction is said as nearly as can be.
+    match [above[0], below[0]] {
+        [_, 0.0] => [u32::MAX, 1],
+        [0.0, _] => [1, u32::MAX],
+        [up, down] => [up as u32, down as u32],
+    }
+}
+
+/// How a file counts.
+#[derive(Clone, Copy)]
+struct Form {
+    is_big: bool,
+}
+
+impl Form {
+    /// Bytes of the header.
+    fn header(self) -> u64 {
+        if self.is_big { 16 } else { 8 }
+    }
+
+    /// Bytes of an entry's value that fit into the entry.
+    fn inline(self) -> usize {
+        if self.is_big { 8 } else { 4 }
+    }
+
+    /// A place in the file.
+    fn place(self, at: u64) -> Vec<u8> {
+        if self.is_big { at.to_le_bytes().to_vec() } else { (at as u32).to_le_bytes().to_vec() }
+    }
+
+    /// A directory that begins at a place, and the values that do not fit into its entries behind it; the next directory
+    /// follows, unless it is the last.
+    fn directory(self, entries: &[Entry], at: u64, is_last: bool) -> Vec<u8> {
+        let (count, entry) = if self.is_big { (8, 20) } else { (2, 12) };
+        let mut behind = at + count + entry * entries.len() as u64 + self.inline() as u64;
+        let mut bytes = (entries.len() as u64).to_le_bytes()[..count as usize].to_vec();
+        let mut values = Vec::new();
+        for Entry { tag, kind, count, value } in entries {
+            bytes.extend(tag.to_le_bytes());
+            bytes.extend(kind.to_le_bytes());
+            bytes.extend(self.place(*count));
+            if value.len() <= self.inline() {
+                bytes.extend(value);
+                bytes.extend(std::iter::repeat_n(0, self.inline() - value.len()));
+                continue;
+            }
+            bytes.extend(self.place(behind));
+            let mut value = value.clone();
+            // Values begin at even places.
+            value.resize(value.len().next_multiple_of(8), 0);
+            behind += value.len() as u64;
+            values.extend(value);
+        }
+        bytes.extend(self.place(if is_last { 0 } else { behind }));
+        bytes.extend(values);
+        bytes
+    }
+}
+
+/// What goes into the directory of every page.
+struct Pages<'a> {
+    volume: &'a Outgoing<'a>,
+    form: Form,
+    page_bytes: u64,
+}
+
+impl<'a> Pages<'a> {
+    fn of(volume: &'a Outgoing<'a>, is_big: bool) -> Self {
+        Self { volume, form: Form { is_big }, page_bytes: volume.bytes() / volume.dims()[2] as u64 }
+    }
+
+    /// Where the pixels of the first page begin.
+    fn pixels(&self) -> u64 {
+        let of_page = |page: usize| self.form.directory(&self.entries(page, 0), 0, false).len() as u64;
+        let others = self.volume.dims()[2] as u64 - 1;
+        // All but the first are alike.
+        let others = if others > 0 { others * of_page(1) } else { 0 };
+        (self.form.header() + of_page(0) + others).next_multiple_of(ALIGNMENT)
+    }
+
+    /// The entries of a page whose pixels begin at a place.
+    fn entries(&self, page: usize, pixels: u64) -> Vec<Entry> {
+        let [width, height, _] = self.volume.dims();
+        let voxel_type = self.volume.voxel_type();
+        let is_first = page == 0;
+        // 1 is unsigned, 2 signed, 3 floating point.
+        let format = match voxel_type {
+            VoxelType::U8 | VoxelType::U16 | VoxelType::U32 => 1,
+            VoxelType::I8 | VoxelType::I16 | VoxelType::I32 => 2,
+            VoxelType::F32 | VoxelType::F64 => 3,
+        };
+        let mut entries = vec![
+            Entry::long(256, width as u32),
+            Entry::long(257, height as u32),
+            Entry::short(258, 8 * voxel_type.bytes() as u16),
+            // Not compressed; black is zero.
+            Entry::short(259, 1),
+            Entry::short(262, 1),
+        ];
+        if is_first {
+            entries.push(Entry::text(270, &description(self.volume)));
+        }
+        entries.extend([
+            Entry::place(273, pixels, self.form.is_big),
+            Entry::short(277, 1),
+            Entry::long(278, height as u32),
+            Entry::place(279, self.page_bytes, self.form.is_big),
+        ]);
+        if is_first {
+            if !self.volume.has_no_place() {
+                let [x, y, _] = lengths(self.volume);
+                entries.extend([Entry::rational(282, 1.0 / x), Entry::rational(283, 1.0 / y)]);
+                // Of the unit that the description names.
+                entries.push(Entry::short(296, 1));
+            }
+            entries.push(Entry::text(SOFTWARE, &made_by()));
+        }
+        entries.push(Entry::short(339, format));
+        if let Some(padding) = self.volume.hints().padding.filter(|_| is_first) {
+            // Of GDAL: what was not measured.
+            entries.push(Entry::text(42113, &padding.to_string()));
+        }
+        entries
+    }
+}
+
+/// Writes a volume.
+pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
+    let pages = Pages::of(volume, false);
+    let is_big = pages.pixels() + volume.bytes() > u64::from(u32::MAX);
+    write_pages(out, &if is_big { Pages::of(volume, true) } else { pages })
+}
+
+/// Writes a volume in a form.
+fn write_pages(out: &mut dyn Write, pages: &Pages<'_>) -> Result<()> {
+    let Pages { volume, form, page_bytes } = *pages;
+    if form.is_big {
+        // 43, then eight bytes for each place.
+        out.write_all(b"II\x2b\0\x08\0\0\0")?;
+    } else {
+        out.write_all(b"II\x2a\0")?;
+    }
+    out.write_all(&form.place(form.header()))?;
+    let (mut at, pixels) = (form.header(), pages.pixels());
+    let slices = volume.dims()[2];
+    for page in 0..slices {
+        let entries = pages.entries(page, pixels + page as u64 * page_bytes);
+        let directory = form.directory(&entries, at, page + 1 == slices);
+        out.write_all(&directory)?;
+        at += directory.len() as u64;
+    }
+    out.write_all(&vec![0; (pixels - at) as usize])?;
+    volume.write_voxels(out)
+}
+
+/// Distances in the unit that is said.
+fn lengths(volume: &Outgoing<'_>) -> [f64; 3] {
+    let spacing = volume.spacing_mm();
+    if is_small(volume) { spacing.map(|length| length * 1e3) } else { spacing }
+}
+
+fn is_small(volume: &Outgoing<'_>) -> bool {
+    !volume.has_unknown_scale() && volume.spacing_mm().iter().any(|&length| length < SMALL_MM)
+}
+
+/// The lines that `ImageJ` reads.
+fn description(volume: &Outgoing<'_>) -> String {
+    let slices = volume.dims()[2];
+    // As the programs say that write its files.
+    let mut text = format!("ImageJ=1.54f\nimages={slices}\nslices={slices}\n");
+    let mut add = |name: &str, value: &str| text.extend([name, "=", &single_line(value, 200), "\n"]);
+    if !volume.has_unknown_scale() {
+        add("unit", if is_small(volume) { "micron" } else { "mm" });
+    }
+    if !volume.has_no_place() {
+        add("spacing", &lengths(volume)[2].to_string());
+    }
+    if let Some([low, high]) = volume.hints().window {
+        add("min", &low.to_string());
+        add("max", &high.to_string());
+    }
+    if let Some(unit) = volume.unit() {
+        add("vunit", unit);
+    }
+    add("loop", "false");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::load::{LoadControl, LoadOptions, load};
+    use crate::data::{Samples, Volume};
+
+    #[test]
+    fn large_files_are_read_as_small_ones_are() {
+        let values = Samples::I16((0..60).map(|at| at * 500 - 9000).collect());
+        let spacing = glam::DVec3::new(0.5, 1.5, 2.0);
+        let volume =
+            Volume::with_spacing("t", [5, 4, 3], spacing, values).unwrap().with_padding(-9000.0).unwrap();
+        let outgoing = Outgoing::of(&volume);
+        let folder = tempfile::tempdir().unwrap();
+        for is_big in [false, true] {
+            let mut bytes = Vec::new();
+            write_pages(&mut bytes, &Pages::of(&outgoing, is_big)).unwrap();
+            assert_eq!(bytes[2], if is_big { 43 } else { 42 });
+            let path = folder.path().join("t.tif");
+            std::fs::write(&path, bytes).unwrap();
+            let found = load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap();
+            assert_eq!((found.samples(), found.dims()), (volume.samples(), volume.dims()));
+            assert_eq!((found.spacing_mm(), found.padding_value()), (spacing, Some(-9000.0)));
+        }
+    }
+
+    #[test]
+    fn fractions_are_as_near_as_they_can_be() {
+        for (value, wanted) in [
+            (2.0, [2, 1]),
+            (1.0 / 1.5, [2, 3]),
+            (0.1, [1, 10]),
+            (1e12, [u32::MAX, 1]),
+            (1e-12, [1, u32::MAX]),
+        ] {
+            assert_eq!(fraction(value), wanted, "{value}");
+        }
+        for at in 1..1000 {
+            let value = f64::from(at).sqrt() * 0.37;
+            let [above, below] = fraction(value);
+            assert!((f64::from(above) / f64::from(below) / value - 1.0).abs() < 1e-9, "{value}");
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! What the user knows better than the file: edited, undone, kept with the session, and remembered for the file.
+
+use std::path::{Path, PathBuf};
+
+use chiaroscuro::app::{App, Options};
+use chiaroscuro::data::{Corrections, SpacingUnit};
+use chiaroscuro::model::{Length, Record, Settings};
+use eframe::egui::{Key, Modifiers, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{click, drag, picture, wait_until, wait_until_idle, window_with};
+
+fn settings(harness: &Harness<'_, App>) -> Settings {
+    harness.state().settings().clone()
+}
+
+fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run_steps(8);
+    wait_until_idle(harness);
+}
+
+/// A slab that is long in x, less in y and thin in z, in the middle of nothing.
+fn write_slab(path: &Path) {
+    let value = |at: usize| {
+        let [x, y, z] = [at % 24, at / 24 % 24, at / 576];
+        u8::from((2..18).contains(&x) && (6..18).contains(&y) && (10..14).contains(&z)) * 200
+    };
+    std::fs::write(path, (0..24 * 24 * 24).map(value).collect::<Vec<_>>()).expect("written");
+}
+
+fn start(source: &Path, storage: &Path, session: Option<PathBuf>) -> Harness<'static, App> {
+    let (source, storage) = (Some(source.to_owned()), Some(storage.to_owned()));
+    window_with(Options { source, storage, session, ..Options::default() }, Vec2::new(760.0, 1600.0))
+}
+
+/// Unfolds the part that corrects the file.
+fn unfold(harness: &mut Harness<'_, App>) {
+    for part in ["Data", "Corrections"] {
+        harness.get_by_label(part).scroll_to_me();
+        harness.run_steps(8);
+        click(harness, part);
+        harness.run_steps(8);
+    }
+    harness.get_by_label("All as in the file").scroll_to_me();
+    harness.run_steps(8);
+}
+
+#[test]
+fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
+    let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let file = folder.path().join("slab_24x24x24_uint8.raw");
+    write_slab(&file);
+    // Not for the first time, which says how to begin over the picture.
+    std::fs::create_dir(storage.path().join("runs")).expect("a folder");
+    let mut harness = start(&file, storage.path(), None);
+    let as_opened = settings(&harness);
+    assert!(as_opened.volume.is_none());
+    let (before, _) = picture(&mut harness);
+    unfold(&mut harness);
+    let fills = harness.state().light_rebuilds();
+    click(&mut harness, "Flip x");
+    wait_until(&mut harness, "never corrected", |app| app.settings().volume.flip.x && app.is_idle());
+    assert!(harness.state().light_rebuilds() > fills, "light falls on it from elsewhere");
+    let (after, _) = picture(&mut harness);
+    assert!(before != after, "it is another picture");
+    let flipped = settings(&harness);
+    assert_eq!((&flipped.transfer, &flipped.lights), (&as_opened.transfer, &as_opened.lights));
+
+    // One step back, and one forward.
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(settings(&harness), as_opened);
+    let (undone, _) = picture(&mut harness);
+    assert!(undone == before, "as it was, to the last pixel");
+    press(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    assert_eq!(settings(&harness), flipped);
+
+    // A drag is one step, whatever lies between.
+    let number = harness.get_by_label("Spacing along z").rect().center();
+    drag(&mut harness, number, Vec2::new(120.0, 0.0));
+    harness.run_steps(8);
+    wait_until_idle(&mut harness);
+    let spaced = settings(&harness);
+    let spacing = spaced.volume.spacing.expect("it was dragged");
+    assert!(spacing[0] == 1.0 && spacing[1] == 1.0 && spacing[2] > 1.2, "{spacing:?}");
+    assert!(spaced.camera.distance > 0.0 && spaced.volume.flip.x);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(settings(&harness).volume, flipped.volume);
+    press(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    assert_eq!(settings(&harness), spaced);
+    assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());
+    drop(harness);
+
+    // The next run opens it so, and says so; a step back shows it as the file says, and forgets.
+    let mut harness = start(&file, storage.path(), None);
+    assert_eq!(settings(&harness).volume, spaced.volume);
+    let said = harness.query_by_label_contains("Corrected as last time: spacing 1 × 1 ×");
+    assert!(said.is_some(), "nothing is said");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(settings(&harness).volume.is_none());
+    drop(harness);
+    let harness = start(&file, storage.path(), None);
+    assert!(settings(&harness).volume.is_none());
+    drop(harness);
+
+    // Another file at the same place is not touched.
+    let mut harness = start(&file, storage.path(), None);
+    unfold(&mut harness);
+    click(&mut harness, "Flip z");
+    wait_until(&mut harness, "never corrected", |app| app.settings().volume.flip.z && app.is_idle());
+    drop(harness);
+    std::fs::write(&file, (0..24 * 24 * 24).map(|at| (at % 251) as u8).collect::<Vec<_>>()).expect("written");
+    let harness = start(&file, storage.path(), None);
+    assert!(settings(&harness).volume.is_none());
+}
+
+#[test]
+fn a_session_corrects_its_volume_and_no_other() {
+    let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let [file, other] = ["a", "b"].map(|name| folder.path().join(format!("{name}_24x24x24_uint8.raw")));
+    write_slab(&file);
+    std::fs::write(&other, (0..24 * 24 * 24).map(|at| (at % 240) as u8).collect::<Vec<_>>())
+        .expect("written");
+    let session = folder.path().join("session.json");
+    let mut harness = start(&file, storage.path(), Some(session.clone()));
+    let mut wanted = settings(&harness);
+    unfold(&mut harness);
+    click(&mut harness, "Flip y");
+    wait_until(&mut harness, "never corrected", |app| app.settings().volume.flip.y && app.is_idle());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.run_steps(8);
+    drop(harness);
+    let record = Record::read(&std::fs::read_to_string(&session).expect("saved")).expect("a record");
+    wanted.volume.flip.y = true;
+    let id =
+        u64::from_str_radix(&record.volume.as_ref().expect("of a volume").content_id, 16).expect("a number");
+    assert_eq!(record.corrections_of(id), Some(wanted.volume));
+    // Where nothing is remembered of the file.
+    let elsewhere = tempfile::tempdir().unwrap();
+    let harness = start(&file, elsewhere.path(), Some(session.clone()));
+    assert_eq!(settings(&harness).volume, wanted.volume);
+    drop(harness);
+    let harness = start(&other, elsewhere.path(), Some(session));
+    assert!(settings(&harness).volume.is_none());
+}
+
+#[test]
+fn a_look_that_is_kept_and_lengths_go_along() {
+    let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let [file, other] = ["a", "b"].map(|name| folder.path().join(format!("{name}_24x24x24_uint8.raw")));
+    write_slab(&file);
+    std::fs::write(&other, (0..24 * 24 * 24).map(|at| (at % 240) as u8).collect::<Vec<_>>())
+        .expect("written");
+    let options = Options {
+        source: Some(file),
+        storage: Some(storage.path().to_owned()),
+        adjust: Some(Box::new(|mut settings| {
+            settings.shadows.keep_balanced = false;
+            settings.shading.ambient = 0.4;
+            settings.opacity_unit = Length::Mm(2.0);
+            settings.volume = Corrections { unit: Some(SpacingUnit::Um), ..Corrections::default() };
+            settings
+        })),
+        ..Options::default()
+    };
+    let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
+    assert_eq!(settings(&harness).volume.unit, Some(SpacingUnit::Um));
+    unfold(&mut harness);
+    click(&mut harness, "All as in the file");
+    wait_until(&mut harness, "never corrected", |app| app.settings().volume.is_none() && app.is_idle());
+    assert_eq!(settings(&harness).opacity_unit, Length::Mm(2000.0), "the same share of the object");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!((settings(&harness).opacity_unit, settings(&harness).volume.unit), {
+        (Length::Mm(2.0), Some(SpacingUnit::Um))
+    });
+    // The next volume is shown as this one, and is what its file says.
+    let ctx = harness.ctx.clone();
+    harness.get_by_label("File").click();
+    harness.run_steps(6);
+    click(&mut harness, "Keep this look for the next file");
+    harness.state_mut().open(&other, &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("b") && app.is_idle());
+    let kept = settings(&harness);
+    assert_eq!(kept.shading.ambient, 0.4);
+    assert!(kept.volume.is_none());
+}

@@ -1,0 +1,179 @@
+//! `convert`: what is written is what was read, in another format, in part, turned or in other numbers.
+
+use serde_json::Value;
+
+use crate::program::Folder;
+use crate::volumes::{attached, gzipped, header};
+
+/// Endings of all formats.
+const ENDINGS: [&str; 8] = ["nrrd", "mha", "nii", "nii.gz", "tif", "tiff", "npy", "vti"];
+
+fn facts(folder: &Folder, file: &str) -> Value {
+    serde_json::from_str(&folder.succeed(&format!("info {file} --json"))).expect("valid JSON")
+}
+
+/// A volume of 4 x 3 x 2 numbers in a body, of which much is known.
+fn ct() -> Vec<u8> {
+    let header = header(
+        "sizes: 4 3 2\nspace: left-posterior-superior\nspace directions: (0,0.5,0) (-0.75,0,0) (0,0,2)\n\
+         space origin: (10,-20,30)\nsample units: \"HU\"\ncontent: a chest\nmodality:=CT\npadding value:=5\n\
+         acquisition:=thin slices",
+    );
+    let mut bytes = header.replace("uint8", "int16\nendian: little").into_bytes();
+    bytes.extend((0..24i16).flat_map(|at| (100 * at - 995).to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn what_info_says_of_the_result_is_what_it_says_of_the_input() {
+    let folder = Folder::new();
+    folder.write("ct.nrrd", ct());
+    let wanted = facts(&folder, "ct.nrrd");
+    assert_eq!((&wanted["hints"]["modality"], &wanted["is_anatomical"]), (&"ct".into(), &true.into()));
+    for ending in ENDINGS {
+        folder.succeed(&format!("convert ct.nrrd out.{ending}"));
+        let found = facts(&folder, &format!("out.{ending}"));
+        for same in ["dims", "type", "range", "non_finite_voxels"] {
+            assert_eq!(found[same], wanted[same], "{ending}: {same}");
+        }
+        let has_place = ["nrrd", "mha", "nii", "nii.gz", "vti"].contains(&ending);
+        for place in ["spacing_mm", "world_from_index"] {
+            assert_eq!(
+                found[place] == wanted[place],
+                has_place || (ending != "npy" && place == "spacing_mm"),
+                "{ending}"
+            );
+        }
+        assert_eq!(found["is_anatomical"], has_place && ending != "vti", "{ending}");
+    }
+    for file in ["nrrd.nrrd", "nrrd.nrrd --compress", "mha.mha", "mha.mha --compress"] {
+        folder.succeed(&format!("convert ct.nrrd {file}"));
+        let found = facts(&folder, file.split(' ').next().unwrap_or_default());
+        for (key, value) in wanted.as_object().expect("an object") {
+            assert_eq!(&found[key], value, "{file}: {key}");
+        }
+    }
+}
+
+#[test]
+fn what_has_no_place_is_said() {
+    let folder = Folder::new();
+    folder.write("ct.nrrd", ct());
+    let outcome = folder.run("convert ct.nrrd out.npy");
+    let said = &outcome.stderr;
+    assert!(outcome.code == Some(0) && said.starts_with("warning: .npy has no place for"), "{outcome:?}");
+    for lost in ["how large voxels are", "which way its axes go", "padding", "unit"] {
+        assert!(said.contains(lost), "{lost}: {said}");
+    }
+    assert_eq!(folder.run("convert ct.nrrd out.mha").stderr, "");
+}
+
+#[test]
+fn parts_turns_and_numbers() {
+    let folder = Folder::new();
+    folder.write("ct.nrrd", ct());
+    folder.succeed("convert ct.nrrd part.nrrd --region 1:3,:,1:");
+    let (part, whole) = (facts(&folder, "part.nrrd"), facts(&folder, "ct.nrrd"));
+    assert_eq!(part["dims"], serde_json::json!([2, 3, 1]));
+    assert_eq!(part["range"], serde_json::json!([305.0, 1205.0]));
+    let number = |facts: &Value, at: usize| facts["world_from_index"][at].as_f64().expect("a number");
+    // The first voxel is one further along x and z.
+    for axis in 9..12 {
+        let wanted = number(&whole, axis) + number(&whole, axis - 9) + number(&whole, axis - 3);
+        assert!((number(&part, axis) - wanted).abs() < 1e-12, "{axis}");
+    }
+    folder.succeed("convert ct.nrrd ras.nrrd --orient RAS");
+    let ras = facts(&folder, "ras.nrrd");
+    assert_eq!(ras["dims"], serde_json::json!([3, 4, 2]));
+    assert_eq!(ras["spacing_mm"], serde_json::json!([0.75, 0.5, 2.0]));
+    assert!([0, 4, 8].iter().all(|&at| number(&ras, at) > 0.0), "{ras}");
+    // Back again, and nothing is lost.
+    folder.succeed("convert ras.nrrd back.nrrd --orient PRS");
+    folder.succeed("convert ct.nrrd once.nrrd --orient PRS");
+    assert_eq!(folder.read("back.nrrd"), folder.read("once.nrrd"));
+    // A region counts voxels of the file, and blocks are averaged in it.
+    folder.succeed("convert builtin:sphere:16 half.nrrd --region 0:8,0:6,0:4 --reduce 2");
+    assert_eq!(facts(&folder, "half.nrrd")["dims"], serde_json::json!([4, 3, 2]));
+    folder.succeed("convert ct.nrrd float.mha --type float32");
+    assert_eq!(facts(&folder, "float.mha")["type"], "float32");
+    folder.succeed("convert ct.nrrd small.tif --type uint8 --rescale -1000:1000");
+    let small = facts(&folder, "small.tif");
+    assert_eq!((&small["type"], &small["hints"]["padding"]), (&"uint8".into(), &0.0.into()));
+    // RAW, whose own type has another name here.
+    folder.write("x.bin", [1u8, 0, 2, 0, 3, 0, 4, 1]);
+    folder.succeed("convert x.bin x.npy --dims 2x2x1 --input-type uint16 --endian little --type float64");
+    assert_eq!(facts(&folder, "x.npy")["range"], serde_json::json!([1.0, 260.0]));
+}
+
+#[test]
+fn what_cannot_be_written_is_refused() {
+    let folder = Folder::new();
+    folder.write("ct.nrrd", ct());
+    folder.write("plain.nrrd", attached("sizes: 8 8 8", 512));
+    folder.write("theirs.mha", "ObjectType = Image\nComment = somebody's\n");
+    folder.write("theirs.nii.gz", gzipped(b"somebody's"));
+    for (args, words) in [
+        ("ct.nrrd out.mhd", &[".nrrd", ".mha", ".nii.gz", ".vti"][..]),
+        ("ct.nrrd out", &[".nrrd"]),
+        ("ct.nrrd ct.nrrd", &["would replace"]),
+        ("ct.nrrd ./ct.nrrd --force", &["would replace"]),
+        ("ct.nrrd theirs.mha", &["--force"]),
+        ("ct.nrrd theirs.nii.gz", &["--force"]),
+        ("ct.nrrd out.npy --compress", &["--compress", ".nrrd"]),
+        ("ct.nrrd out.npy --format nrrd", &["--format"]),
+        ("ct.nrrd out.nrrd --region 0:5,:,:", &["--region", "4 x 3 x 2"]),
+        ("ct.nrrd out.nrrd --region 1:1,:,:", &["--region"]),
+        ("ct.nrrd out.nrrd --region 1:2", &["0:64,0:64,10:20"]),
+        ("ct.nrrd out.nrrd --orient RAX", &["LPS"]),
+        ("plain.nrrd out.nrrd --orient RAS", &["plain.nrrd", "which way a body lies"]),
+        ("ct.nrrd out.nrrd --type uint8", &["ct.nrrd", "-995", "1305", "--rescale"]),
+        ("ct.nrrd out.nrrd --type complex", &["float32"]),
+        ("ct.nrrd out.nrrd --rescale 3:1 --type uint8", &["-1000:3000"]),
+    ] {
+        let said = folder.fail(&format!("convert {args}"), 2);
+        assert!(words.iter().all(|word| said.contains(word)), "{args}: {said}");
+    }
+    folder.fail("convert nothing.nrrd out.nrrd", 6);
+    folder.fail("convert theirs.mha out.nrrd", 3);
+    folder.fail("convert ct.nrrd no/such/folder/out.nrrd", 6);
+    folder.succeed("convert ct.nrrd theirs.mha --force");
+    // What the program has made it may make again.
+    for ending in ENDINGS {
+        folder.succeed(&format!("convert ct.nrrd o.{ending}"));
+        if ending == "npy" {
+            // NumPy's arrays cannot say who made them.
+            folder.fail("convert ct.nrrd o.npy", 2);
+        } else {
+            folder.succeed(&format!("convert ct.nrrd o.{ending}"));
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_are_no_targets() {
+    let folder = Folder::new();
+    folder.write("ct.nrrd", ct());
+    std::os::unix::fs::symlink("/dev/null", folder.path("null.nrrd")).expect("a link");
+    let said = folder.fail("convert ct.nrrd null.nrrd --force", 6);
+    assert!(said.contains("device"), "{said}");
+}
+
+#[test]
+fn standard_output_is_a_file_alone() {
+    let folder = Folder::new();
+    folder.write("ct.nrrd", ct());
+    let output = |args: &str| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
+            .args(args.split_whitespace())
+            .current_dir(folder.path(""))
+            .output()
+            .expect("the program can be started");
+        assert!(output.status.success(), "{args}: {output:?}");
+        output.stdout
+    };
+    folder.succeed("convert ct.nrrd file.nrrd");
+    folder.succeed("convert ct.nrrd file.vti");
+    assert_eq!(output("convert ct.nrrd -"), folder.read("file.nrrd"));
+    assert_eq!(output("convert ct.nrrd - --format vti"), folder.read("file.vti"));
+}

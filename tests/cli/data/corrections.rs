@@ -1,0 +1,89 @@
+//! What the command line knows better than the file of a volume.
+
+use serde_json::{Value, json};
+
+use crate::program::Folder;
+use crate::volumes::{header, small_ball};
+
+/// A ball whose voxels are so far apart.
+fn ball(spacings: &str) -> Vec<u8> {
+    [header(&format!("sizes: 8 8 8\nspacings: {spacings}")).as_bytes(), &small_ball()].concat()
+}
+
+fn pixels(folder: &Folder, name: &str) -> Vec<u8> {
+    image::open(folder.path(name)).expect("a picture").to_rgba8().into_raw()
+}
+
+#[test]
+fn a_corrected_volume_makes_the_picture_of_a_file_that_says_so() {
+    let folder = Folder::new();
+    folder.write("said.nrrd", ball("1 1 1"));
+    folder.write("meant.nrrd", ball("0.5 0.5 2"));
+    folder.write("small.nrrd", ball("0.0005 0.0005 0.002"));
+    folder.succeed("render said.nrrd -o said.png --size 48x36");
+    folder.succeed("render meant.nrrd -o meant.png --size 48x36");
+    folder.succeed("render said.nrrd -o corrected.png --size 48x36 --set volume.spacing=0.5,0.5,2");
+    assert!(pixels(&folder, "corrected.png") == pixels(&folder, "meant.png"), "another picture");
+    assert!(pixels(&folder, "corrected.png") != pixels(&folder, "said.png"), "nothing was corrected");
+    folder.succeed("render small.nrrd -o small.png --size 48x36");
+    folder.succeed(
+        "render said.nrrd -o in_um.png --size 48x36 --set volume.spacing=0.5,0.5,2 --set volume.unit=um",
+    );
+    assert!(pixels(&folder, "in_um.png") == pixels(&folder, "small.png"), "units are lengths");
+
+    // The picture says how it was made, and of which file; it corrects that file, and no other.
+    assert!(folder.succeed("replay corrected.png --check").contains("identical"));
+    folder.succeed("render said.nrrd -o again.png --size 48x36 --session corrected.png");
+    assert!(pixels(&folder, "again.png") == pixels(&folder, "corrected.png"), "a session restores it");
+    folder.succeed("render small.nrrd -o other.png --size 48x36 --session corrected.png --report other.json");
+    assert_eq!(folder.json("other.json")["settings"]["volume"]["spacing"], Value::Null);
+    folder.succeed(
+        "render said.nrrd -o undone.png --size 48x36 --session corrected.png --set volume.spacing=null",
+    );
+    folder.succeed("render said.nrrd -o a.png --size 48x36 --session corrected.png --report report.json");
+    assert_eq!(folder.json("report.json")["settings"]["volume"]["spacing"], json!([0.5, 0.5, 2.0]));
+    assert!(
+        pixels(&folder, "undone.png") != pixels(&folder, "corrected.png"),
+        "the command line counts last"
+    );
+}
+
+#[test]
+fn info_says_what_is_corrected() {
+    let folder = Folder::new();
+    folder.write("a_8x8x8_uint8.raw", small_ball());
+    let info = |set: &str| -> Value {
+        serde_json::from_str(&folder.succeed(&format!("info a_8x8x8_uint8.raw --json {set}"))).expect("JSON")
+    };
+    let plain = info("");
+    assert_eq!((&plain["has_unknown_scale"], &plain["corrections"]["spacing"]), (&json!(true), &Value::Null));
+    let spaced = info("--set volume.spacing=2x2x3 --set volume.unit=nm");
+    assert_eq!(spaced["has_unknown_scale"], false);
+    let along_z = spaced["spacing_mm"][2].as_f64().expect("a number");
+    assert!((along_z / 3e-6 - 1.0).abs() < 1e-12, "{along_z}");
+    let scaled = info("--set volume.value_scale.slope=10 --set volume.value_scale.intercept=-1000");
+    assert_eq!(scaled["range"], json!([-1000.0, 1000.0]));
+    let padded = info("--set volume.padding_value=0");
+    assert_eq!(padded["range"], json!([200.0, 200.0]));
+    let lying = info("--set volume.orientation=PSL --set volume.flip.y=true");
+    assert_eq!(lying["is_anatomical"], true);
+    let words = folder.succeed("info a_8x8x8_uint8.raw --set volume.flip.y=true --set volume.axis_order=zyx");
+    assert!(words.contains("corrected    flipped along y") && words.contains("order z y x"), "{words}");
+
+    for (set, code, said) in [
+        ("camera.distance=2", 2, "volume.spacing="),
+        ("volume.spacing", 2, "volume.spacing="),
+        ("volume.spacings=2", 2, "spacing"),
+        ("volume.spacing=wide", 2, "0.5,0.5,2"),
+        ("volume.orientation=RAR", 2, "RAS"),
+        ("volume.padding_value=some", 2, "none"),
+    ] {
+        let outcome = folder.run(&format!("info a_8x8x8_uint8.raw --set {set}"));
+        assert_eq!(outcome.code, Some(code), "{set}: {outcome:?}");
+        assert!(outcome.message().is_some_and(|message| message.contains(said)), "{set}: {outcome:?}");
+    }
+    folder.write("b_8x8x8_uint8.raw", vec![5; 512]);
+    let outcome = folder.run("info b_8x8x8_uint8.raw --set volume.padding_value=5");
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    assert!(outcome.message().is_some_and(|message| message.contains("padding 5")), "{outcome:?}");
+}

@@ -1,0 +1,261 @@
+//! What unpacks to far more than was said, and what is nested without end.
+
+use std::io::Write as _;
+
+use bzip2::write::BzEncoder;
+use flate2::Compression;
+use flate2::write::{DeflateEncoder, ZlibEncoder};
+
+use super::Maker;
+use super::words::find;
+use crate::samples::{gzip, kept};
+
+/// Mebibytes that bombs unpack to.
+const LARGE: usize = 48;
+
+/// How deep nesting goes.
+const DEEP: usize = 100_000;
+
+pub(super) fn add(made: &mut Maker) {
+    let zeros = vec![0u8; LARGE << 20];
+    let (small, packed) = ([7u8; 64], gzip(&zeros));
+    of_text(made, &zeros, &packed);
+    let kept = kept();
+    let of = |name: &str| kept.iter().find(|(kept, _)| *kept == name).expect("it is kept").1.clone();
+    // Packed as a whole.
+    for (name, start) in [("plain.nii", 352), ("density.mrc", 1024), ("array.npy", 128), ("packed.pvm", 0)] {
+        let bytes = of(name);
+        let bomb = [&bytes[..start], zeros.as_slice()].concat();
+        made.add("packed zeros behind a header", &format!("{name}.gz"), &gzip(&bomb));
+        // A header that says that all of it, or much more, is voxels.
+        let mut large = bomb;
+        match name {
+            "plain.nii" => large[42..48].copy_from_slice(&[0, 4, 0, 4, 0, 4]),
+            "density.mrc" => large[..12].copy_from_slice(&[0, 8, 0, 0, 0, 8, 0, 0, 0, 8, 0, 0]),
+            _ => continue,
+        }
+        made.add("packed zeros, and more are said", &format!("{name}.gz"), &gzip(&large));
+    }
+    made.add("packed zeros", "8x8x8_uint8.raw.gz", &packed);
+    made.add("packed zeros, and more are said", "2048x2048x2048_uint8.raw.gz", &packed);
+    made.add("packed twice", "volume.nii.gz", &gzip(&packed));
+    deflated_dicom(made, &of("deflated.dcm"), &zeros);
+    nested_dicom(made, &of("frames.dcm"));
+    nested_xml(made);
+    archive(made, &zeros);
+    endless(made, &small);
+}
+
+/// Headers of text before packed numbers.
+fn of_text(made: &mut Maker, zeros: &[u8], packed: &[u8]) {
+    let mut bzip2 = BzEncoder::new(Vec::new(), bzip2::Compression::best());
+    bzip2.write_all(zeros).expect("it is in memory");
+    let bzip2 = bzip2.finish().expect("it is in memory");
+    let mut zlib = ZlibEncoder::new(Vec::new(), Compression::best());
+    zlib.write_all(zeros).expect("it is in memory");
+    let zlib = zlib.finish().expect("it is in memory");
+    for sizes in ["4 4 4", "512 512 512", "1024 1024 2048", "100000 100000 100000"] {
+        for (encoding, data) in
+            [("gzip", packed), ("bzip2", &bzip2[..]), ("hex", &b"00"[..]), ("text", &b"0 0 0"[..])]
+        {
+            let header =
+                format!("NRRD0004\ntype: uint8\ndimension: 3\nsizes: {sizes}\nencoding: {encoding}\n\n");
+            made.add(format!("{encoding} of {sizes}"), "bomb.nrrd", &[header.as_bytes(), data].concat());
+        }
+        let header = format!(
+            "ObjectType = Image\nNDims = 3\nBinaryData = True\nCompressedData = True\nElementSpacing = 1 1 1\n\
+             DimSize = {sizes}\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"
+        );
+        made.add(format!("zlib of {sizes}"), "bomb.mha", &[header.as_bytes(), &zlib].concat());
+        let last: Vec<u64> = sizes.split(' ').map(|n| n.parse::<u64>().expect("a number") - 1).collect();
+        // One block: how many, how long each, how long the last, how long it is packed.
+        let counts = [1u32, u32::MAX, 0, zlib.len() as u32].map(u32::to_le_bytes).concat();
+        let header = format!(
+            "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" header_type=\"UInt32\" \
+             compressor=\"vtkZLibDataCompressor\"><ImageData WholeExtent=\"0 {0} 0 {1} 0 {2}\" Spacing=\"1 1 1\"><Piece \
+             Extent=\"0 {0} 0 {1} 0 {2}\"><PointData><DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" \
+             offset=\"0\"/></PointData></Piece></ImageData><AppendedData encoding=\"raw\">_",
+            last[0], last[1], last[2]
+        );
+        made.add(format!("zlib of {sizes}"), "bomb.vti", &[header.as_bytes(), &counts, &zlib].concat());
+        // Very many blocks of nothing.
+        let counts = [u32::MAX, 1, 1].map(u32::to_le_bytes).concat();
+        made.add(format!("blocks of {sizes}"), "blocks.vti", &[header.as_bytes(), &counts, &zlib].concat());
+    }
+}
+
+/// The data set, or its pixels, unpack to much.
+fn deflated_dicom(made: &mut Maker, bytes: &[u8], zeros: &[u8]) {
+    // The data set begins behind the group of the file, of which the length stands in its first element.
+    let length = u32::from_le_bytes(bytes[140..144].try_into().expect("four bytes")) as usize;
+    let start = &bytes[..144 + length];
+    let deflated = |data: &[u8]| {
+        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(data).expect("it is in memory");
+        encoder.finish().expect("it is in memory")
+    };
+    made.add("a data set of zeros", "bomb.dcm", &[start, &deflated(zeros)].concat());
+    let element =
+        [&[0x28, 0, 0x10, 0, b'U', b'S', 2, 0, 1, 0][..], &[0x20, 0, 0, 0x40, b'L', b'T', 0xfe, 0xff]]
+            .concat();
+    made.add("a long text", "bomb.dcm", &[start, &deflated(&[element.as_slice(), zeros].concat())].concat());
+}
+
+/// Sequences in sequences.
+fn nested_dicom(made: &mut Maker, bytes: &[u8]) {
+    let length = u32::from_le_bytes(bytes[140..144].try_into().expect("four bytes")) as usize;
+    let start = &bytes[..144 + length];
+    let endless = [0xff; 4];
+    let sequence =
+        [&[0x08, 0, 0x40, 0x11, b'S', b'Q', 0, 0][..], &endless, &[0xfe, 0xff, 0, 0xe0], &endless].concat();
+    made.add("sequences in sequences", "deep.dcm", &[start, &sequence.repeat(DEEP)].concat());
+    // With lengths that each hold the next.
+    let mut nested = Vec::new();
+    for depth in (0..2000u32).rev() {
+        let inner = 20 * (1999 - depth);
+        let head = [0x08, 0, 0x40, 0x11, b'S', b'Q', 0, 0].to_vec();
+        nested.extend(
+            [
+                head,
+                (inner + 8).to_le_bytes().to_vec(),
+                vec![0xfe, 0xff, 0, 0xe0],
+                inner.to_le_bytes().to_vec(),
+            ]
+            .concat(),
+        );
+    }
+    made.add("sequences of lying lengths", "deep.dcm", &[start, &nested].concat());
+    let items = [0xfe, 0xff, 0, 0xe0, 0, 0, 0, 0].repeat(DEEP);
+    let many = [&[0x08, 0, 0x40, 0x11, b'S', b'Q', 0, 0][..], &endless, &items].concat();
+    made.add("a sequence of very many items", "wide.dcm", &[start, &many].concat());
+}
+
+/// Elements in elements, entities of entities, and files that the text names.
+fn nested_xml(made: &mut Maker) {
+    let kept = kept();
+    let ome = &kept.iter().find(|(name, _)| *name == "ome.tif").expect("it is kept").1;
+    let deep = "<a>".repeat(DEEP);
+    let laughs: String =
+        (1..10).map(|at| format!("<!ENTITY l{at} \"{}\">", format!("&l{};", at - 1).repeat(10))).collect();
+    let doctypes = [
+        format!("<!DOCTYPE x [<!ENTITY l0 \"ha\">{laughs}]>"),
+        "<!DOCTYPE x SYSTEM \"/etc/passwd\">".to_owned(),
+        "<!DOCTYPE x [<!ENTITY e SYSTEM \"file:///etc/passwd\">]>".to_owned(),
+    ];
+    let image = |inner: &str| {
+        format!(
+            "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\">{inner}</ImageData></VTKFile>"
+        )
+    };
+    let described = |inner: &str| {
+        format!("<I><RawFile content=\"described.raw\"/><Format content=\"UINT8\"/>{inner}</I>")
+    };
+    for (name, text) in [("odd.vti", image(&deep)), ("odd.ivf", described(&deep)), ("odd.vti", deep.clone())]
+    {
+        made.add("elements in elements", name, text.as_bytes());
+    }
+    let attributes: String = (0..DEEP).map(|at| format!(" a{at}=\"1\"")).collect();
+    for (name, text) in [
+        ("odd.vti", image(&format!("<Piece{attributes}/>"))),
+        ("odd.ivf", described(&format!("<b{attributes}/>"))),
+    ] {
+        made.add("attributes without end", name, text.as_bytes());
+    }
+    for doctype in &doctypes {
+        for (name, inner) in [
+            ("odd.vti", image("&l9;&e;")),
+            ("odd.ivf", described("<Dimension x=\"&l9;\" y=\"&e;\" z=\"4\"/>")),
+        ] {
+            made.add(
+                doctype.chars().take(60).collect::<String>(),
+                name,
+                format!("{doctype}{inner}").as_bytes(),
+            );
+        }
+        // The description of the first page, in its own length.
+        let start = find(ome, b"<?xml").or_else(|| find(ome, b"<OME")).expect("it is OME");
+        let mut changed = ome.clone();
+        let text = format!("{doctype}<OME>&l9;&e;</OME>");
+        let end = (start + text.len()).min(changed.len());
+        changed[start..end].copy_from_slice(&text.as_bytes()[..end - start]);
+        made.add("a description with entities", "odd.ome.tif", &changed);
+    }
+    made.add("a dictionary in dictionaries", "odd.npy", &npy(&"{'a':".repeat(10_000)));
+    made.add("lists in lists", "odd.npy", &npy(&"(".repeat(60_000)));
+}
+
+/// A file of `NumPy` with a header.
+fn npy(header: &str) -> Vec<u8> {
+    [&b"\x93NUMPY\x01\x00"[..], &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat()
+}
+
+/// An archive of one array, which is much longer, or much shorter, than its header says.
+fn archive(made: &mut Maker, zeros: &[u8]) {
+    for shape in ["(4, 4, 4)", "(512, 512, 512)", "(4096, 4096, 4096)"] {
+        let header = npy(&format!("{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}\n"));
+        let content = [header.as_slice(), zeros].concat();
+        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(&content).expect("it is in memory");
+        let packed = encoder.finish().expect("it is in memory");
+        for said in [content.len() as u32, u32::MAX - 1, 10] {
+            let of = |length: u32| length.to_le_bytes();
+            let sizes = [[0; 4], of(packed.len() as u32), of(said)].concat();
+            let local =
+                [&b"PK\x03\x04\x14\0\0\0\x08\0\0\0\0\0"[..], &sizes, b"\x05\0\0\0a.npy", &packed].concat();
+            let listed =
+                [&b"PK\x01\x02\x14\0\x14\0\0\0\x08\0\0\0\0\0"[..], &sizes, b"\x05\0", &[0; 16], b"a.npy"]
+                    .concat();
+            let end = [
+                &b"PK\x05\x06\0\0\0\0\x01\0\x01\0"[..],
+                &of(listed.len() as u32)[..],
+                &of(local.len() as u32),
+                b"\0\0",
+            ];
+            made.add(format!("{shape}, {said} bytes"), "bomb.npz", &[local, listed, end.concat()].concat());
+        }
+    }
+}
+
+/// Lists and numbers that do not end.
+fn endless(made: &mut Maker, data: &[u8]) {
+    let fields = "key:=value\n".repeat(DEEP);
+    let header = format!("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n{fields}\n");
+    made.add("keys without end", "wide.nrrd", &[header.as_bytes(), data].concat());
+    let names = "listed.raw\n".repeat(DEEP);
+    let header = "NDims = 3\nDimSize = 4 4 100000\nElementType = MET_UCHAR\nElementDataFile = LIST\n";
+    made.add("files without end", "wide.mhd", format!("{header}{names}").as_bytes());
+    let header = format!(
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 100000\nencoding: raw\ndata file: LIST\n{names}"
+    );
+    made.add("files without end", "wide.nhdr", header.as_bytes());
+    for pattern in [
+        "listed%d.raw 1 999999999 1",
+        "listed%999999999d.raw 1 9 1",
+        "%s%s%s%n.raw 1 9 1",
+        "listed%d.raw 9 1 0",
+    ] {
+        let header = format!(
+            "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 9\nencoding: raw\ndata file: {pattern}\n"
+        );
+        made.add(pattern, "many.nhdr", header.as_bytes());
+        let header =
+            format!("NDims = 3\nDimSize = 4 4 9\nElementType = MET_UCHAR\nElementDataFile = {pattern}\n");
+        made.add(pattern, "many.mhd", header.as_bytes());
+    }
+    let atoms = "T\nt\n-9999999 0 0 0\n4 1 0 0\n4 0 1 0\n4 0 0 1\n";
+    made.add("atoms that are not there", "odd.cube", atoms.as_bytes());
+    made.add(
+        "a word without end",
+        "odd.cube",
+        &[&b"T\nt\n0 0 0 0\n4 1 0 0\n4 0 1 0\n4 0 0 1\n"[..], &vec![b'1'; 1 << 20]].concat(),
+    );
+    let header =
+        b"# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 4\nPOINT_DATA 64\n";
+    let arrays = "SCALARS a char 1\nLOOKUP_TABLE default\n1\n".repeat(20_000);
+    made.add("arrays without end", "wide.vtk", &[&header[..], arrays.as_bytes()].concat());
+    made.add(
+        "a table without end",
+        "wide.vtk",
+        &[&header[..], b"LOOKUP_TABLE a 4294967295\nSCALARS b char\n"].concat(),
+    );
+}

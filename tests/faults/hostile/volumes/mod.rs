@@ -1,0 +1,226 @@
+//! Odd and broken files of volumes in every format, made here and not kept: headers that lie, files that are cut, paths
+//! that lead out of the folder, what unpacks to more than was said, what is nested without end.
+//!
+//! Each is read in this process, which sees panics, time and memory; some of them, and in the long run all, by the
+//! program as well, of which it is seen what it opens.
+
+mod bombs;
+mod cuts;
+mod numbers;
+mod places;
+mod words;
+
+use std::panic::catch_unwind;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use chiaroscuro::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+
+use super::FORBIDDEN;
+use super::runner::{Trace, watch};
+
+/// Longest that a small file may take.
+const PROMPT: Duration = Duration::from_secs(10);
+
+/// What a file that is refused may need beyond four times its own length.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// Fewest files of this kind.
+const LEAST: usize = 400;
+
+/// A file to be opened.
+struct Case {
+    /// What is wrong with it.
+    what: String,
+    path: PathBuf,
+    /// It leads to another folder, and may not be opened.
+    is_forbidden: bool,
+}
+
+/// Makes files, each in a folder of its own.
+struct Maker {
+    folder: PathBuf,
+    cases: Vec<Case>,
+}
+
+impl Maker {
+    /// Adds a file.
+    fn add(&mut self, what: impl Into<String>, name: &str, bytes: &[u8]) {
+        let folder = self.folder.join(format!("{:04}", self.cases.len()));
+        std::fs::create_dir(&folder).expect("a folder");
+        // What headers and descriptions are of.
+        for (beside, length) in [("described.raw", 24), ("listed.raw", 120)] {
+            std::fs::write(folder.join(beside), vec![7; length]).expect("room");
+        }
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).expect("room");
+        self.cases.push(Case { what: what.into(), path, is_forbidden: false });
+    }
+}
+
+fn all(root: &Path) -> Vec<Case> {
+    let mut made = Maker { folder: root.to_owned(), cases: Vec::new() };
+    cuts::add(&mut made);
+    words::add(&mut made);
+    numbers::add(&mut made);
+    bombs::add(&mut made);
+    places::add(&mut made, &root.join(FORBIDDEN));
+    made.cases
+}
+
+/// With a place for the files, and one from which nothing may be opened.
+fn with_all(check: impl FnOnce(&[Case])) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let forbidden = folder.path().join(FORBIDDEN);
+    std::fs::create_dir(&forbidden).expect("a folder");
+    std::fs::write(forbidden.join("voxels.raw"), [0; 512]).expect("room");
+    check(&all(folder.path()));
+}
+
+/// The most memory that this process has had since it was last asked, where the system says it and no other test runs
+/// beside this one.
+struct Peak(bool);
+
+impl Peak {
+    fn find() -> Self {
+        // The runner that gives each test a process of its own says so.
+        let is_alone = std::env::var_os("NEXTEST").is_some();
+        Self(is_alone && Self::reset() && Self::read().is_some())
+    }
+
+    /// Forgets what was.
+    fn reset() -> bool {
+        std::fs::write("/proc/self/clear_refs", "5").is_ok()
+    }
+
+    fn read() -> Option<u64> {
+        let status = std::fs::read_to_string("/proc/self/status").ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+        line.trim().strip_suffix(" kB")?.parse::<u64>().ok().map(|kib| kib << 10)
+    }
+
+    /// Runs something; how many bytes it needed at once, or 0 where that cannot be seen.
+    fn of<T>(&self, what: impl FnOnce() -> T) -> (T, u64) {
+        if !self.0 {
+            return (what(), 0);
+        }
+        Self::reset();
+        let before = Self::read().unwrap_or(0);
+        let done = what();
+        (done, Self::read().unwrap_or(0).saturating_sub(before))
+    }
+}
+
+/// What a refusal lacks.
+fn flaw(error: &LoadError, path: &Path) -> Option<String> {
+    let explanation = match error {
+        LoadError::BadInput(explanation) | LoadError::Limit(explanation) => explanation,
+        LoadError::Io { explanation, .. } | LoadError::Several { explanation, .. } => explanation,
+        LoadError::Cancelled => return Some("nobody has cancelled it".to_owned()),
+    };
+    let said = error.to_string();
+    let folder = path.parent().unwrap_or(Path::new("")).to_string_lossy().into_owned();
+    // Of the file itself, or of one beside it.
+    let is_named = explanation.place.contains(&folder);
+    let is_missing = said.contains("no such file");
+    if !is_named || explanation.help.is_empty() {
+        Some(format!("it does not say where, or what helps: {said}"))
+    } else if error.kind() == LoadErrorKind::Io && !is_missing {
+        Some(format!("it blames the disk: {said}"))
+    } else if said.len() > 4096 || said.chars().any(|c| c.is_control()) {
+        Some(format!("it is long, or has signs that terminals obey: {said:?}"))
+    } else {
+        None
+    }
+}
+
+/// All that is wrong with how a file is answered, and whether it was refused.
+fn answered(case: &Case, peak: &Peak) -> (Vec<String>, bool) {
+    let bytes = std::fs::metadata(&case.path).map_or(0, |data| data.len());
+    let begin = Instant::now();
+    let read = || catch_unwind(|| load(&case.path, &LoadOptions::default(), &LoadControl::new()));
+    let (done, memory) = peak.of(read);
+    let took = begin.elapsed();
+    let mut wrong = Vec::new();
+    if took > PROMPT {
+        wrong.push(format!("it takes {took:?}"));
+    }
+    let mut is_refused = true;
+    match done {
+        Err(_) => wrong.push("panics".to_owned()),
+        Ok(Ok(_)) => {
+            is_refused = false;
+            wrong.extend(case.is_forbidden.then(|| "it is opened".to_owned()));
+        }
+        Ok(Err(error)) => {
+            wrong.extend(flaw(&error, &case.path));
+            if memory > 4 * bytes + MOST_BYTES {
+                wrong.push(format!("{} MiB are taken before {error}", memory >> 20));
+            }
+        }
+    }
+    let name = case.path.file_name().unwrap_or_default().to_string_lossy();
+    (wrong.into_iter().map(|flaw| format!("{name}, {}: {flaw}", case.what)).collect(), is_refused)
+}
+
+/// Reads one in so many.
+fn read(every: usize) {
+    with_all(|cases| {
+        let peak = Peak::find();
+        let (mut wrong, mut refused, mut tried) = (Vec::new(), 0, 0);
+        for case in cases.iter().step_by(every) {
+            let (flaws, is_refused) = answered(case, &peak);
+            wrong.extend(flaws);
+            refused += usize::from(is_refused);
+            tried += 1;
+        }
+        let memory = if peak.0 { "their memory was measured" } else { "their memory was NOT measured" };
+        println!("odd volumes: {refused} refused of {tried}, of {}; {memory}", cases.len());
+        assert!(wrong.is_empty(), "{} flaws:\n{}", wrong.len(), wrong.join("\n"));
+        assert!(tried >= LEAST, "{tried} files");
+        assert!(refused > tried / 2, "most are refused");
+    });
+}
+
+#[test]
+fn odd_and_broken_volumes_are_refused_or_read() {
+    read(5);
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn all_odd_and_broken_volumes_are_refused_or_read() {
+    read(1);
+}
+
+/// The program reads one in so many.
+fn run(every: usize) {
+    with_all(|cases| {
+        let trace = Trace::find();
+        for case in cases.iter().step_by(every) {
+            let Case { what, path, .. } = case;
+            let ended = watch(path.parent().expect("a folder"), &["info".into(), path.into()], trace);
+            // 6 is for a file that is not there: one that a header names.
+            let is_missing = ended.said.contains("no such file");
+            let is_right = matches!(ended.code, Some(0 | 3 | 5)) || ended.code == Some(6) && is_missing;
+            assert!(is_right, "{what}: {}: {ended:?}", path.display());
+            for line in &ended.opened {
+                assert!(!line.contains(FORBIDDEN) || line.contains("readlink("), "{what}: {line}");
+                assert!(!line.contains("connect(") || line.contains("AF_UNIX"), "{what}: {line}");
+            }
+        }
+        println!("odd volumes: {} read by the program; {trace}", cases.len().div_ceil(every));
+    });
+}
+
+#[test]
+fn odd_volumes_lead_the_program_nowhere() {
+    // A prime, so that all formats and faults take part.
+    run(61);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn no_odd_volume_leads_the_program_anywhere() {
+    run(1);
+}

@@ -1,0 +1,155 @@
+"""TIFF by tifffile, also as ImageJ and OME have it, folders of pictures by Pillow, MRC by mrcfile."""
+
+import gzip
+
+import mrcfile
+import numpy as np
+import tifffile
+from PIL import Image
+
+from cases.sources import FLOATS, INTEGERS, small, source
+
+
+# The same in every run.
+MARK = {"UUID": "6e0d8a2c-0000-1000-8000-000000000021"}
+
+
+def cases(folder):
+    """Names, choices and the voxels that were written."""
+    return [*of_tiff(folder), *of_imagej(folder), *of_ome(folder), *of_pictures(folder), *of_mrc(folder)]
+
+
+def write(folder, name, data, choice="", expected=None, **options):
+    """By tifffile, without what it would add of its own."""
+    options = {"photometric": "minisblack", "metadata": None, "software": False} | options
+    tifffile.imwrite(folder / name, data, **options)
+    return name, choice, data if expected is None else expected
+
+
+def of_tiff(folder):
+    """Types, orders, packings, tiles, colours."""
+    for kind in INTEGERS + FLOATS + ["float16"]:
+        yield write(folder, f"tiff_{kind}.tif", source(kind))
+    for kind in ("uint16", "int32", "float32"):
+        yield write(folder, f"tiff_{kind}_big.tif", source(kind), byteorder=">")
+        yield write(folder, f"tiff_{kind}_64.tif", source(kind), bigtiff=True)
+    for packing in ("lzw", "adobe_deflate", "packbits", "zstd"):
+        for kind in ("uint8", "int16"):
+            yield write(folder, f"tiff_{kind}_{packing}.tif", source(kind), compression=packing)
+    for packing in ("lzw", "adobe_deflate", "zstd"):
+        for kind in ("uint8", "uint16"):
+            name = f"tiff_{kind}_{packing}_differences.tif"
+            yield write(folder, name, source(kind), compression=packing, predictor=2)
+    for kind in ("float32", "float64"):
+        name = f"tiff_{kind}_differences.tif"
+        yield write(folder, name, source(kind), compression="adobe_deflate", predictor=3)
+    tiled = source("uint8", (2, 20, 25))
+    yield write(folder, "tiff_tiles.tif", tiled, tile=(16, 16))
+    yield write(folder, "tiff_tiles_lzw.tif", source("int16", (2, 20, 25)) >> 8, tile=(16, 16), compression="lzw")
+    yield write(folder, "tiff_strips.tif", source("uint16", (2, 9, 7)), rowsperstrip=2)
+    colors = small("uint8", (3, 4, 5, 3))
+    yield (*write(folder, "tiff_colors.tif", colors, photometric="rgb")[:2], None)
+    planar = np.moveaxis(colors, -1, 1)
+    options = {"photometric": "rgb", "planarconfig": "separate"}
+    yield (*write(folder, "tiff_colors_planar.tif", planar, "--component 0", colors[..., 0], **options)[:2], None)
+    bits = source("uint8", (2, 9, 11)) > 127
+    yield write(folder, "tiff_1_bit.tif", bits)
+
+
+def of_imagej(folder):
+    """Stacks, their distances, channels and times."""
+    for kind in ("uint8", "uint16", "float32"):
+        options = {"imagej": True, "resolution": (2.0, 4.0), "metadata": {"axes": "ZYX", "spacing": 3.0, "unit": "um"}}
+        yield write(folder, f"imagej_{kind}.tif", source(kind), **options)
+    options = {"imagej": True, "resolution": (2.0, 2.0), "metadata": {"axes": "ZYX", "spacing": 0.75}}
+    yield write(folder, "imagej_without_unit.tif", source("uint8"), **options)
+    many = source("uint16", (2, 3, 2, 4, 5))
+    for frame, channel in ((0, 1), (1, 0)):
+        options = {"imagej": True, "metadata": {"axes": "TZCYX"}}
+        choice = f"--channel {channel} --frame {frame}"
+        name = f"imagej_times_{frame}_channels_{channel}.tif"
+        yield write(folder, name, many, choice, many[frame, :, channel], **options)
+
+
+def of_ome(folder):
+    """The same as OME has it."""
+    sizes = {"PhysicalSizeX": 0.5, "PhysicalSizeY": 0.25, "PhysicalSizeZ": 3.0}
+    units = {f"PhysicalSize{axis}Unit": "nm" for axis in "XYZ"}
+    for kind in ("uint8", "int16", "uint32", "float32"):
+        metadata = {"axes": "ZYX", **MARK, **sizes, **(units if kind == "int16" else {})}
+        yield write(folder, f"ome_{kind}.ome.tif", source(kind), ome=True, metadata=metadata)
+    many = source("uint16", (2, 2, 3, 4, 5))
+    for axes in ("TCZYX", "CTZYX"):
+        choice = "--channel 1 --frame 0"
+        expected = many[0, 1] if axes[0] == "T" else many[1, 0]
+        yield write(folder, f"ome_{axes}.ome.tif", many, choice, expected, ome=True, metadata={"axes": axes, **MARK})
+    yield write(folder, "ome_big.ome.tif", source("uint16"), ome=True, byteorder=">", metadata={"axes": "ZYX", **MARK})
+
+
+def of_pictures(folder):
+    """Slices in files of their own."""
+    for kind, ending in (("uint8", "png"), ("uint16", "png"), ("uint8", "bmp")):
+        pile = folder / f"{ending}_{kind}.slices"
+        pile.mkdir()
+        for at, pixels in enumerate(source(kind, (3, 6, 7))):
+            Image.fromarray(pixels).save(pile / f"slice_{at}.{ending}")
+        yield pile.name, "", source(kind, (3, 6, 7))
+
+
+def of_mrc(folder):
+    """Modes, orders of axes and bytes, cells, places, stacks."""
+
+    def save(name, data, expected=None, choice="", change=None, size=0.5, stack=False):
+        with mrcfile.new(folder / name, data=data, overwrite=True) as file:
+            if size:
+                file.voxel_size = (size, 2 * size, 3 * size)
+            if stack:
+                file.set_image_stack()
+            if change:
+                change(file.header)
+            # The day on which it was written is none of the test's.
+            file.header.label[:] = b""
+            file.header.nlabl = 0
+        return name, choice, data if expected is None else expected
+
+    for kind in ("int8", "int16", "float32", "uint16", "float16"):
+        yield save(f"mrc_{kind}.mrc", source(kind))
+        if kind != "int8":
+            data = source(kind)
+            yield save(f"mrc_{kind}_big.mrc", data.astype(data.dtype.newbyteorder(">")))
+    yield save("mrc_complex64.mrc", source("complex64"), np.abs(source("complex64").astype(complex)).astype("f4"))
+    for order in ((1, 2, 3), (1, 3, 2), (2, 1, 3), (2, 3, 1), (3, 1, 2), (3, 2, 1)):
+
+        def change(header, order=order):
+            header.mapc, header.mapr, header.maps = order
+            header.nxstart, header.nystart, header.nzstart = -2, 3, 5
+            # Intervals and lengths are those of the cell, not of what lies along columns.
+            header.mx, header.my, header.mz = 10, 12, 14
+            header.cella = (5.0, 12.0, 21.0)
+
+        yield save(f"mrc_axes_{''.join(map(str, order))}.map", source("int16"), change=change, size=0)
+
+    def placed(header):
+        header.origin = (10.0, -20.0, 30.0)
+
+    yield save("mrc_origin.mrc", source("float32"), change=placed)
+
+    def aslant(header):
+        header.cellb = (80.0, 100.0, 110.0)
+        header.nxstart, header.nystart, header.nzstart = 1, 2, 3
+
+    yield save("mrc_cell_aslant.mrc", source("int16"), change=aslant)
+
+    def unsaid(header):
+        header.cella = (0, 0, 0)
+
+    yield save("mrc_without_cell.mrc", source("int16"), change=unsaid, size=0)
+    stack = source("int16", (2, 3, 4, 5))
+    yield save("mrc_volumes.mrc", stack, stack[1], "--frame 1")
+    with mrcfile.new(folder / "mrc_packed.mrc.gz", data=source("int16"), compression="gzip", overwrite=True) as file:
+        file.voxel_size = 1.25
+        file.header.label[:] = b""
+        file.header.nlabl = 0
+    packed = folder / "mrc_packed.mrc.gz"
+    packed.write_bytes(gzip.compress(gzip.decompress(packed.read_bytes()), mtime=0))
+    yield "mrc_packed.mrc.gz", "", source("int16")

@@ -1,0 +1,275 @@
+//! What independent libraries have found in files, by the tables in `tests/oracle/`, and whether we find the same.
+
+use std::path::{Path, PathBuf};
+
+use chiaroscuro::data::Volume;
+use chiaroscuro::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use flate2::Crc;
+use glam::DVec3;
+
+/// How far an affine may be off, as a share of the step that it is: headers of `NIfTI` and MRC have 24 bits.
+const SAME_PLACE: f64 = 1e-6;
+
+/// How far a mean may be off, as a share of the largest value: sums of millions in another order.
+const SAME_MEAN: f64 = 1e-9;
+
+/// The share of voxels that decoders may round differently where values are packed with loss: up to 6 % were found for
+/// JPEG and JPEG 2000.
+const ROUNDED: f64 = 0.1;
+
+/// The largest file that is kept here.
+const MOST_BYTES: u64 = 4096;
+
+/// The file holds no volume.
+const REFUSED: &str = "refused";
+
+/// A row: what is said of a file, by the columns of its table.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) file: String,
+    /// Which volume is meant, as options of the command line; or why there is none, in words of the message.
+    pub(crate) choice: String,
+    pub(crate) dims: String,
+    pub(crate) voxel_type: String,
+    /// `body`, `world` (a place, but no body's) or `voxels` (nobody knows how large they are).
+    pub(crate) space: String,
+    /// Three rows of four numbers: index to right-anterior-superior millimetres.
+    pub(crate) affine: Vec<f64>,
+    pub(crate) min: f64,
+    pub(crate) max: f64,
+    pub(crate) mean: f64,
+    /// Of the voxels in their type, little-endian, x fastest.
+    pub(crate) crc32: String,
+    /// How far values may be off that were packed with loss.
+    pub(crate) tolerance: f64,
+}
+
+/// The folder of the tables.
+pub(crate) fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle")
+}
+
+/// The rows of a table.
+pub(crate) fn table(name: &str) -> Vec<Row> {
+    let path = folder().join(name);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|err| panic!("{}: {err}", path.display()));
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = lines.next().expect("the names of the columns").split('\t').collect();
+    let wanted = "file choice dims type space affine min max mean crc32 tolerance";
+    assert_eq!(names.join(" "), wanted, "{name}");
+    lines.map(row).collect()
+}
+
+fn row(line: &str) -> Row {
+    let columns: Vec<&str> = line.split('\t').collect();
+    let text = |at: usize| columns[at].to_owned();
+    let number = |at: usize| columns[at].parse().unwrap_or(f64::NAN);
+    Row {
+        file: text(0),
+        choice: text(1),
+        dims: text(2),
+        voxel_type: text(3),
+        space: text(4),
+        affine: columns[5].split(' ').filter_map(|number| number.parse().ok()).collect(),
+        min: number(6),
+        max: number(7),
+        mean: number(8),
+        crc32: text(9),
+        tolerance: number(10),
+    }
+}
+
+/// Which volume is meant.
+fn choice(said: &str) -> Choice {
+    let mut choice = Choice::default();
+    let words: Vec<&str> = said.split(' ').collect();
+    for pair in words.chunks_exact(2) {
+        let number = || Some(pair[1].parse().expect("a number"));
+        match pair[0] {
+            "--frame" => choice.frame = number(),
+            "--channel" => choice.channel = number(),
+            "--component" => choice.component = number(),
+            "--series" => choice.series = Some(pair[1].to_owned()),
+            "--array" => choice.array = Some(pair[1].to_owned()),
+            other => panic!("{other} is no option"),
+        }
+    }
+    choice
+}
+
+pub(crate) fn open(folder: &Path, row: &Row) -> Result<Volume, LoadError> {
+    let said = if row.voxel_type == REFUSED { "-" } else { &row.choice };
+    let options = LoadOptions { choice: choice(said), ..LoadOptions::default() };
+    load(&folder.join(&row.file), &options, &LoadControl::new())
+}
+
+/// The row of a volume, with the file, the choice and the tolerance of another.
+fn row_of(volume: &Volume, said: &Row) -> Row {
+    let samples = volume.samples();
+    let voxel_type = samples.voxel_type();
+    let space = match (volume.is_anatomical(), volume.has_unknown_scale()) {
+        (true, _) => "body",
+        (false, false) => "world",
+        (false, true) => "voxels",
+    };
+    let place = volume.world_from_index();
+    let axes = place.matrix3;
+    let [x, y, z, t] = [axes.x_axis, axes.y_axis, axes.z_axis, place.translation].map(|v| v.to_array());
+    let values = || (0..samples.len()).map(|voxel| samples.value(voxel)).filter(|value| value.is_finite());
+    let mut crc = Crc::new();
+    for voxel in 0..samples.len() {
+        let value = samples.value(voxel);
+        match voxel_type.name() {
+            "uint8" => crc.update(&[value as u8]),
+            "int8" => crc.update(&(value as i8).to_le_bytes()),
+            "uint16" => crc.update(&(value as u16).to_le_bytes()),
+            "int16" => crc.update(&(value as i16).to_le_bytes()),
+            "uint32" => crc.update(&(value as u32).to_le_bytes()),
+            "int32" => crc.update(&(value as i32).to_le_bytes()),
+            "float32" => crc.update(&(value as f32).to_le_bytes()),
+            _ => crc.update(&value.to_le_bytes()),
+        }
+    }
+    Row {
+        dims: volume.dims().map(|n| n.to_string()).join(" "),
+        voxel_type: voxel_type.name().to_owned(),
+        space: space.to_owned(),
+        affine: (0..3).flat_map(|row| [x[row], y[row], z[row], t[row]]).collect(),
+        min: values().fold(f64::INFINITY, f64::min),
+        max: values().fold(f64::NEG_INFINITY, f64::max),
+        mean: values().sum::<f64>() / values().count() as f64,
+        crc32: if said.crc32 == "-" { "-".to_owned() } else { format!("{:08x}", crc.sum()) },
+        ..said.clone()
+    }
+}
+
+/// Whether two affines are the same but for how their numbers were rounded.
+fn same_place(found: &[f64], said: &[f64]) -> bool {
+    let column = |of: &[f64], at: usize| DVec3::new(of[at], of[at + 4], of[at + 8]);
+    let step = |of: &[f64]| (0..3).map(|at| column(of, at).length()).fold(0.0, f64::max);
+    found.len() == 12
+        && said.len() == 12
+        && (0..4).all(|at| {
+            let (found, said_here) = (column(found, at), column(said, at));
+            let scale = if at < 3 { said_here.length() } else { said_here.length().max(step(said)) };
+            found.distance(said_here) <= SAME_PLACE * scale
+        })
+}
+
+/// The columns in which two rows differ, with both.
+fn differing(found: &Row, said: &Row) -> Vec<String> {
+    let largest = said.min.abs().max(said.max.abs());
+    let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by;
+    let numbers = [
+        ("min", found.min, said.min, said.tolerance),
+        ("max", found.max, said.max, said.tolerance),
+        ("mean", found.mean, said.mean, SAME_MEAN * largest + ROUNDED * said.tolerance),
+    ];
+    let words = [
+        ("dims", &found.dims, &said.dims),
+        ("type", &found.voxel_type, &said.voxel_type),
+        ("space", &found.space, &said.space),
+        ("crc32", &found.crc32, &said.crc32),
+    ];
+    let words = words.into_iter().filter(|(_, found, said)| found != said);
+    let numbers = numbers.into_iter().filter(|(_, found, said, by)| !near(*found, *said, *by));
+    let place = (!same_place(&found.affine, &said.affine))
+        .then(|| format!("affine {:?}, {:?} expected", found.affine, said.affine));
+    words
+        .map(|(name, found, said)| format!("{name} {found}, {said} expected"))
+        .chain(numbers.map(|(name, found, said, _)| format!("{name} {found}, {said} expected")))
+        .chain(place)
+        .collect()
+}
+
+/// All that differs between a file and its row.
+pub(crate) fn differences(folder: &Path, row: &Row) -> Vec<String> {
+    let found = match (open(folder, row), row.voxel_type == REFUSED) {
+        (Ok(volume), false) => differing(&row_of(&volume, row), row),
+        (Ok(_), true) => vec!["it is opened, and holds no volume".to_owned()],
+        (Err(error), false) => vec![error.to_string()],
+        (Err(error), true) => {
+            let is_kind = matches!(error.kind(), LoadErrorKind::BadInput | LoadErrorKind::Io);
+            let is_right = is_kind && error.to_string().contains(&row.choice);
+            if is_right { Vec::new() } else { vec![format!("refused, but not as {:?}: {error}", row.choice)] }
+        }
+    };
+    found.into_iter().map(|difference| format!("{}: {difference}", row.file)).collect()
+}
+
+/// Files that other libraries have written.
+pub(crate) fn written_files_are_read_as_other_libraries_read_them() {
+    let rows = table("written.tsv");
+    let wrong: Vec<String> =
+        rows.iter().flat_map(|row| differences(&folder().join("written"), row)).collect();
+    println!("{} files, {} differences", rows.len(), wrong.len());
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    assert!(rows.len() >= 80, "{} files", rows.len());
+    for entry in std::fs::read_dir(folder().join("written")).expect("it is there") {
+        let entry = entry.expect("it can be listed");
+        let bytes = entry.metadata().expect("it is there").len();
+        assert!(bytes <= MOST_BYTES, "{} has {bytes} bytes", entry.path().display());
+    }
+}
+
+/// The test data.
+pub(crate) fn test_data_are_read_as_other_libraries_read_them(data: &Path) {
+    let rows = table("data.tsv");
+    let wrong: Vec<String> = rows.iter().flat_map(|row| differences(data, row)).collect();
+    println!("{} files, {} differences", rows.len(), wrong.len());
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    // None is forgotten.
+    let mut folders = ["formats", "raw", "first"].map(|name| data.join(name)).to_vec();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("it is there") {
+            let path = entry.expect("it can be listed").path();
+            let name = path.strip_prefix(data).expect("it is below").to_string_lossy().replace('\\', "/");
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                assert!(rows.iter().any(|row| row.file == name), "{name} has no row");
+            }
+        }
+    }
+}
+
+/// A change of any column is noticed.
+pub(crate) fn a_wrong_row_is_noticed() {
+    let rows = table("written.tsv");
+    let folder = folder().join("written");
+    let row = rows.iter().find(|row| row.space == "body").expect("a file of a body");
+    assert_eq!(differences(&folder, row), Vec::<String>::new());
+    let moved = |at: usize, by: f64| {
+        let mut affine = row.affine.clone();
+        affine[at] += by;
+        affine
+    };
+    let changes = [
+        ("dims", Row { dims: row.dims.split(' ').rev().collect::<Vec<_>>().join(" "), ..row.clone() }),
+        ("type", Row { voxel_type: "uint64".to_owned(), ..row.clone() }),
+        ("space", Row { space: "world".to_owned(), ..row.clone() }),
+        ("affine", Row { affine: moved(3, 1e-3), ..row.clone() }),
+        ("affine", Row { affine: moved(4, 1e-3), ..row.clone() }),
+        ("affine", Row { affine: Vec::new(), ..row.clone() }),
+        ("min", Row { min: row.min + 1.0, ..row.clone() }),
+        ("max", Row { max: row.max - 1.0, ..row.clone() }),
+        ("mean", Row { mean: row.mean + 1e-3, ..row.clone() }),
+        ("crc32", Row { crc32: "00000000".to_owned(), ..row.clone() }),
+    ];
+    for (column, changed) in changes {
+        let found = differences(&folder, &changed);
+        assert!(matches!(&found[..], [only] if only.contains(column)), "{column}: {found:?}");
+    }
+    let missing = Row { file: "none.nrrd".to_owned(), ..row.clone() };
+    let refused = Row { voxel_type: REFUSED.to_owned(), ..row.clone() };
+    let otherwise = Row { choice: "no such word".to_owned(), ..missing.clone() };
+    for wrong in [missing, refused, Row { voxel_type: REFUSED.to_owned(), ..otherwise }] {
+        assert_eq!(differences(&folder, &wrong).len(), 1, "{wrong:?}");
+    }
+    // With loss: what is off by no more than that passes, and no more.
+    let lossy = Row { tolerance: 1.0, ..row.clone() };
+    let off = |by: f64| differing(&Row { min: row.min + by, ..row.clone() }, &lossy).len();
+    assert_eq!([off(1.0), off(1.5)], [0, 1]);
+    let pairs = rows.iter().filter(|row| row.choice != "-").count();
+    assert!(pairs > 5, "files of several volumes, of which another is chosen");
+}
