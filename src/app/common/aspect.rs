@@ -1,38 +1,7 @@
-//! In what the volumes of a file differ, for menus, panels and the window that shows them all.
+//! What else the open file holds, for menus, panels and the window that shows it all.
 
 use crate::app::text;
-use crate::data::load::{Choice, Components, Dimension, Held, Several, Whole};
-
-/// In what volumes of a file differ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Aspect {
-    /// Series, channels, time steps or arrays.
-    Of(Dimension),
-    /// What is shown of voxels of several numbers.
-    Component,
-}
-
-impl Aspect {
-    /// All of them, in the order in which people choose.
-    pub(crate) const ALL: [Self; 5] = [
-        Self::Of(Dimension::Series),
-        Self::Of(Dimension::Array),
-        Self::Of(Dimension::Channel),
-        Self::Of(Dimension::Frame),
-        Self::Component,
-    ];
-
-    /// Whether a volume is shown with the look of another that differs from it in this: both are of one thing, with the
-    /// same values.
-    pub(crate) fn keeps_look(self) -> bool {
-        matches!(self, Self::Of(Dimension::Frame) | Self::Component)
-    }
-
-    /// Its place among all.
-    pub(crate) fn index(self) -> usize {
-        Self::ALL.iter().position(|&other| other == self).unwrap_or_default()
-    }
-}
+use crate::data::load::{Aspect, Choice, Components, Held, Several, Whole};
 
 /// What there is to choose from in an aspect.
 #[derive(Debug, Clone, Copy)]
@@ -125,7 +94,7 @@ fn first_component(components: Components) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::load::Offer;
+    use crate::data::load::{Dimension, Offer};
 
     fn held(whole: Whole, shown: Option<usize>) -> Held {
         let offers = [Offer::numbered(0, "", [4; 3]), Offer::numbered(1, "GFP", [4; 3])].to_vec();

@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::aspect::Aspect;
 use crate::data::KindName;
-use crate::data::load::Choice;
+use crate::data::load::{Aspect, Choice};
 use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView};
 
 /// Something the user asked for.

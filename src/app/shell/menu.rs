@@ -2,13 +2,13 @@
 
 use eframe::egui::{self, Button, ThemePreference};
 
-use crate::app::common::aspect::{Alternatives, Aspect};
+use crate::app::common::aspect::Alternatives;
 use crate::app::common::commands::{Command, VIEW_SLOTS};
 use crate::app::common::theme;
 use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
 use crate::app::text;
 use crate::app::windows::recovery;
-use crate::data::load::Held;
+use crate::data::load::{Aspect, Held};
 use crate::data::{plain, synthetic};
 use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, StandardView};
 

@@ -4,6 +4,37 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::choice::{Choice, Dimension, Offer};
 
+/// In what volumes of a file differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aspect {
+    /// Series, channels, time steps or arrays.
+    Of(Dimension),
+    /// What is shown of voxels of several numbers.
+    Component,
+}
+
+impl Aspect {
+    /// All of them, in the order in which people choose.
+    pub const ALL: [Self; 5] = [
+        Self::Of(Dimension::Series),
+        Self::Of(Dimension::Array),
+        Self::Of(Dimension::Channel),
+        Self::Of(Dimension::Frame),
+        Self::Component,
+    ];
+
+    /// Whether a volume is shown with the look of another that differs from it in this: both are of one thing, with the
+    /// same values.
+    pub fn keeps_look(self) -> bool {
+        matches!(self, Self::Of(Dimension::Frame) | Self::Component)
+    }
+
+    /// Its place in [`Self::ALL`].
+    pub fn index(self) -> usize {
+        Self::ALL.iter().position(|&other| other == self).unwrap_or_default()
+    }
+}
+
 /// Several volumes of a file, one of which was opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Several {

@@ -19,8 +19,8 @@ use super::Volume;
 use super::attempt::Attempt;
 pub(crate) use super::attempt::memory_budget_bytes;
 pub use super::attempt::{
-    Choice, Components, Dimension, Explanation, Held, LoadControl, LoadError, LoadErrorKind, Offer, Several,
-    Watch, Whole,
+    Aspect, Choice, Components, Dimension, Explanation, Held, LoadControl, LoadError, LoadErrorKind, Offer,
+    Several, Watch, Whole,
 };
 pub use neighbour::neighbour;
 

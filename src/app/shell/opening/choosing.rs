@@ -3,10 +3,10 @@
 use eframe::egui;
 
 use super::PendingLook;
-use crate::app::common::aspect::{Alternatives, Aspect};
+use crate::app::common::aspect::Alternatives;
 use crate::app::worker::loader::Reading;
 use crate::app::{App, text};
-use crate::data::load::Choice;
+use crate::data::load::{Aspect, Choice};
 
 impl App {
     /// Shows what there is to choose from.

@@ -1,8 +1,7 @@
 //! The window that shows the volumes of a file, and the rows that open it.
 
-use crate::app::common::aspect::Aspect;
 use crate::app::text::{Named, named};
-use crate::data::load::{Components, Dimension, Whole};
+use crate::data::load::{Aspect, Components, Dimension, Whole};
 
 /// The row of an aspect, with what it means.
 pub(crate) fn row(aspect: Aspect) -> Named {

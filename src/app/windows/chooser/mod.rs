@@ -7,13 +7,13 @@ use std::ops::Range;
 use eframe::egui::{self, Align2, Key, Modifiers, Rect, Sense, TextStyle, Ui, Vec2, pos2, vec2};
 
 use self::previews::{Preview, Previews};
-use crate::app::common::aspect::{Alternatives, Aspect};
+use crate::app::common::aspect::Alternatives;
 use crate::app::common::commands::Command;
 use crate::app::common::shortcuts::is_typing;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use crate::data::load::LoadOptions;
+use crate::data::load::{Aspect, LoadOptions};
 
 /// Points of a picture's longer edge.
 const PICTURE: f32 = 48.0;
