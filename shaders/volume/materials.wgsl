@@ -68,7 +68,7 @@ fn main(
         return;
     }
 #if MISSING
-    sum *= textureLoad(presence_level, texel, 0).r;
+    sum *= share_stored(textureLoad(presence_level, texel, 0));
 #endif
     textureStore(level, texel, sum);
 }
