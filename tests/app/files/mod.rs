@@ -3,4 +3,5 @@
 mod export;
 mod foreign_paths;
 mod opening;
+pub(crate) mod raw_import;
 mod sessions;
