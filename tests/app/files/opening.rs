@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, Options};
-use eframe::egui::{self, Event, Modifiers, Role, Vec2, vec2};
+use eframe::egui::{self, Event, Modifiers, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 

@@ -38,7 +38,7 @@ pub(crate) const HEADER_TIP: &str =
 
 /// The length of the file.
 pub(crate) const COMPRESSED: &str = "The file is compressed: how long it is inside is not known yet";
-pub(crate) const TOO_MANY: &str = "✖ That is more than any file can hold";
+pub(crate) const TOO_MANY: &str = "That is more than any file can hold";
 /// Takes the bytes that are too many for a header.
 pub(crate) const ARE_HEADER: &str = "Skip them as a header";
 /// Leaves out a header.
@@ -115,21 +115,21 @@ pub(crate) fn rewrite(header: &str) -> String {
 pub(crate) fn fits(bytes: u64, is_exact: bool) -> String {
     let bytes = grouped(bytes);
     if is_exact {
-        format!("✔ Bytes fit: the file has just these {bytes}")
+        format!("Bytes fit: the file has just these {bytes}")
     } else {
-        format!("✔ Bytes fit: the file ends by saying that it has {bytes}")
+        format!("Bytes fit: the file ends by saying that it has {bytes}")
     }
 }
 
 /// The file is longer.
 pub(crate) fn longer(bytes: u64) -> String {
-    format!("✖ {} bytes too many in the file", grouped(bytes))
+    format!("{} bytes too many in the file", grouped(bytes))
 }
 
 /// The file is shorter.
 pub(crate) fn shorter(found: u64, expected: u64) -> String {
     let [missing, found, expected] = [expected - found, found, expected].map(grouped);
-    format!("✖ {missing} bytes missing: the file has {found} of {expected}")
+    format!("{missing} bytes missing: the file has {found} of {expected}")
 }
 
 /// As many slices as the file has.

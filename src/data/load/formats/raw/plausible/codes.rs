@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::Said;
-use super::spots::Spots;
+use super::spots::{Spots, unrest};
 use crate::data::VoxelType;
 use crate::data::load::Endian;
 
@@ -20,8 +20,14 @@ const BLOCK: usize = 32;
 /// Numbers have a sign, or none, when their neighbours then differ by less than this share.
 const SMOOTHER: f64 = 0.995;
 
+/// Twice as wide numbers must save this share of the bits: where little happens, pairs of numbers cost hardly less.
+const WIDE: f64 = 0.06;
+
 /// Sizes of numbers that anybody measures.
 const USUAL: std::ops::Range<f64> = 1e-20..1e20;
+
+/// More than one number of so many is -1 where none is by chance.
+const MASK: usize = 100;
 
 /// Differences of a block that may be told in full.
 const TOLD: usize = 3;
@@ -42,6 +48,9 @@ pub(super) struct Code {
     /// Mean distance of the numbers from 0.
     pub(super) size: f64,
     has_negative: bool,
+    is_mask: bool,
+    /// Of signed bytes: whether they seem to have a sign.
+    is_signed_byte: Option<bool>,
     /// The same numbers with or without a sign, if that makes other numbers of them.
     pub(super) twin: Option<VoxelType>,
 }
@@ -61,8 +70,7 @@ pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
             .0
             .iter()
             .map(|spot| {
-                // In the middle of the spot: at the beginning of a file there may be a header.
-                let from = spot.bytes.len().saturating_sub(LOOKED_AT) / 2;
+                let from = liveliest(&spot.bytes);
                 let skip = from + first(spot.at + from as u64, voxel_type, phase);
                 let to = spot.bytes.len().min(from + LOOKED_AT);
                 keys(spot.bytes.get(skip..to).unwrap_or_default(), voxel_type, endian)
@@ -72,7 +80,9 @@ pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
         let unusual = unusual(&keys, voxel_type)
             + if endian == Endian::Big { 0.01 } else { 0.0 }
             + if phase > 0 { 0.05 } else { 0.0 }
-            + if has_empty_byte(&keys, voxel_type) { 0.03 } else { 0.0 };
+            + if has_empty_byte(&keys, voxel_type) { 0.03 } else { 0.0 }
+            + if is_mask(&keys) { 1.0 } else { 0.0 }
+            + WIDE * f64::from(voxel_type.bytes().ilog2());
         let is_said = said.voxel_type.is_none_or(|said| said == voxel_type)
             && said.endian.is_none_or(|said| said == endian || voxel_type.bytes() == 1);
         // What is said is believed unless the bytes cry out against it.
@@ -82,7 +92,19 @@ pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
         let has_negative = keys.iter().flatten().any(|key| *key < 0);
         let count = keys.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         let size = keys.iter().flatten().map(|key| key.unsigned_abs() as f64).sum::<f64>() / count;
-        Code { voxel_type, endian, phase, bits, cost, step: step(&keys), size, has_negative, twin: None }
+        Code {
+            voxel_type,
+            endian,
+            phase,
+            bits,
+            cost,
+            step: step(&keys),
+            size,
+            has_negative,
+            is_mask: is_mask(&keys),
+            is_signed_byte: (voxel_type == VoxelType::I8).then(|| is_signed(&keys)),
+            twin: None,
+        }
     };
     let mut codes: Vec<Code> = ways.into_par_iter().map(code).collect();
     codes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -114,8 +136,15 @@ impl Code {
         let differ = self.has_negative || twin.has_negative;
         // Wide numbers that would all be huge are small ones with a sign.
         let is_smaller = self.voxel_type.bytes() > 1 && twin.size < 0.5 * self.size;
-        let is_better = (twin.step < SMOOTHER * self.step || is_smaller && self.step >= SMOOTHER * twin.step)
-            && said.voxel_type != Some(self.voxel_type)
+        let is_smoother = twin.step < SMOOTHER * self.step || is_smaller && self.step >= SMOOTHER * twin.step;
+        let is_byte = self.voxel_type.bytes() == 1;
+        let is_signed = if self.is_signed_byte.is_some() { self.is_signed_byte } else { twin.is_signed_byte };
+        let is_likelier = if is_byte {
+            (twin.voxel_type == VoxelType::I8) == (is_signed == Some(true))
+        } else {
+            is_smoother && !twin.is_mask
+        };
+        let is_better = is_likelier && said.voxel_type != Some(self.voxel_type)
             || said.voxel_type == Some(twin.voxel_type);
         let other = if is_better { self.voxel_type } else { twin.voxel_type };
         if is_better {
@@ -123,6 +152,13 @@ impl Code {
         }
         self.twin = differ.then_some(other);
     }
+}
+
+/// Where in a spot most is to be seen, rather not at its very beginning: there may be a header.
+fn liveliest(bytes: &[u8]) -> usize {
+    let pieces = (0..bytes.len().saturating_sub(LOOKED_AT / 2)).step_by(LOOKED_AT / 2).skip(1);
+    let unrest = |from: usize| unrest(&bytes[from..bytes.len().min(from + LOOKED_AT)]);
+    pieces.max_by(|a, b| unrest(*a).total_cmp(&unrest(*b))).unwrap_or_default()
 }
 
 /// How many bytes to skip from a place of the file to the next number.
@@ -198,6 +234,25 @@ fn has_empty_byte(keys: &[Vec<i64>], voxel_type: VoxelType) -> bool {
     !matches!(voxel_type, VoxelType::F32 | VoxelType::F64) && used != 0 && used.trailing_zeros() >= 8
 }
 
+/// Whether bytes have a sign: values around 0 go on into what else would be the largest, and there are few where the signs
+/// meet at the other end. How far values jump says nothing here, as there may be but two.
+fn is_signed(keys: &[Vec<i64>]) -> bool {
+    let count = |values: std::ops::RangeInclusive<i64>| {
+        keys.iter().flatten().filter(|key| values.contains(key)).count()
+    };
+    let around_zero = count(-3..=-1).min(count(0..=2));
+    let at_the_ends = count(-128..=-126).min(count(125..=127));
+    around_zero > 4 * at_the_ends && !is_mask(keys)
+}
+
+/// Whether numbers pile up at 0 and at −1, which is all ones: rather, they have no sign, and are as large as they can be.
+fn is_mask(keys: &[Vec<i64>]) -> bool {
+    let count = |value: i64| keys.iter().flatten().filter(|key| **key == value).count();
+    let all: usize = keys.iter().map(Vec::len).sum();
+    let [inside, beside] = [-1, -2].map(count);
+    inside * MASK > all && inside > 4 * beside
+}
+
 /// Of floats, which lie dense around zero: numbers as multiples of the smallest step between the largest of them.
 fn linear_scale(keys: &[Vec<i64>], voxel_type: VoxelType) -> Option<Box<dyn Fn(i64) -> f64>> {
     let (number, digits): (fn(i64) -> f64, i32) = match voxel_type {
@@ -257,7 +312,7 @@ fn block_bits(steps: impl Iterator<Item = f64>, all: f64) -> f64 {
         let mean = if rest == 0.0 { 0.0 } else { (sum / rest).max(0.0) };
         let bits = (1.0 + 2.0 * std::f64::consts::E * mean).log2().min(all) * rest;
         // What is told in full also says where it is.
-        least = least.min(bits + told as f64 * (all + (BLOCK as f64).log2()));
+        least = least.min(bits + told as f64 * (all + (count as f64).log2()));
         sum -= largest.get(told).copied().unwrap_or_default();
     }
     least

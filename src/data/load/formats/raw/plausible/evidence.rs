@@ -16,7 +16,7 @@ const NOISE_BITS: f64 = 7.5;
 const CLEAR: f64 = 0.1;
 
 /// So much less likely is the other sign.
-const TWIN: f64 = 0.12;
+const TWIN: f64 = 0.05;
 
 /// What speaks for a proposal. Differences are shares of the range of the values.
 #[derive(Debug, Clone, Copy, PartialEq)]

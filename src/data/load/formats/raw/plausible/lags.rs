@@ -15,20 +15,24 @@ use crate::data::load::Endian;
 /// The longest row that is looked for; longer ones can be said by the file's name.
 pub(super) const LONGEST_ROW: usize = 4096;
 
-/// Voxels of each spot that are compared with others.
-const STARTS: usize = 512;
+/// Voxels of all spots that are compared with others.
+const STARTS: usize = 8192;
 
-/// Runs of a spot's voxels that are compared with another slice: of bytes that are in memory more, which cost no reading.
-const RUNS: [usize; 2] = [1, 4];
+/// Runs of voxels, of all spots, that are compared with another slice: of bytes that are in memory more, which cost no
+/// reading.
+const RUNS: [usize; 2] = [16, 64];
 
-/// Parts of a spot's voxels, whose results are compared to see what chance does.
-const GROUPS: usize = 4;
+/// Voxels that lie near each other, whose results are compared with those of others to see what chance does.
+const GROUP: usize = 128;
 
 /// Bytes that are read in one piece for slices whose size nothing says: two of 1024 × 1024 voxels of two bytes.
 const LONG_BYTES: u64 = 4 << 20;
 
-/// Voxels of those that are compared with each row behind them.
-const LONG_STARTS: usize = 256;
+/// Comparisons of voxels in it with rows behind them: a few milliseconds.
+const LONG_PAIRS: usize = 1 << 21;
+
+/// Every third voxel of a run is enough.
+const LONG_STEP: usize = 3;
 
 /// Numbers of rows that are proposed because voxels agree.
 const FOUND: usize = 6;
@@ -149,14 +153,17 @@ struct Stretch {
     /// The place of the first voxel in the file.
     at: u64,
     greys: Vec<f32>,
-    /// Where most is to be seen, that first.
+    /// Where something is to be seen.
     runs: Vec<Range<usize>>,
 }
 
 /// Voxels that are compared with another slice, lying together.
 const RUN: usize = 256;
 
-/// Runs of voxels, those first whose parts differ most.
+/// Runs whose parts differ by less than this share of the most show little.
+const LEAST_UNREST: f64 = 0.05;
+
+/// Runs of voxels where something is to be seen.
 fn runs(greys: &[f32]) -> Vec<Range<usize>> {
     let mut found: Vec<(Range<usize>, f64)> = (0..greys.len())
         .step_by(RUN)
@@ -171,8 +178,13 @@ fn runs(greys: &[f32]) -> Vec<Range<usize>> {
             (run, means.iter().map(|part| (part - mean) * (part - mean)).sum())
         })
         .collect();
-    found.sort_by(|a, b| b.1.total_cmp(&a.1));
-    found.into_iter().map(|(run, _)| run).collect()
+    let most = found.iter().map(|run| run.1).fold(0.0, f64::max);
+    found.retain(|run| run.1 >= LEAST_UNREST * most);
+    // From everywhere, whichever number of them is taken: the golden section spreads them.
+    let count = found.len();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|&at| (at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    order.into_iter().map(|at| found[at].0.clone()).collect()
 }
 
 /// Voxels of one type, and how much they differ at each distance.
@@ -237,10 +249,9 @@ impl Lags {
     }
 
     /// Voxels of each spot that are compared: as far apart as they can be with room for the longest distance.
-    fn starts(stretch: &Stretch, longest: usize) -> impl Iterator<Item = usize> {
+    fn starts(stretch: &Stretch, count: usize, longest: usize) -> impl Iterator<Item = usize> + use<> {
         let room = stretch.greys.len().saturating_sub(longest);
-        let step = (room / STARTS).max(1);
-        (0..room).step_by(step).take(STARTS)
+        (0..room).step_by((room / count).max(1)).take(count)
     }
 
     /// Voxels compared with those of other spots, in another order.
@@ -261,8 +272,9 @@ impl Lags {
     pub(super) fn row(&self, length: usize) -> Dip {
         let mut groups = Vec::new();
         for stretch in &self.stretches {
-            let starts: Vec<usize> = Self::starts(stretch, length + 1).collect();
-            for part in starts.chunks(starts.len().div_ceil(GROUPS).max(1)) {
+            let count = STARTS / self.stretches.len();
+            let starts: Vec<usize> = Self::starts(stretch, count, length + 1).collect();
+            for part in starts.chunks(GROUP) {
                 let mut sums = Sums::default();
                 for &start in part {
                     let grey = stretch.greys[start];
@@ -285,9 +297,9 @@ impl Lags {
         if most < SHORTEST + 2 {
             return Vec::new();
         }
-        let step = (long.len() / 2 / LONG_STARTS).max(1);
         let mut sums = vec![0.0f64; most];
-        for start in (0..long.len() / 2).step_by(step) {
+        let lively = runs(&long[..long.len() / 2]).into_iter().flatten();
+        for start in lively.step_by(LONG_STEP).take((LONG_PAIRS / most).max(256)) {
             let grey = long[start];
             for (sum, other) in sums.iter_mut().zip(long[start..].iter().step_by(row)) {
                 *sum += f64::from((other - grey).abs());
@@ -308,7 +320,7 @@ impl Lags {
         let (slice, reach) = (row * rows, row + 1);
         let mut groups = Vec::new();
         let mut buffer = Vec::new();
-        let runs = RUNS[usize::from(bytes.is_held())];
+        let runs = RUNS[usize::from(bytes.is_held())].div_ceil(self.stretches.len().max(1));
         for stretch in &self.stretches {
             for run in stretch.runs.iter().take(runs) {
                 // Voxels that lie together: one read.
@@ -333,9 +345,9 @@ impl Lags {
                     |from: usize, count: usize| self.greys.of(&buffer[from * size..(from + count) * size]);
                 let [before, behind] = [1, 1 + 2 * row].map(|from| part(from, here.len()));
                 let same = part(row, here.len() + 2);
-                for part in (0..here.len()).step_by(RUN / GROUPS) {
+                for part in (0..here.len()).step_by(GROUP) {
                     let mut sums = Sums::default();
-                    for at in part..(part + RUN / GROUPS).min(here.len()) {
+                    for at in part..(part + GROUP).min(here.len()) {
                         let difference = |other: f32| f64::from((other - here[at]).abs());
                         sums.at += difference(same[at + 1]);
                         sums.around[0] += 0.5 * (difference(same[at]) + difference(same[at + 2]));
@@ -354,11 +366,12 @@ impl Lags {
 fn differences(stretches: &[Stretch]) -> Vec<f64> {
     let shortest = stretches.iter().map(|stretch| stretch.greys.len()).min().unwrap_or_default();
     let longest = LONGEST_ROW.min(shortest / 2);
+    let starts = |stretch: &Stretch| Lags::starts(stretch, STARTS / stretches.len(), longest + 1);
     let sums: Vec<Vec<f32>> = stretches
         .par_iter()
         .map(|stretch| {
             let mut sums = vec![0.0f32; longest + 1];
-            for start in Lags::starts(stretch, longest + 1) {
+            for start in starts(stretch) {
                 let grey = stretch.greys[start];
                 for (sum, other) in sums.iter_mut().zip(&stretch.greys[start..]) {
                     *sum += (other - grey).abs();
@@ -367,8 +380,6 @@ fn differences(stretches: &[Stretch]) -> Vec<f64> {
             sums
         })
         .collect();
-    let count: usize = stretches.iter().map(|stretch| Lags::starts(stretch, longest + 1).count()).sum();
-    (0..=longest)
-        .map(|lag| sums.iter().map(|sums| f64::from(sums[lag])).sum::<f64>() / count.max(1) as f64)
-        .collect()
+    let count = stretches.iter().map(|stretch| starts(stretch).count()).sum::<usize>().max(1) as f64;
+    (0..=longest).map(|lag| sums.iter().map(|sums| f64::from(sums[lag])).sum::<f64>() / count).collect()
 }

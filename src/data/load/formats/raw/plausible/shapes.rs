@@ -23,8 +23,8 @@ const LONGEST: usize = 1 << 16;
 /// Lengths of rows that are looked at more closely.
 const ROWS: usize = 8;
 
-/// Rows that score so much less than the best are not looked at: slices cannot make up for it.
-const HOPELESS: f64 = 0.6;
+/// Rows that score so much less than the best are not looked at: slices that agree make up for no more.
+const HOPELESS: f64 = 1.2;
 
 /// Numbers of rows in a slice that are looked at for each length of rows.
 const SLICES: usize = 32;

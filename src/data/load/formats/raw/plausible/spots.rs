@@ -36,12 +36,14 @@ impl Spots {
         let mut glances = Vec::new();
         let mut glance = vec![0; GLANCE];
         let room = length.saturating_sub(SPOT_BYTES as u64);
-        let places = PLACES.min(room / SPOT_BYTES as u64 + 1);
+        // Of a small file all is read, in pieces that overlap.
+        let places = PLACES.min(length.div_ceil(SPOT_BYTES as u64)).max(1);
         for place in 0..places {
-            // In the middle of each stretch, at odd places: steps must not fall into step with rows.
-            let at =
-                if places == 1 { 0 } else { (room / places) * place + (room / places) / 2 + place % 7 * 61 };
-            let at = at.min(room);
+            let at = match places {
+                1 => 0,
+                // From the first byte to the last, at odd places: steps must not fall into step with rows.
+                _ => (room * place / (places - 1)).saturating_sub(place % 7 * 61),
+            };
             let middle = at + (SPOT_BYTES as u64).min(length) / 2;
             let count = bytes.read_at(middle, &mut glance)?;
             glances.push((at, unrest(&glance[..count])));
@@ -62,7 +64,7 @@ impl Spots {
 
 /// How much the means of short stretches of bytes differ, apart from what noise does to them. The stretches are of 64
 /// bytes, a multiple of every number's size.
-fn unrest(bytes: &[u8]) -> f64 {
+pub(super) fn unrest(bytes: &[u8]) -> f64 {
     let means: Vec<f64> = bytes
         .chunks_exact(64)
         .map(|part| part.iter().map(|&byte| f64::from(byte)).sum::<f64>() / 64.0)
