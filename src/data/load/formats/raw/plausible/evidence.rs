@@ -3,7 +3,7 @@
 use super::super::layout::RawLayout;
 use super::Said;
 use super::codes::Code;
-use super::shapes::Shape;
+use super::shapes::{HEADERS, Shape};
 
 /// Deviations beyond which agreement is no chance, whatever the number of distances that were tried.
 const SURE: f64 = 4.0;
@@ -89,5 +89,8 @@ pub(super) fn judge(found: &mut [Proposal]) {
         a.dims != b.dims || a.offset != b.offset || a.voxel_type.bytes() != b.voxel_type.bytes()
     };
     let next = others.iter().find(is_other).map_or(f64::NEG_INFINITY, |other| other.evidence.score);
-    first.evidence.is_clear = rows_agree && slices_agree && bits < NOISE_BITS && score > next + CLEAR;
+    // A header that nobody has may be something else.
+    let is_usual = HEADERS.contains(&first.layout.offset);
+    first.evidence.is_clear =
+        is_usual && rows_agree && slices_agree && bits < NOISE_BITS && score > next + CLEAR;
 }

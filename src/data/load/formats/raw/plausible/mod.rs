@@ -85,11 +85,11 @@ fn of_code(
 ) -> io::Result<Vec<Proposal>> {
     let size = Size::of(bytes, code);
     let lags = Lags::of(bytes, spots, code)?;
+    let rows = shapes::rows(&size, &lags, said);
+    let agreeing = shapes::agreeing(&lags, &rows);
     let mut shapes: Vec<Shape> = Vec::new();
-    for row in shapes::rows(&size, &lags, said) {
-        for slice in shapes::slices(bytes, &size, &lags, row, said)? {
-            shapes.push(slice);
-        }
+    for row in rows {
+        shapes.extend(shapes::slices(bytes, &size, &lags, row, &agreeing, said)?);
         if stop.load(Ordering::Relaxed) {
             return Ok(Vec::new());
         }

@@ -9,7 +9,7 @@ use super::lags::{Dip, Lags};
 
 /// Lengths of headers that formats and programs have: none, the smallest of MRC and others in use, Analyze and NIfTI,
 /// whole blocks of a disk.
-const HEADERS: [u64; 14] = [0, 16, 32, 64, 80, 128, 256, 348, 352, 512, 1024, 2048, 4096, 8192];
+pub(super) const HEADERS: [u64; 14] = [0, 16, 32, 64, 80, 128, 256, 348, 352, 512, 1024, 2048, 4096, 8192];
 
 /// The longest header that is guessed where voxels do not fill the file.
 const LONGEST_HEADER: u64 = 64 << 10;
@@ -155,6 +155,7 @@ pub(super) fn slices(
     size: &Size,
     lags: &Lags,
     row: Row,
+    agreeing: &[usize],
     said: Said,
 ) -> io::Result<Vec<Shape>> {
     let mut tried: Vec<([usize; 3], u64, f64)> = Vec::new();
@@ -179,7 +180,7 @@ pub(super) fn slices(
     }
     tried.sort_by(|a, b| b.2.total_cmp(&a.2));
     tried.truncate(SLICES);
-    tried.extend(by_lags(size, lags, row.length, said));
+    tried.extend(left_over(size, agreeing, row.length, said));
     let mut shapes = Vec::new();
     for (dims, header, prior) in tried {
         let slice = if dims[2] > 1 { lags.slice(bytes, dims[0], dims[1])? } else { Dip::default() };
@@ -198,17 +199,28 @@ fn whole(n: u64, by: u64) -> Option<u64> {
     (by > 0 && n > 0 && n.is_multiple_of(by)).then(|| n / by)
 }
 
-/// Numbers of rows at whose distance voxels agree, with a header of what is left over.
-fn by_lags(size: &Size, lags: &Lags, row: usize, said: Said) -> Vec<([usize; 3], u64, f64)> {
-    let found = lags.slices(row).into_iter().filter_map(|rows| {
-        let slice = (row * rows) as u64 * size.voxel;
-        let slices = size.bytes / slice;
-        let header = size.bytes - slices * slice;
+/// Voxels of slices that agree, whatever the length of rows that they were found by.
+pub(super) fn agreeing(lags: &Lags, rows: &[Row]) -> Vec<usize> {
+    let of_row =
+        |row: &Row| lags.slices(row.length).into_iter().map(|rows| rows * row.length).collect::<Vec<_>>();
+    let mut slices: Vec<usize> = rows.iter().flat_map(of_row).collect();
+    slices.sort_unstable();
+    slices.dedup();
+    slices
+}
+
+/// Shapes of slices that agree, with a header of what is left over.
+fn left_over(size: &Size, agreeing: &[usize], row: usize, said: Said) -> Vec<([usize; 3], u64, f64)> {
+    let of_slice = |&slice: &usize| {
+        let slice_bytes = slice as u64 * size.voxel;
+        let slices = size.bytes / slice_bytes;
+        let header = size.bytes - slices * slice_bytes;
         let fits = header <= LONGEST_HEADER && header % size.voxel == size.phase;
-        let dims = [row, rows, slices as usize];
+        let dims = [row, slice / row, slices as usize];
         (fits && (1..=LONGEST as u64).contains(&slices)).then(|| (dims, header, prior(dims, header, said)))
-    });
-    found.collect()
+    };
+    let fitting = agreeing.iter().filter(|slice| slice.is_multiple_of(row) && **slice >= SHORTEST * row);
+    fitting.filter_map(of_slice).collect()
 }
 
 /// How likely a shape is before its voxels are looked at.
