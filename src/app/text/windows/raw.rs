@@ -200,8 +200,7 @@ fn grouped(number: u64) -> String {
     let mut grouped = String::new();
     for (at, digit) in digits.chars().enumerate() {
         if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            // A space that does not break the line.
-            grouped.push('\u{a0}');
+            grouped.push(' ');
         }
         grouped.push(digit);
     }
@@ -215,7 +214,7 @@ mod tests {
     #[test]
     fn thousands_are_apart() {
         for (number, expected) in [(0, "0"), (999, "999"), (1000, "1 000"), (14155776, "14 155 776")] {
-            assert_eq!(grouped(number).replace('\u{a0}', " "), expected);
+            assert_eq!(grouped(number), expected);
         }
     }
 }

@@ -197,19 +197,16 @@ pub(super) struct Lags {
     /// Mean difference of voxels that have nothing to do with each other.
     pub(super) unlike: f64,
     /// Voxels of one long piece around the middle of the file.
-    long: Option<Vec<f32>>,
+    long: Vec<f32>,
 }
 
 impl Lags {
-    pub(super) fn of(bytes_of_file: &mut RawBytes, spots: &Spots, code: &Code) -> io::Result<Self> {
+    pub(super) fn of(bytes: &mut RawBytes, spots: &Spots, code: &Code) -> io::Result<Self> {
         let (voxel_type, endian) = (code.voxel_type, code.endian);
-        let bytes = |at: u64, bytes: &'_ [u8]| {
-            let skip = first(at, voxel_type, code.phase).min(bytes.len());
-            (at + skip as u64, skip)
-        };
+        let skip = |at: u64, piece: &[u8]| first(at, voxel_type, code.phase).min(piece.len());
         let mut all = Vec::new();
         for spot in &spots.0 {
-            let (_, skip) = bytes(spot.at, &spot.bytes);
+            let skip = skip(spot.at, &spot.bytes);
             // Every seventh will do, and that is no power of two.
             let mut at = 0usize;
             each_value(&spot.bytes[skip..], voxel_type, endian, |value| {
@@ -231,18 +228,18 @@ impl Lags {
             .0
             .iter()
             .map(|spot| {
-                let (at, skip) = bytes(spot.at, &spot.bytes);
+                let skip = skip(spot.at, &spot.bytes);
                 let greys = greys.of(&spot.bytes[skip..]);
-                Stretch { at, runs: runs(&greys), greys }
+                Stretch { at: spot.at + skip as u64, runs: runs(&greys), greys }
             })
             .collect();
         let differences = differences(&stretches);
-        let length = LONG_BYTES.min(bytes_of_file.readable());
-        let from = (bytes_of_file.readable() - length) / 2;
+        let length = LONG_BYTES.min(bytes.readable());
+        let from = (bytes.readable() - length) / 2;
         let mut piece = vec![0; length as usize];
-        let read = bytes_of_file.read_at(from, &mut piece)?;
-        let (_, skip) = bytes(from, &piece[..read]);
-        let long = Some(greys.of(&piece[skip..read]));
+        let read = bytes.read_at(from, &mut piece)?;
+        let skip = skip(from, &piece[..read]);
+        let long = greys.of(&piece[skip..read]);
         let mut lags = Self { greys, stretches, differences, unlike: 0.0, long };
         lags.unlike = lags.of_strangers();
         Ok(lags)
@@ -292,7 +289,7 @@ impl Lags {
 
     /// Numbers of rows at whose distance voxels are nearer than a row before and behind, the nearest first.
     pub(super) fn slices(&self, row: usize) -> Vec<usize> {
-        let Some(long) = &self.long else { return Vec::new() };
+        let long = &self.long;
         let most = long.len() / 2 / row;
         if most < SHORTEST + 2 {
             return Vec::new();
@@ -317,6 +314,9 @@ impl Lags {
     /// Whether voxels are nearer to those of the next slice than to those beside and above these.
     pub(super) fn slice(&self, bytes: &mut RawBytes, row: usize, rows: usize) -> io::Result<Dip> {
         let size = self.greys.voxel_type.bytes();
+        if rows < 2 {
+            return Ok(Dip::default());
+        }
         let (slice, reach) = (row * rows, row + 1);
         let mut groups = Vec::new();
         let mut buffer = Vec::new();

@@ -67,6 +67,21 @@ pub(super) struct Row {
     score: f64,
 }
 
+/// A shape that is to be looked at.
+#[derive(Debug, Clone, Copy)]
+struct Tried {
+    dims: [usize; 3],
+    header: u64,
+    /// How likely it is before that.
+    prior: f64,
+}
+
+impl Tried {
+    fn new(dims: [usize; 3], header: u64, said: Said) -> Self {
+        Self { dims, header, prior: prior(dims, header, said) }
+    }
+}
+
 /// A shape, and how well neighbours agree in it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
@@ -158,31 +173,28 @@ pub(super) fn slices(
     agreeing: &[usize],
     said: Said,
 ) -> io::Result<Vec<Shape>> {
-    let mut tried: Vec<([usize; 3], u64, f64)> = Vec::new();
+    let mut tried: Vec<Tried> = Vec::new();
     for (header, voxels) in size.usual() {
         let Some(rest) = whole(voxels, row.length as u64) else { continue };
         for y in (SHORTEST..=LONGEST.min(rest as usize)).filter(|y| rest.is_multiple_of(*y as u64)) {
             let z = rest / y as u64;
             if z <= LONGEST as u64 {
                 let dims = [row.length, y, z as usize];
-                tried.push((dims, header, prior(dims, header, said)));
+                tried.push(Tried::new(dims, header, said));
             }
         }
     }
     if let Some(dims) = said.dims.filter(|dims| dims[0] == row.length) {
         let voxels = dims.iter().fold(size.voxel, |product, &n| product.saturating_mul(n as u64));
         let header = size.bytes.saturating_sub(voxels);
-        tried.push((
-            dims,
-            if header % size.voxel == size.phase { header } else { 0 },
-            prior(dims, header, said),
-        ));
+        let header = if header % size.voxel == size.phase { header } else { 0 };
+        tried.push(Tried::new(dims, header, said));
     }
-    tried.sort_by(|a, b| b.2.total_cmp(&a.2));
+    tried.sort_by(|a, b| b.prior.total_cmp(&a.prior));
     tried.truncate(SLICES);
     tried.extend(left_over(size, agreeing, row.length, said));
     let mut shapes = Vec::new();
-    for (dims, header, prior) in tried {
+    for Tried { dims, header, prior } in tried {
         let slice = if dims[2] > 1 { lags.slice(bytes, dims[0], dims[1])? } else { Dip::default() };
         let unlike = lags.unlike.max(f64::MIN_POSITIVE);
         let far = if slice.difference > 0.0 || slice.sigmas != 0.0 { slice.difference } else { unlike };
@@ -210,14 +222,14 @@ pub(super) fn agreeing(lags: &Lags, rows: &[Row]) -> Vec<usize> {
 }
 
 /// Shapes of slices that agree, with a header of what is left over.
-fn left_over(size: &Size, agreeing: &[usize], row: usize, said: Said) -> Vec<([usize; 3], u64, f64)> {
+fn left_over(size: &Size, agreeing: &[usize], row: usize, said: Said) -> Vec<Tried> {
     let of_slice = |&slice: &usize| {
         let slice_bytes = slice as u64 * size.voxel;
         let slices = size.bytes / slice_bytes;
         let header = size.bytes - slices * slice_bytes;
         let fits = header <= LONGEST_HEADER && header % size.voxel == size.phase;
         let dims = [row, slice / row, slices as usize];
-        (fits && (1..=LONGEST as u64).contains(&slices)).then(|| (dims, header, prior(dims, header, said)))
+        (fits && (1..=LONGEST as u64).contains(&slices)).then(|| Tried::new(dims, header, said))
     };
     let fitting = agreeing.iter().filter(|slice| slice.is_multiple_of(row) && **slice >= SHORTEST * row);
     fitting.filter_map(of_slice).collect()
