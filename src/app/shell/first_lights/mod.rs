@@ -102,11 +102,21 @@ impl FirstLights {
         Self { phase, ..self }
     }
 
-    /// A search has ended; without a finding it failed, and what is there stays.
-    pub(crate) fn found(&mut self, found: Option<Found>) {
-        if matches!(self.phase, Phase::Searching) {
-            self.phase = found.map_or(Phase::Done, |found| Phase::Waiting(Box::new(found)));
+    /// A search has ended; without a finding what is there stays.
+    pub(crate) fn found(&mut self, found: Result<Option<Found>, GpuError>) {
+        if !matches!(self.phase, Phase::Searching) {
+            return;
         }
+        self.phase = match found {
+            Ok(Some(found)) => Phase::Waiting(Box::new(found)),
+            Ok(None) => Phase::Done,
+            Err(err) => {
+                // It is an offer; why there is none matters to nobody but developers.
+                log::warn!("no light was found: {err}");
+                // Another window takes the place of this one, and seeks again.
+                if matches!(err, GpuError::Lost(_)) { Phase::Searching } else { Phase::Done }
+            }
+        };
     }
 
     /// What is to be done in this frame.
@@ -197,19 +207,10 @@ impl App {
     pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
         if let Some(result) = self.light_search.as_ref().and_then(|seeking| seeking.work.take()) {
             self.light_search = None;
-            let found = match result {
-                Ok(Ok(found)) => found,
-                // It is an offer; why there is none matters to nobody but developers.
-                Ok(Err(err)) => {
-                    log::warn!("no light was found: {err}");
-                    None
-                }
-                Err(panic) => {
-                    log::error!("no light was found: {panic}");
-                    None
-                }
-            };
-            self.first_lights.found(found);
+            self.first_lights.found(result.unwrap_or_else(|panic| {
+                log::error!("no light was found: {panic}");
+                Ok(None)
+            }));
         }
         if !self.first_lights.is_due() {
             self.light_search = None;

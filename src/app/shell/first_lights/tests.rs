@@ -44,7 +44,7 @@ impl Window {
     fn frame(&mut self) {
         self.now_s += 1.0 / 60.0;
         if self.searching.take_if(|end_s| *end_s <= self.now_s).is_some() {
-            self.lights.found(self.answer.clone());
+            self.lights.found(Ok(self.answer.clone()));
         }
         let Self { now_s, complete, held, .. } = *self;
         match self.lights.act(Moment { now_s, settings: &self.settings, complete, held }) {
@@ -188,6 +188,26 @@ fn what_was_not_finished_goes_on_in_another_window() {
         window.run(2.0);
         assert_eq!((window.searches, &window.settings.lights), (2, &proposed()), "after {after_s} s");
     }
+}
+
+#[test]
+fn what_was_sought_on_a_device_that_is_lost_is_sought_again_in_another_window() {
+    let mut window = Window::new();
+    window.run(0.05);
+    assert_eq!((window.searches, window.searching.take().is_some()), (1, true));
+    // The search learns of it before the window does.
+    window.lights.found(Err(GpuError::Lost("gone".to_owned())));
+    window.run(0.5);
+    assert_eq!(window.searches, 1, "not on that device");
+    window.lights = std::mem::take(&mut window.lights).again();
+    window.run(2.0);
+    assert_eq!((window.searches, &window.settings.lights), (2, &proposed()));
+    // What else goes wrong would go wrong again.
+    let mut window = Window::new();
+    window.run(0.05);
+    window.searching = None;
+    window.lights.found(Err(GpuError::NothingDrawn("picture")));
+    assert!(!window.lights.is_due());
 }
 
 #[test]
