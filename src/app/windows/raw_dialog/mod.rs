@@ -48,6 +48,8 @@ struct Asked {
     writes_header: bool,
     /// The first field takes the keys, once.
     takes_focus: bool,
+    /// That field, as soon as it has been shown.
+    first: Option<egui::Id>,
 }
 
 /// State of the window.
@@ -70,6 +72,7 @@ impl RawDialog {
             header,
             writes_header: false,
             takes_focus: true,
+            first: None,
         });
     }
 
@@ -137,11 +140,12 @@ impl Asked {
 
     /// The numbers, whether they fit, what is proposed, and the buttons.
     fn left(&mut self, ui: &mut egui::Ui) -> Option<Answer> {
-        let first = self.form.fields(ui);
-        if self.takes_focus && !self.looking.is_busy() {
-            first.request_focus();
+        // Before the field is there: then all of its number is selected, and typing replaces it.
+        if let Some(first) = self.first.filter(|_| self.takes_focus && !self.looking.is_busy()) {
+            ui.memory_mut(|memory| memory.request_focus(first));
             self.takes_focus = false;
         }
+        self.first = Some(self.form.fields(ui).id);
         ui.add_space(4.0);
         let fits = self.form.length(ui);
         ui.add_space(6.0);
