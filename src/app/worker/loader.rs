@@ -278,6 +278,10 @@ fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
     let path = source.to_owned();
     let guess = RawLayout::guess(source).ok()??;
     let is_bare = BARE.iter().any(|ending| name.ends_with(ending));
+    if is_bare && guess.file_bytes == 0 {
+        let short = text::opening::empty(source);
+        return Some(Outcome::Failed { details: short.clone(), short });
+    }
     is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
 }
 
