@@ -1,6 +1,8 @@
 //! The numbers that say how a file is stored.
 
 use eframe::egui::{self, DragValue, Response, Ui};
+use std::cmp::Ordering;
+
 
 use super::looking::Length;
 use crate::app::common::theme;
@@ -167,13 +169,11 @@ impl Form {
             ui.colored_label(colors[2], text::raw::TOO_MANY);
             return false;
         };
-        if expected == found {
-            ui.colored_label(colors[0], text::raw::fits(found, is_exact));
-        } else if expected < found {
-            ui.colored_label(colors[1], text::raw::longer(found - expected));
-        } else {
-            ui.colored_label(colors[2], text::raw::shorter(found, expected));
-        }
+        match expected.cmp(&found) {
+            Ordering::Equal => ui.colored_label(colors[0], text::raw::fits(found, is_exact)),
+            Ordering::Less => ui.colored_label(colors[1], text::raw::longer(found - expected)),
+            Ordering::Greater => ui.colored_label(colors[2], text::raw::shorter(found, expected)),
+        };
         ui.horizontal_wrapped(|ui| self.remedies(ui, found, expected));
         // What the end of a compressed file says may be wrong.
         expected == found || !is_exact
