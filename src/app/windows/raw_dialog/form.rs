@@ -1,8 +1,8 @@
 //! The numbers that say how a file is stored.
 
-use eframe::egui::{self, DragValue, Response, Ui};
 use std::cmp::Ordering;
 
+use eframe::egui::{self, DragValue, Response, Ui};
 
 use super::looking::Length;
 use crate::app::common::theme;
