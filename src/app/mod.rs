@@ -34,7 +34,7 @@ use self::windows::files;
 
 use self::common::commands::Command;
 use self::common::volume_facts::VolumeFacts;
-use self::memory::Memory;
+use self::memory::{Memory, RecentPictures};
 use self::shell::first_lights::{FirstLights, Seeking};
 use self::shell::history::History;
 use self::shell::keep_balanced::KeepBalanced;
@@ -42,7 +42,7 @@ use self::shell::messages::Messages;
 use self::shell::object::corrected::Corrected;
 use self::shell::object::treat_as::Treated;
 use self::shell::object::upright::Upright;
-use self::shell::opening::PendingLook;
+use self::shell::opening::{Neighbour, PendingLook};
 use self::shell::session::Session;
 use self::shell::status_file::StatusFile;
 use self::start::carried::Legacy;
@@ -55,6 +55,7 @@ use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
 use self::viewport::overlay::Overlay;
 use self::viewport::{Facts, Viewport, paint_callback};
+use self::windows::chooser::Chooser;
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
 use self::windows::files::Files;
@@ -102,6 +103,7 @@ pub struct App {
     canvas: Option<Canvas>,
     loader: Loader,
     memory: Memory,
+    recent_pictures: RecentPictures,
     /// Whether the next volume is shown as this one, and not as its own first look.
     keeps_look: bool,
     /// Settings of the volume that is being opened.
@@ -133,6 +135,9 @@ pub struct App {
     /// Whether what looks from outside say of their volumes is opened without a question.
     trusts_paths: bool,
     contact_sheet: ContactSheet,
+    chooser: Chooser,
+    /// The next file is being looked for.
+    neighbour: Option<Neighbour>,
     editor: TransferEditor,
     selected_light: usize,
     side_open: bool,
@@ -258,7 +263,9 @@ impl App {
                 can_undo,
                 can_redo,
                 shown,
+                several: self.volume.as_ref().map(|volume| &volume.held),
                 recent: self.memory.recent(),
+                recent_pictures: &mut self.recent_pictures,
                 keeps_look: self.keeps_look,
                 earlier: self.memory.earlier(),
                 frame_ms: &mut self.viewport.frame_ms,
@@ -317,11 +324,13 @@ impl eframe::App for App {
         let start = std::time::Instant::now();
         ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
         let mut commands = Vec::new();
-        if let Some(path) = files::dropped(&ctx) {
-            commands.push(Command::Open(path));
+        let dropped = files::dropped(&ctx);
+        if !dropped.is_empty() {
+            commands.push(Command::OpenDropped(dropped));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
         self.palette.ui(&ctx, self.settings.camera.up, &mut commands);
+        self.chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
         self.surroundings(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);
         shortcuts::from_keys(&ctx, &mut commands);

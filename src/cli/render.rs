@@ -86,7 +86,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             "settings": settings,
         }));
     }
-    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder());
+    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder())
+        .choosing(loaded.volume().held().choice());
     let how = PictureRecord::new(shot, context.description());
     let record = Record::text(&settings, Some(&volume), Some(&how));
     let mut bands = renderer.bands(&loaded, &settings, &shot);

@@ -74,7 +74,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if let Some(output) = &args.output {
         keep_apart(&[&args.picture, &source], &[output], args.force)?;
     }
-    let (volume, context) = args.load.open(&source)?;
+    let (volume, context) = args.load.open_chosen(&source, stated.map(|stated| &stated.choice))?;
     if stated.is_some_and(|of| !of.is_of(volume.opened_id())) {
         return Err(unusable(format!("{} is another volume than the one that it shows", source.display())));
     }

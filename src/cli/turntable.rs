@@ -66,7 +66,8 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let mut file =
         Animation::create(&args.output, &AnimationSpec { size, frames, rate: args.rate, transparent })?;
     let folder = AnimationFormat::record_folder(&args.output);
-    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), folder);
+    let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), folder)
+        .choosing(loaded.volume().held().choice());
     let shot = ImageSpec { transparent, ..ImageSpec::new(size) };
     let how = PictureRecord::new(shot, context.description());
     let options = RenderOptions::of_shot(&shot);

@@ -44,6 +44,10 @@ impl Command {
                 return text::commands::use_colors(name, *back).into();
             }
             Self::TreatAs(kind) => return text::commands::treat_as(*kind).into(),
+            Self::Choose(aspect) => return text::chooser::command(*aspect).into(),
+            Self::StepChoice(aspect, is_forward) => return text::chooser::step(*aspect, *is_forward).into(),
+            Self::TakeChoice(..) => text::commands::TAKE_CHOICE,
+            Self::OpenAgain(..) => text::menu::OPEN_RECENT,
             Self::Average(block) => return text::commands::average(*block).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
@@ -73,6 +77,10 @@ impl Command {
             Self::Brighter => text::commands::BRIGHTER,
             Self::Dimmer => text::commands::DIMMER,
             Self::OpenDialog => text::commands::OPEN_DIALOG,
+            Self::OpenFolder => text::commands::OPEN_FOLDER,
+            Self::NextFile => text::commands::NEXT_FILE,
+            Self::PreviousFile => text::commands::PREVIOUS_FILE,
+            Self::OpenDropped(_) => text::commands::OPEN_DROPPED,
             Self::OpenPath => text::commands::OPEN_PATH,
             Self::Open(_) => text::commands::OPEN_BUILT_IN,
             Self::CancelOpening => text::commands::CANCEL_OPENING,

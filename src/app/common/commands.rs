@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use super::aspect::Aspect;
 use crate::data::KindName;
+use crate::data::load::Choice;
 use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView};
 
 /// Something the user asked for.
@@ -10,10 +12,26 @@ use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxi
 pub(crate) enum Command {
     /// Ask for a volume and open it.
     OpenDialog,
+    /// Ask for a folder of slices and open it.
+    OpenFolder,
     /// Show the window for typing a path.
     OpenPath,
+    /// Open what was dropped on the window.
+    OpenDropped(Vec<PathBuf>),
+    /// Open the file after the open one in its folder.
+    NextFile,
+    /// Open the file before it.
+    PreviousFile,
     /// Open a file or a built-in volume.
     Open(PathBuf),
+    /// Open a file that was open before, and of its volumes the one that was.
+    OpenAgain(PathBuf, Choice),
+    /// Show the volumes of the open file.
+    Choose(Aspect),
+    /// Open the volume of the open file after the one that is shown, or the one before.
+    StepChoice(Aspect, bool),
+    /// Open another volume of the open file, with the look as it is or with one of its own.
+    TakeChoice(Box<Choice>, bool),
     /// Read the open volume again, so many voxels along each axis averaged into one.
     Average(usize),
     /// Stop opening.
@@ -137,7 +155,10 @@ pub(crate) const VIEW_SLOTS: std::ops::RangeInclusive<u8> = 1..=9;
 pub(crate) fn listed() -> Vec<Command> {
     let mut all = vec![
         Command::OpenDialog,
+        Command::OpenFolder,
         Command::OpenPath,
+        Command::NextFile,
+        Command::PreviousFile,
         Command::GoOn,
         Command::SaveSettings,
         Command::LoadSettings,
@@ -185,6 +206,10 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::Quit,
     ];
     all.extend([1, 2, 4].map(Command::Average));
+    all.extend(Aspect::ALL.map(Command::Choose));
+    all.extend(
+        Aspect::ALL.into_iter().flat_map(|aspect| [true, false].map(|on| Command::StepChoice(aspect, on))),
+    );
     all.extend(KindName::choices().map(Command::TreatAs));
     all.extend(StandardView::ALL.map(Command::LookFrom));
     all.extend(SceneAxis::ALL.map(|axis| Command::TurnObject(ObjectTurn::Upright(axis))));

@@ -1,5 +1,6 @@
 //! What all parts of the window share: commands and their keys, colours and sizes, keys for lights, facts of the open volume.
 
+pub(super) mod aspect;
 pub(super) mod command_names;
 pub(super) mod commands;
 pub(super) mod light_keys;

@@ -15,15 +15,18 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
 }
 
 /// A command with its key, as help shows it.
-pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 42] = [
+pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 45] = [
+    // The longer one first: egui lets Shift pass where it is not asked for.
+    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O), Command::OpenFolder),
     control(Key::O, Command::OpenDialog),
     control(Key::L, Command::OpenPath),
+    plain(Key::PageDown, Command::NextFile),
+    plain(Key::PageUp, Command::PreviousFile),
     control(Key::S, Command::SaveSettings),
     control(Key::E, Command::Export),
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C), Command::CopyPicture),
     control(Key::P, Command::ShowPalette),
     control(Key::Q, Command::Quit),
-    // The longer one first: egui lets Shift pass where it is not asked for.
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), Command::Redo),
     control(Key::Z, Command::Undo),
     plain(Key::R, Command::ResetView),

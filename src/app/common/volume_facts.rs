@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::app::text::common::LengthUnit;
 use crate::app::worker::loader::Reading;
+use crate::data::load::Held;
 use crate::data::{
     CountedLabel, DataKind, Dataset, Histogram, Shown, ValueRange, ValueRanges, Volume, VoxelType,
 };
@@ -20,6 +21,8 @@ pub(crate) struct VolumeFacts {
     pub source: PathBuf,
     /// How the volume was read.
     pub reading: Reading,
+    /// What else the file holds.
+    pub held: Held,
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
     /// Voxels along x, y, z in the file, before any were averaged.
@@ -108,6 +111,7 @@ impl VolumeFacts {
             name: volume.name().to_owned(),
             source,
             reading,
+            held: volume.held().clone(),
             dims: volume.dims(),
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
@@ -140,7 +144,7 @@ impl VolumeFacts {
 
     /// Takes over what of the values is shown from now on.
     pub(crate) fn follow(&mut self, dataset: &Dataset) {
-        let fresh = Self::of(std::mem::take(&mut self.source), self.reading, dataset);
+        let fresh = Self::of(std::mem::take(&mut self.source), std::mem::take(&mut self.reading), dataset);
         *self = fresh;
     }
 }

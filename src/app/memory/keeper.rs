@@ -10,8 +10,10 @@ use eframe::egui::{self, ColorImage};
 use super::corrected::{self, Remembered};
 #[cfg(feature = "cli")]
 use super::earlier;
+use super::recent::RecentFile;
 use super::standing::{self, Standing};
-use super::{recent, thumbnail};
+use super::{recent, recent_pictures, thumbnail};
+use crate::data::load::Choice;
 use crate::export::write_atomically;
 use crate::model::{Record, Settings, VolumeRecord};
 
@@ -29,22 +31,30 @@ struct Look {
     settings: Settings,
     source: PathBuf,
     content_id: u64,
+    choice: Choice,
 }
 
 impl Look {
     fn text(&self) -> String {
-        let volume = VolumeRecord::new(&self.source, self.content_id, None);
+        let volume = VolumeRecord::new(&self.source, self.content_id, None).choosing(self.choice.clone());
         Record::text(&self.settings, Some(&volume), None)
     }
+}
+
+/// What a look shows, and of which file.
+#[derive(Debug)]
+struct Shown {
+    picture: Arc<ColorImage>,
+    source: PathBuf,
 }
 
 /// What waits to be written.
 #[derive(Debug, Default)]
 struct Due {
     look: Option<Look>,
-    picture: Option<Arc<ColorImage>>,
+    picture: Option<Shown>,
     /// Files that were opened, the latest last.
-    opened: Vec<PathBuf>,
+    opened: Vec<RecentFile>,
     /// How things stand that were turned, the latest last.
     stood: Vec<Standing>,
     /// How files are corrected that were, the latest last.
@@ -110,10 +120,11 @@ impl Shared {
             }
         }
         // The look counts; a list is one without its picture, too, and without the latest file.
-        if let Some(picture) = picture
-            && let Err(err) = thumbnail::write(&picture, &self.look.with_extension("png"))
-        {
-            log::warn!("the small picture of the look was not kept: {err}");
+        if let Some(Shown { picture, source }) = picture {
+            let kept = thumbnail::write(&picture, &self.look.with_extension("png"));
+            if let Err(err) = kept.and_then(|()| recent_pictures::write(&self.folder, &source, &picture)) {
+                log::warn!("the small picture of the look was not kept: {err}");
+            }
         }
         if !opened.is_empty()
             && let Err(err) = recent::add(&self.folder, &opened)
@@ -229,19 +240,21 @@ impl Keeper {
     }
 
     /// The look as it is from now on.
-    pub(super) fn keep(&self, settings: &Settings, source: &Path, content_id: u64) {
-        let look = Look { settings: settings.clone(), source: source.to_owned(), content_id };
+    pub(super) fn keep(&self, settings: &Settings, source: &Path, content_id: u64, choice: &Choice) {
+        let (settings, source, choice) = (settings.clone(), source.to_owned(), choice.clone());
+        let look = Look { settings, source, content_id, choice };
         self.change(|due| due.look = Some(look));
     }
 
     /// What the look shows.
-    pub(super) fn show(&self, picture: Arc<ColorImage>) {
-        self.change(|due| due.picture = Some(picture));
+    pub(super) fn show(&self, picture: Arc<ColorImage>, source: &Path) {
+        let source = source.to_owned();
+        self.change(|due| due.picture = Some(Shown { picture, source }));
     }
 
     /// A file was opened.
-    pub(super) fn opened(&self, source: &Path) {
-        self.change(|due| due.opened.push(source.to_owned()));
+    pub(super) fn opened(&self, file: RecentFile) {
+        self.change(|due| due.opened.push(file));
     }
 
     /// The object was turned.

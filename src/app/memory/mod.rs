@@ -8,6 +8,7 @@ mod earlier;
 mod keeper;
 mod kept_list;
 mod recent;
+mod recent_pictures;
 mod standing;
 mod thumbnail;
 
@@ -24,9 +25,12 @@ use self::keeper::Keeper;
 #[cfg(feature = "cli")]
 pub(crate) use self::keeper::end_in_a_hurry;
 pub(crate) use self::keeper::{LastWords, write_last_words};
+pub(crate) use self::recent::RecentFile;
+pub(crate) use self::recent_pictures::RecentPictures;
 use self::standing::Standing;
 use crate::app::text;
 use crate::data::Corrections;
+use crate::data::load::Choice;
 use crate::export;
 use crate::model::{SceneAxis, Settings};
 
@@ -53,12 +57,18 @@ fn folder_of(source: &Path) -> Option<PathBuf> {
 }
 
 /// The look that was handed over last, and what it is of.
-type Kept = (Settings, u64);
+#[derive(Debug)]
+struct Kept {
+    settings: Settings,
+    source: PathBuf,
+    content_id: u64,
+    choice: Choice,
+}
 
 /// Files in the folder that the system gives us; without one, nothing is remembered.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
-    recent: Vec<PathBuf>,
+    recent: Vec<RecentFile>,
     /// Which way up things stood in folders, the latest first.
     standing: Vec<Standing>,
     /// How files were corrected, the latest first.
@@ -74,6 +84,7 @@ pub(crate) struct Memory {
     kept: Option<Kept>,
     /// The last write has failed, and that has been said.
     is_failing: bool,
+    folder: Option<PathBuf>,
     // In this order: all is written before the run ends.
     keeper: Option<Keeper>,
     run: Option<ThisRun>,
@@ -85,6 +96,7 @@ impl Memory {
     pub(crate) fn new(folder: Option<&Path>, wake: &egui::Context) -> Self {
         let mut memory = Self::default();
         let Some(folder) = folder else { return memory };
+        memory.folder = Some(folder.to_owned());
         let runs = folder.join("runs");
         earlier::adopt(folder, &runs);
         for folder in [folder, &runs] {
@@ -125,19 +137,25 @@ impl Memory {
     }
 
     /// What was opened, the latest first.
-    pub(crate) fn recent(&self) -> &[PathBuf] {
+    pub(crate) fn recent(&self) -> &[RecentFile] {
         &self.recent
     }
 
-    /// Takes note of a file that was opened. Built-in volumes have a menu of their own.
-    pub(crate) fn opened(&mut self, source: &Path) {
+    /// Their pictures.
+    pub(crate) fn recent_pictures(&self) -> RecentPictures {
+        self.folder.as_deref().map_or_else(RecentPictures::default, RecentPictures::of)
+    }
+
+    /// Takes note of a file that was opened, and of which of its volumes. Built-in volumes have a menu of their own.
+    pub(crate) fn opened(&mut self, source: &Path, choice: &Choice) {
         if is_builtin(source) {
             return;
         }
-        let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
-        recent::put_first(&mut self.recent, &whole);
+        let path = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
+        let latest = RecentFile { path, choice: choice.clone() };
+        recent::put_first(&mut self.recent, latest.clone());
         if let Some(keeper) = &self.keeper {
-            keeper.opened(&whole);
+            keeper.opened(latest);
         }
     }
 
@@ -195,18 +213,21 @@ impl Memory {
     }
 
     /// Keeps a look of a volume, unless it is as it was.
-    pub(crate) fn keep(&mut self, settings: &Settings, source: &Path, content_id: u64) {
-        let is_known = self.kept.as_ref().is_some_and(|(kept, of)| *of == content_id && kept == settings);
+    pub(crate) fn keep(&mut self, settings: &Settings, source: &Path, content_id: u64, choice: &Choice) {
+        let is_known = self.kept.as_ref().is_some_and(|kept| {
+            kept.content_id == content_id && kept.choice == *choice && kept.settings == *settings
+        });
         if let Some(keeper) = self.keeper.as_ref().filter(|_| !is_known) {
-            keeper.keep(settings, source, content_id);
-            self.kept = Some((settings.clone(), content_id));
+            keeper.keep(settings, source, content_id, choice);
+            let (settings, source, choice) = (settings.clone(), source.to_owned(), choice.clone());
+            self.kept = Some(Kept { settings, source, content_id, choice });
         }
     }
 
     /// Keeps what the look shows.
     pub(crate) fn show(&self, picture: Arc<ColorImage>) {
-        if let Some(keeper) = self.keeper.as_ref().filter(|_| self.kept.is_some()) {
-            keeper.show(picture);
+        if let Some((keeper, kept)) = self.keeper.as_ref().zip(self.kept.as_ref()) {
+            keeper.show(picture, &kept.source);
         }
     }
 

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
 use super::controls::{choice, row, short, spacing};
-use super::{Panels, corrections, range};
+use super::{Panels, corrections, range, several};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{KindName, ValueRange, plain};
@@ -20,6 +20,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         return;
     };
     facts(ui, volume);
+    several::show(ui, volume, panels.commands);
     treatment(ui, panels.treated_as, panels.commands);
     range::show(ui, panels.settings, volume);
     averaging(ui, volume, panels.commands);

@@ -11,6 +11,7 @@ mod labels;
 mod lights;
 mod range;
 mod sampling;
+mod several;
 mod shading;
 mod shadows;
 

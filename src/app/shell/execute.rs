@@ -23,8 +23,16 @@ impl App {
     pub(crate) fn execute(&mut self, command: Command, frame: &eframe::Frame, ctx: &egui::Context) {
         match command {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
+            Command::OpenFolder => self.files.ask(Purpose::OpenFolder, frame, ctx),
+            Command::OpenDropped(paths) => self.open_dropped(&paths, ctx),
+            Command::NextFile => self.seek_neighbour(true, ctx),
+            Command::PreviousFile => self.seek_neighbour(false, ctx),
             Command::OpenPath => self.files.type_path(Purpose::OpenVolume),
             Command::Open(source) => self.open(&source, ctx),
+            Command::OpenAgain(path, choice) => self.open_again(&path, &choice, ctx),
+            Command::Choose(aspect) => self.choose(aspect),
+            Command::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
+            Command::TakeChoice(choice, keeps_look) => self.take_choice(&choice, keeps_look, ctx),
             Command::Average(reduce) => self.average(reduce, ctx),
             Command::GoOn => match self.memory.before() {
                 Some(path) => self.open_record(&path, ctx),
@@ -168,6 +176,7 @@ impl App {
                 self.messages.error(short, details);
             }
         }
+        self.take_neighbour(ctx);
         self.take_treated(ctx);
         if let Some(result) = self.balance.as_ref().and_then(Work::take) {
             self.balance = None;
@@ -270,7 +279,7 @@ impl App {
     /// A file was chosen or typed.
     fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
         match purpose {
-            Purpose::OpenVolume => self.open(path, ctx),
+            Purpose::OpenVolume | Purpose::OpenFolder => self.open(path, ctx),
             Purpose::VolumeOfLook => self.open_for_look(path, ctx),
             Purpose::ExportPicture => self.export.set_path(path),
             Purpose::SaveSettings => self.save_settings(path),

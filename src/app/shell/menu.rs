@@ -1,19 +1,22 @@
 //! The menu bar.
 
-use std::path::PathBuf;
-
 use eframe::egui::{self, Button, ThemePreference};
 
+use crate::app::common::aspect::{Alternatives, Aspect};
 use crate::app::common::commands::{Command, VIEW_SLOTS};
 use crate::app::common::theme;
-use crate::app::memory::EarlierRun;
+use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
 use crate::app::text;
 use crate::app::windows::recovery;
+use crate::data::load::Held;
 use crate::data::{plain, synthetic};
 use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, StandardView};
 
 /// Characters of a path under the pointer: the longest that there are.
 const LONGEST_PATH: usize = 4096;
+
+/// Points of the longer edge of a recent file's picture: what it is of can be told, and the list fits on low screens.
+const RECENT_EDGE: f32 = 48.0;
 
 /// What the menu shows as chosen.
 pub(crate) struct Menu<'a> {
@@ -27,8 +30,12 @@ pub(crate) struct Menu<'a> {
     pub can_redo: bool,
     /// What is on screen.
     pub shown: Shown,
+    /// What the open file holds.
+    pub several: Option<&'a Held>,
     /// Files that were opened, the latest first.
-    pub recent: &'a [PathBuf],
+    pub recent: &'a [RecentFile],
+    /// What they look like.
+    pub recent_pictures: &'a mut RecentPictures,
     /// Whether the next volume is shown as this one.
     pub keeps_look: bool,
     /// Runs that have ended, the latest first.
@@ -73,10 +80,23 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
                 item(ui, menu, Command::ShowAbout, true);
             });
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                several(ui, menu);
                 ui.add(egui::Label::new(egui::RichText::new(&menu.title).weak()).truncate());
             });
         });
     });
+}
+
+/// What of a file of several volumes is shown, where nobody can miss it: beside its name.
+fn several(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+    let Some(held) = menu.several else { return };
+    for aspect in Aspect::ALL.into_iter().rev() {
+        let Some(all) = Alternatives::of(held, aspect) else { continue };
+        let label = text::chooser::beside_title(aspect, all.at(), all.count(), &all.name(all.at()));
+        if ui.button(label).on_hover_text(text::chooser::command(aspect)).clicked() {
+            menu.commands.push(Command::Choose(aspect));
+        }
+    }
 }
 
 fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool) {
@@ -88,15 +108,30 @@ fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool)
 
 fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::OpenDialog, true);
+    item(ui, menu, Command::OpenFolder, true);
     item(ui, menu, Command::OpenPath, true);
+    item(ui, menu, Command::NextFile, true);
+    item(ui, menu, Command::PreviousFile, true);
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
         ui.menu_button(text::menu::OPEN_RECENT, |ui| {
-            for path in menu.recent {
+            for recent in menu.recent {
+                let path = &recent.path;
                 let whole = path.to_string_lossy();
                 let name = path.file_name().map(|name| name.to_string_lossy());
                 let name = plain(name.as_ref().unwrap_or(&whole), MAX_NAME);
-                if ui.button(name).on_hover_text(plain(&whole, LONGEST_PATH)).clicked() {
-                    menu.commands.push(Command::Open(path.clone()));
+                let picture = menu.recent_pictures.get(path, ui.ctx());
+                let button = match &picture {
+                    Some(picture) => {
+                        let size = picture.size_vec2();
+                        let size = size * (RECENT_EDGE / size.max_elem());
+                        Button::image_and_text((picture.id(), size), &name)
+                    }
+                    None => Button::new(&name),
+                };
+                let button = ui.add(button.image_tint_follows_text_color(false));
+                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+                if button.on_hover_text(plain(&whole, LONGEST_PATH)).clicked() {
+                    menu.commands.push(Command::OpenAgain(path.clone(), recent.choice.clone()));
                 }
             }
         });

@@ -66,11 +66,10 @@ impl Session {
         session: &mut Option<Self>,
         path: &Path,
         settings: &Settings,
-        volume: Option<(&Path, u64)>,
+        volume: Option<&VolumeRecord>,
     ) -> Result<(), String> {
         let unknown = session.as_ref().filter(|session| session.path == path).map(|session| &session.unknown);
-        let volume = volume.map(|(source, content_id)| VolumeRecord::new(source, content_id, path.parent()));
-        let text = Record::text_with(settings, volume.as_ref(), None, unknown.unwrap_or(&Value::Null));
+        let text = Record::text_with(settings, volume, None, unknown.unwrap_or(&Value::Null));
         files::write_with_backup(path, text.as_bytes())?;
         match session {
             Some(session) if session.path == path => session.protected = None,

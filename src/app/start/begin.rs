@@ -24,6 +24,7 @@ use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
 use crate::app::viewport::overlay::Overlay;
+use crate::app::windows::chooser::Chooser;
 use crate::app::windows::contact_sheet::ContactSheet;
 use crate::app::windows::export::Export;
 use crate::app::windows::files::Files;
@@ -122,6 +123,7 @@ impl App {
             viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, storage.as_deref())?,
+            recent_pictures: memory.recent_pictures(),
             memory,
             keeps_look: false,
             pending: None,
@@ -150,6 +152,8 @@ impl App {
             foreign_path: ForeignPath::default(),
             trusts_paths: false,
             contact_sheet: ContactSheet::default(),
+            chooser: Chooser::default(),
+            neighbour: None,
             editor: TransferEditor::new(window.clone()),
             window,
             window_context,

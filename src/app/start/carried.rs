@@ -71,7 +71,8 @@ impl App {
 
     /// Leaves behind what the next window needs.
     pub(in crate::app) fn leave(&mut self) {
-        let opening = self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading));
+        let opening =
+            self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading.clone()));
         let carried = Carried {
             settings: std::mem::take(&mut self.settings),
             defaults: std::mem::take(&mut self.defaults),

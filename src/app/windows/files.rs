@@ -18,6 +18,8 @@ use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, expor
 pub(crate) enum Purpose {
     /// A volume to open.
     OpenVolume,
+    /// A folder of slices to open.
+    OpenFolder,
     /// The volume of a look that is kept until it is chosen.
     VolumeOfLook,
     /// Settings to apply.
@@ -46,6 +48,7 @@ impl Purpose {
     fn question(self) -> Question {
         match self {
             Self::OpenVolume => text::files::OPEN_VOLUME,
+            Self::OpenFolder => text::files::OPEN_FOLDER,
             Self::VolumeOfLook => text::files::VOLUME_OF_LOOK,
             Self::LoadSettings => text::files::LOAD_SETTINGS,
             Self::ImportTransfer => text::files::IMPORT_TRANSFER,
@@ -101,6 +104,7 @@ impl Files {
                 let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
                 Box::pin(dialog.add_filter(text::files::ALL_FILES, &["*"]).pick_file())
             }
+            Purpose::OpenFolder => Box::pin(dialog.pick_folder()),
             Purpose::LoadSettings | Purpose::CompareSettings => {
                 let endings = ["json", "png", "exr"];
                 Box::pin(dialog.add_filter(text::files::SETTINGS_AND_PICTURES, &endings).pick_file())
@@ -202,9 +206,21 @@ impl Files {
     }
 }
 
-/// The first file that was dropped on the window.
-pub(crate) fn dropped(ctx: &egui::Context) -> Option<PathBuf> {
-    ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()))
+/// What was dropped on the window.
+pub(crate) fn dropped(ctx: &egui::Context) -> Vec<PathBuf> {
+    ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
+}
+
+/// Whether a picture carries a look. Others of that kind are slices.
+pub(crate) fn carries_look(path: &Path) -> bool {
+    PictureFormat::with_record(path).is_some()
+        && crate::export::read_record(path).is_ok_and(|record| record.is_some())
+}
+
+/// Whether a file that may hold a look is a volume: a folder, or a picture of a kind that is read, without a look.
+pub(crate) fn is_volume(path: &Path) -> bool {
+    let is_readable = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    path.is_dir() || is_readable && crate::export::read_record(path).is_ok_and(|record| record.is_none())
 }
 
 /// Writes a file whole or not at all; what was there stays beside it, as `.bak`.

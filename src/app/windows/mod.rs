@@ -1,5 +1,6 @@
 //! Windows over the main one: export, files, slices, contact sheet, help.
 
+pub(super) mod chooser;
 pub(super) mod contact_sheet;
 pub(super) mod export;
 pub(super) mod files;

@@ -11,7 +11,7 @@ use super::task::Work;
 use crate::app::memory::{FileStamp, Remembered};
 use crate::app::text;
 use crate::data::load::{
-    self, Dimension, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout,
+    self, Choice, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, Several,
 };
 use crate::data::{self, Dataset, Volume};
 use crate::fault::{Place, may_panic};
@@ -19,10 +19,12 @@ use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright,
 use crate::model::{SceneAxis, Settings};
 
 /// How a volume is read, where the user has said it.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Reading {
     /// How a file of bare voxels is stored.
     pub raw: Option<RawFormat>,
+    /// Which of several volumes is opened.
+    pub choice: Option<Choice>,
     /// Blocks of so many voxels along each axis are averaged into one.
     pub reduce: Option<usize>,
 }
@@ -85,7 +87,7 @@ pub(crate) struct LoadProgress<'a> {
     /// What is being opened.
     pub source: &'a Path,
     /// How it is read.
-    pub reading: Reading,
+    pub reading: &'a Reading,
     /// What is being done, in words.
     pub phase: &'static str,
     /// The share of the phase that is done, where it is known.
@@ -196,7 +198,8 @@ impl Loader {
             options.raw = reading.raw.unwrap_or(options.raw);
             let reduce = reading.reduce.unwrap_or(options.reduce);
             options.reduce = reduce;
-            let reading = Reading { reduce: Some(reduce), ..reading };
+            options.choice = reading.choice.clone().unwrap_or(options.choice);
+            let reading = Reading { reduce: Some(reduce), ..reading.clone() };
             let opening = Opening {
                 source: source.to_owned(),
                 reading,
@@ -261,7 +264,7 @@ impl Loader {
         let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
         Some(LoadProgress {
             source: &running.source,
-            reading: running.reading,
+            reading: &running.reading,
             phase: PHASES[phase],
             fraction: fraction.map(|fraction| fraction as f32),
         })
@@ -298,25 +301,16 @@ struct Opening {
     phase: Arc<AtomicU8>,
 }
 
-/// Opens a volume; of several the first, of which the user is told.
-fn open_first(source: &Path, mut options: LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let mut told = Vec::new();
-    loop {
-        match data::open(source, &options, control) {
-            Err(LoadError::Several { dimension, offers, .. })
-                if told.len() < Dimension::COUNT && !offers.is_empty() =>
-            {
-                let first = &offers[0];
-                told.push(text::opening::one_of_several(first, offers.len(), dimension));
-                options.choice = options.choice.with(dimension, &first.key);
-            }
-            Ok(volume) if !told.is_empty() => {
-                let remarks = volume.remarks().iter().cloned().chain(told).collect();
-                return Ok(volume.with_remarks(remarks));
-            }
-            opened => return opened,
-        }
-    }
+/// Opens a volume; of several the first where nobody has said which, of which the user is told.
+fn open_first(source: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let options = LoadOptions { choice: options.choice.clone().or_first(), ..options.clone() };
+    let volume = data::open(source, &options, control)?;
+    let is_unsaid =
+        |several: &&Several| several.missed.is_some() || options.choice.said(several.dimension).is_none();
+    let told: Vec<_> =
+        volume.held().several.iter().filter(is_unsaid).map(text::opening::first_of_several).collect();
+    let remarks = volume.remarks().iter().cloned().chain(told).collect();
+    Ok(volume.with_remarks(remarks))
 }
 
 /// A volume as it was corrected the last time, if it is the same.
@@ -336,7 +330,7 @@ fn open(opening: Opening) -> Outcome {
     let Opening { source, reading, known, options, context, shaders, control, phase } = opening;
     may_panic(Place::Loader);
     let stamp = FileStamp::of(&source);
-    let volume = match open_first(&source, options, &control) {
+    let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
         Err(err) => {
@@ -359,6 +353,8 @@ fn open(opening: Opening) -> Outcome {
         Err(err) => return not_shown(&err),
     };
     let too_many = (volume.dims() != dims).then_some(dims);
+    // It is read in the same way again.
+    let reading = Reading { choice: Some(volume.held().choice()), ..reading };
     if control.is_cancelled() {
         return Outcome::Cancelled;
     }
@@ -382,5 +378,30 @@ fn open(opening: Opening) -> Outcome {
             Outcome::Opened(Box::new(opened))
         }
         Err(err) => not_shown(&err),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_user_hears_which_of_several_is_shown_unless_it_was_chosen() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("steps.nrrd");
+        let header = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 3\nencoding: raw\nkinds: domain domain domain time\n\n";
+        std::fs::write(&file, [header.as_bytes(), &(0..24).collect::<Vec<u8>>()].concat()).unwrap();
+        let told = |frame| {
+            let choice = Choice { frame, ..Choice::default() };
+            let options = LoadOptions { choice, ..LoadOptions::default() };
+            let volume = open_first(&file, &options, &LoadControl::new()).unwrap();
+            let remarks = volume.remarks().iter().filter(|said| said.contains("time steps")).cloned();
+            (volume.held().choice().frame, remarks.collect::<Vec<_>>().join("; "))
+        };
+        let (frame, said) = told(None);
+        assert!(frame == Some(0) && said.starts_with("The first of 3 time steps is shown"), "{said}");
+        assert_eq!(told(Some(2)), (Some(2), String::new()));
+        let (frame, said) = told(Some(7));
+        assert!(frame == Some(0) && said.starts_with("7 is none of the 3 time steps"), "{said}");
     }
 }

@@ -101,14 +101,28 @@ impl LoadArgs {
             channel: self.channel,
             series: self.series.clone(),
             array: self.array.clone(),
+            ..Choice::default()
         };
         Ok(LoadOptions { raw, choice, reduce: usize::from(self.reduce), ..LoadOptions::default() })
     }
 
     /// Loads a volume, and opens the adapter.
     pub(super) fn open(&self, source: &Path) -> Result<(Volume, Context), CliError> {
+        self.open_chosen(source, None)
+    }
+
+    /// As [`Self::open`]. Of several volumes it is that one, unless the command line says another.
+    pub(super) fn open_chosen(
+        &self,
+        source: &Path,
+        choice: Option<&Choice>,
+    ) -> Result<(Volume, Context), CliError> {
+        let mut options = self.load_options()?;
+        if let Some(choice) = choice.filter(|_| options.choice.is_empty()) {
+            options.choice = choice.clone();
+        }
         // What is wrong with a file is said first.
-        let whole = open(source, &self.load_options()?, &LoadControl::new())?;
+        let whole = open(source, &options, &LoadControl::new())?;
         let context = Context::headless()?;
         Ok((downsampled_to_fit(source, whole, &context)?, context))
     }

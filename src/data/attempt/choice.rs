@@ -2,19 +2,35 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
+use super::held::{Components, Several, Watch, Whole};
+
 /// What the user has said about which of several volumes is meant; nothing where there is but one.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Choice {
     /// The component of vectors and colours, from 0; without one their length, or their luminance.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<usize>,
     /// The time step, from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
     /// The channel, from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub channel: Option<usize>,
     /// The series of a folder, by its [`Offer::key`].
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
     /// The array of an archive, by its [`Offer::key`].
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub array: Option<String>,
+    /// Where nothing is said, or what is said is not there, the first is meant: somebody can choose again.
+    #[serde(skip)]
+    pub otherwise_first: bool,
+    /// Where readers write down what there was to choose from.
+    #[serde(skip)]
+    pub watch: Option<Watch>,
 }
 
 /// A way in which the volumes of a file differ.
@@ -31,9 +47,6 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// How many there are.
-    pub const COUNT: usize = 4;
-
     /// The option of the command line that chooses.
     pub fn option(self) -> &'static str {
         match self {
@@ -84,8 +97,8 @@ impl fmt::Display for Offer {
 }
 
 impl Choice {
-    /// What is said of a dimension.
-    fn said(&self, dimension: Dimension) -> Option<String> {
+    /// What is said of a dimension: an [`Offer::key`], or a name.
+    pub fn said(&self, dimension: Dimension) -> Option<String> {
         match dimension {
             Dimension::Frame => self.frame.map(|frame| frame.to_string()),
             Dimension::Channel => self.channel.map(|channel| channel.to_string()),
@@ -112,14 +125,68 @@ impl Choice {
     /// # Errors
     /// [`Unclear::Several`] where none was named, [`Unclear::Unknown`] where another was.
     pub(super) fn of(&self, dimension: Dimension, offers: &[Offer]) -> Result<usize, Unclear> {
-        match self.said(dimension) {
+        let found = match self.said(dimension) {
             None if offers.len() == 1 => Ok(0),
             None => Err(Unclear::Several),
             Some(said) => {
                 let by = |what: fn(&Offer) -> &String| offers.iter().position(|offer| *what(offer) == said);
                 by(|offer| &offer.key).or_else(|| by(|offer| &offer.name)).ok_or(Unclear::Unknown(said))
             }
+        };
+        let (at, missed) = match found {
+            Ok(at) => (at, None),
+            Err(Unclear::Several) if self.otherwise_first && !offers.is_empty() => (0, None),
+            Err(Unclear::Unknown(said)) if self.otherwise_first && !offers.is_empty() => (0, Some(said)),
+            Err(unclear) => return Err(unclear),
+        };
+        if let Some(watch) = self.watch.as_ref().filter(|_| offers.len() > 1) {
+            watch.saw_several(Several { dimension, offers: offers.to_vec(), at, missed });
         }
+        Ok(at)
+    }
+
+    /// Which component of voxels of so many numbers is meant, if one is.
+    pub(in crate::data) fn component_among(&self, count: usize, is_color: bool) -> Option<usize> {
+        let whole = match (is_color, count) {
+            (true, ..3) => Whole::First,
+            (true, _) => Whole::Luminance,
+            (false, _) => Whole::Magnitude,
+        };
+        self.watched_component(Components { count, is_color, whole, shown: self.component })
+    }
+
+    /// Which of so many layers is meant: numbers that make nothing together.
+    pub(in crate::data) fn layer_among(&self, count: usize) -> Option<usize> {
+        let (is_color, whole) = (false, Whole::First);
+        self.watched_component(Components { count, is_color, whole, shown: self.component })
+    }
+
+    fn watched_component(&self, said: Components) -> Option<usize> {
+        let shown = said.shown.filter(|&at| at < said.count || !self.otherwise_first);
+        if let Some(watch) = self.watch.as_ref().filter(|_| said.count > 1) {
+            watch.saw_components(Components { shown, ..said });
+        }
+        shown
+    }
+
+    /// Whether nothing is said.
+    pub fn is_empty(&self) -> bool {
+        let Self { component, frame, channel, series, array, otherwise_first: _, watch: _ } = self;
+        let numbers = [component, frame, channel];
+        numbers.iter().all(|said| said.is_none()) && series.is_none() && array.is_none()
+    }
+
+    /// The same choice, with the first for what is not said or not there.
+    #[must_use]
+    pub fn or_first(self) -> Self {
+        Self { otherwise_first: true, ..self }
+    }
+
+    /// The same choice, with a watch of its own: no two files share what is found.
+    #[must_use]
+    pub(in crate::data) fn watched(self) -> (Self, Watch) {
+        let watch = Watch::default();
+        (Self { watch: Some(watch.clone()), ..self }, watch)
     }
 }
 
@@ -149,5 +216,47 @@ mod tests {
         let series = nothing.with(Dimension::Series, "GFP");
         assert_eq!(series.of(Dimension::Series, &offers), Ok(1), "by its name");
         assert_eq!(offers[0].to_string(), "0 \"DAPI\" (4 x 4 x 4)");
+    }
+
+    #[test]
+    fn who_can_choose_again_gets_the_first_and_hears_of_the_others() {
+        let offers = [Offer::numbered(0, "DAPI", [4; 3]), Offer::numbered(1, "GFP", [4; 3])];
+        let (strict, watch) = Choice::default().watched();
+        assert_eq!(strict.of(Dimension::Channel, &offers), Err(Unclear::Several));
+        assert!(watch.held().several.is_empty());
+        let (nothing, watch) = Choice::default().or_first().watched();
+        assert_eq!(nothing.of(Dimension::Channel, &offers), Ok(0));
+        assert_eq!(nothing.of(Dimension::Frame, &offers[..1]), Ok(0));
+        let held = watch.held();
+        assert_eq!((held.several.len(), held.choice().channel), (1, Some(0)), "one time step is no choice");
+        let (second, watch) = held.choice().with(Dimension::Channel, "1").watched();
+        assert!(watch.held().choice().is_empty(), "no two loads share what they have found");
+        assert_eq!(second.of(Dimension::Channel, &offers), Ok(1));
+        assert_eq!(watch.held().of(Dimension::Channel).unwrap().missed, None);
+        let (late, watch) = Choice::default().with(Dimension::Channel, "7").or_first().watched();
+        assert_eq!(late.of(Dimension::Channel, &offers), Ok(0), "it is not there");
+        assert_eq!(watch.held().of(Dimension::Channel).unwrap().missed.as_deref(), Some("7"));
+        assert_eq!(late.of(Dimension::Channel, &[]), Err(Unclear::Unknown("7".to_owned())));
+    }
+
+    #[test]
+    fn components_are_known_to_who_watches() {
+        let third = Choice { component: Some(2), ..Choice::default() };
+        assert_eq!(third.component_among(2, false), Some(2), "which the reader refuses");
+        let third = third.or_first();
+        for (count, is_color, whole, shown) in [
+            (3, true, Whole::Luminance, Some(2)),
+            (2, true, Whole::First, None),
+            (3, false, Whole::Magnitude, Some(2)),
+        ] {
+            let (choice, watch) = third.clone().watched();
+            assert_eq!(choice.component_among(count, is_color), shown);
+            assert_eq!(watch.held().components, Some(Components { count, is_color, whole, shown }));
+            assert_eq!(watch.held().choice().component, shown);
+        }
+        let (choice, watch) = third.watched();
+        assert_eq!((choice.component_among(1, false), watch.held().components), (None, None));
+        assert_eq!(choice.layer_among(4), Some(2));
+        assert_eq!(watch.held().components.unwrap().whole, Whole::First);
     }
 }

@@ -5,6 +5,7 @@ mod choice;
 mod control;
 mod error;
 mod free_memory;
+mod held;
 mod limits;
 
 pub use choice::{Choice, Dimension, Offer};
@@ -12,5 +13,6 @@ pub use control::LoadControl;
 pub(super) use error::{Attempt, quoted};
 pub use error::{Explanation, LoadError, LoadErrorKind};
 pub(crate) use free_memory::address_bytes_left;
+pub use held::{Components, Held, Several, Watch, Whole};
 pub(crate) use limits::default_budget_bytes as memory_budget_bytes;
 pub(super) use limits::{Extent, human_bytes, is_usable_affine, is_usable_spacing, unlike_spacings};

@@ -6,6 +6,7 @@
 //! itself and one block.
 
 mod formats;
+mod neighbour;
 mod reading;
 #[cfg(test)]
 mod tests;
@@ -17,7 +18,12 @@ pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 use super::Volume;
 use super::attempt::Attempt;
 pub(crate) use super::attempt::memory_budget_bytes;
-pub use super::attempt::{Choice, Dimension, Explanation, LoadControl, LoadError, LoadErrorKind, Offer};
+pub use super::attempt::{
+    Choice, Components, Dimension, Explanation, Held, LoadControl, LoadError, LoadErrorKind, Offer, Several,
+    Watch, Whole,
+};
+pub use neighbour::neighbour;
+
 use formats::{READERS, folder, reader_of};
 use reading::input::{Input, Witness};
 use reading::reader::{Source, Start};
@@ -62,6 +68,12 @@ impl Default for LoadOptions {
 /// [`LoadErrorKind::BadInput`] for a file or options that make no volume, or several ([`LoadError::Several`]), `Limit` for
 /// a volume over the budget, `Io` for what is not readable, or neither a file nor a folder, `Cancelled` when asked to stop.
 pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let (choice, watch) = options.choice.clone().watched();
+    let options = LoadOptions { choice, ..options.clone() };
+    Ok(load_watched(path, &options, control)?.with_held(watch.held()))
+}
+
+fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     control.check()?;
     let attempt = Attempt { what: "open the volume", path };
     if path.is_dir() {

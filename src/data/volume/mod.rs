@@ -24,6 +24,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{DAffine3, DMat3, DVec3};
 
 use self::corrections::Corrected;
+use super::attempt::Held;
 use super::values::robust::quantile;
 use super::{Hints, Samples, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
@@ -58,6 +59,7 @@ pub struct Volume {
     hints: Hints,
     has_unknown_scale: bool,
     remarks: Vec<String>,
+    held: Arc<Held>,
     /// Found when it is first asked for.
     kind: OnceLock<KindFound>,
     /// Found when they are first asked for.
@@ -131,6 +133,7 @@ impl Volume {
             hints: Hints::default(),
             has_unknown_scale: false,
             remarks: Vec::new(),
+            held: Arc::default(),
             kind: OnceLock::new(),
             labels: OnceLock::new(),
             content_id,
@@ -195,6 +198,17 @@ impl Volume {
         &self.remarks
     }
 
+    /// States what else the file holds.
+    #[must_use]
+    pub(super) fn with_held(self, held: Held) -> Self {
+        Self { held: Arc::new(held), ..self }
+    }
+
+    /// What the file holds of which this volume is one: what else could be opened of it.
+    pub fn held(&self) -> &Held {
+        &self.held
+    }
+
     /// What kind of data it holds. The first to ask waits until that is found.
     pub fn kind(&self) -> &KindFound {
         self.kind.get_or_init(|| KindFound::of(self))
@@ -210,6 +224,7 @@ impl Volume {
             hints: whole.hints.clone(),
             has_unknown_scale: whole.has_unknown_scale,
             remarks: whole.remarks.clone(),
+            held: Arc::clone(&whole.held),
             kind: whole.kind_of_parts(),
             ..self
         }

@@ -14,6 +14,7 @@ use super::path_text::{decode_path, encode_path};
 use super::renames::rename;
 use super::schemas::complete;
 use super::unknown;
+use crate::data::load::Choice;
 use crate::data::{Corrections, ValueRanges};
 use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_relative};
 
@@ -30,6 +31,9 @@ pub struct VolumeRecord {
     pub source_bytes: Option<String>,
     /// Identifies values and geometry of the file, in hexadecimal digits.
     pub content_id: String,
+    /// Which of several volumes of the file it is.
+    #[serde(default, skip_serializing_if = "Choice::is_empty")]
+    pub choice: Choice,
 }
 
 /// How a picture was made.
@@ -63,7 +67,14 @@ impl VolumeRecord {
         let is_builtin = source.to_str().is_some_and(|name| name.starts_with("builtin:"));
         let path = if is_builtin { source.to_owned() } else { relative(source, folder) };
         let content_id = format!("{content_id:016x}");
-        Self { source: path.display().to_string(), source_bytes: encode_path(&path), content_id }
+        let (source_bytes, choice) = (encode_path(&path), Choice::default());
+        Self { source: path.display().to_string(), source_bytes, content_id, choice }
+    }
+
+    /// Which of several volumes of the file it is.
+    #[must_use]
+    pub fn choosing(self, choice: Choice) -> Self {
+        Self { choice, ..self }
     }
 
     /// What was opened. Bytes count only where they are what `source` shows as well as it can.
@@ -266,6 +277,20 @@ mod tests {
         let (read, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
         assert_eq!((read, warnings), (settings, vec![]));
         assert!(volume.is_of(0x1234) && !volume.is_of(0x1235));
+    }
+
+    #[test]
+    fn records_know_which_of_several_volumes_they_are_of() {
+        let choice = Choice { frame: Some(3), series: Some("7".to_owned()), ..Choice::default() };
+        let volume = VolumeRecord::new("a.nii", 1, None).choosing(choice);
+        let text = Record::text(&Settings::default(), Some(&volume), None);
+        assert_eq!(Record::read(&text).unwrap().volume, Some(volume.clone()));
+        let only = VolumeRecord { choice: Choice::default(), ..volume };
+        assert!(!Record::text(&Settings::default(), Some(&only), None).contains("choice"));
+        assert!(
+            Record::read(r#"{"_volume": {"source": "a", "content_id": "", "choice": {"frame": -1}}}"#)
+                .is_err()
+        );
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, Options};
+use chiaroscuro::data::load::Choice;
 use chiaroscuro::export::export_png;
 use chiaroscuro::model::{Record, Settings, VolumeRecord};
 use eframe::egui::Vec2;
@@ -20,7 +21,12 @@ fn picture_of(source: &str, path: &Path) {
     let mut settings = Settings::default();
     settings.shadows.gain = 2.0;
     settings.shadows.keep_balanced = false;
-    let volume = VolumeRecord { source: source.to_owned(), source_bytes: None, content_id: String::new() };
+    let volume = VolumeRecord {
+        source: source.to_owned(),
+        source_bytes: None,
+        content_id: String::new(),
+        choice: Choice::default(),
+    };
     let record = Record::text(&settings, Some(&volume), None);
     export_png([1, 1], &[0; 4], false, Some(&record), path).expect("written");
 }

@@ -1,5 +1,6 @@
 //! Files that the window opens, writes, and keeps from one run to the next.
 
+mod choosing;
 mod corrections;
 mod export;
 mod foreign_paths;

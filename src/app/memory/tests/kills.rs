@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use super::{gain_of, look, remember};
 use crate::app::shell::session::Session;
-use crate::model::Record;
+use crate::data::load::Choice;
+use crate::model::{Record, VolumeRecord};
 
 /// Where the process writes that is to be killed; it is this test itself, once more.
 const FOLDER: &str = "CHIAROSCURO_TEST_KILLED_IN";
@@ -22,11 +23,12 @@ fn write_until_killed(folder: &Path) -> ! {
     let words = memory.last_words().unwrap();
     for gain in 2.. {
         let settings = look(f64::from(gain) / 1000.0);
-        memory.opened(Path::new(&format!("/{gain}.nrrd")));
-        memory.keep(&settings, volume, 7);
+        memory.opened(Path::new(&format!("/{gain}.nrrd")), &Choice::default());
+        memory.keep(&settings, volume, 7, &Choice::default());
         words.write();
         for name in ["session.json", "preset.json"] {
-            Session::save(&mut session, &folder.join(name), &settings, Some((volume, 7))).unwrap();
+            let volume = VolumeRecord::new(volume, 7, Some(folder));
+            Session::save(&mut session, &folder.join(name), &settings, Some(&volume)).unwrap();
         }
         // Unlike `println`, this is not kept back by the test.
         writeln!(std::io::stdout(), "kept {gain}").unwrap();
@@ -87,7 +89,12 @@ fn kills(count: u32) {
         assert!(run.crashed);
         is_kept(&run.look);
         let opened = std::path::PathBuf::from(format!("/{kept}.nrrd"));
-        assert!(memory.recent().contains(&opened), "{} is not in {:?}", opened.display(), memory.recent());
+        assert!(
+            memory.recent().iter().any(|file| file.path == opened),
+            "{} is not in {:?}",
+            opened.display(),
+            memory.recent()
+        );
         memory.settle();
         drop(memory);
         crate::export::remove_abandoned(folder.path());

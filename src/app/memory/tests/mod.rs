@@ -44,25 +44,33 @@ fn kill(memory: Memory) {
     fs::File::create(look.with_extension("lock")).unwrap();
 }
 
+/// The files that were opened.
+fn paths(memory: &Memory) -> Vec<PathBuf> {
+    memory.recent().iter().map(|file| file.path.clone()).collect()
+}
+
 #[test]
 fn files_are_remembered_by_all_windows() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
     assert!(memory.recent().is_empty() && memory.before().is_none() && memory.is_first());
     for file in ["/a.nrrd", "/b.nrrd", "builtin:chair", "/a.nrrd"] {
-        memory.opened(Path::new(file));
+        memory.opened(Path::new(file), &Choice::default());
     }
+    let second = Choice { frame: Some(1), ..Choice::default() };
     // Another window has begun before, and does not know of these.
     let mut other = remember(folder.path());
     drop(memory);
-    other.opened(Path::new("/c.nrrd"));
+    other.opened(Path::new("/c.nrrd"), &second);
     drop(other);
     let memory = remember(folder.path());
     assert!(!memory.is_first());
-    assert_eq!(memory.recent(), ["/c.nrrd", "/a.nrrd", "/b.nrrd"].map(PathBuf::from));
+    assert_eq!(paths(&memory), ["/c.nrrd", "/a.nrrd", "/b.nrrd"].map(PathBuf::from));
+    let choices = memory.recent().iter().map(|file| file.choice.clone()).collect::<Vec<_>>();
+    assert_eq!(choices, [second, Choice::default(), Choice::default()]);
     drop(memory);
     for at in 0..2 * recent::MOST {
-        remember(folder.path()).opened(Path::new(&format!("/{at}.nrrd")));
+        remember(folder.path()).opened(Path::new(&format!("/{at}.nrrd")), &Choice::default());
     }
     assert_eq!(remember(folder.path()).recent().len(), recent::MOST);
 }
@@ -78,11 +86,11 @@ fn files_whose_names_are_no_text_are_remembered() {
     let names = names.map(|name| PathBuf::from(std::ffi::OsStr::from_bytes(name)));
     let mut memory = remember(folder.path());
     for name in names.iter().rev() {
-        memory.opened(name);
+        memory.opened(name, &Choice::default());
     }
-    assert_eq!(memory.recent(), names);
+    assert_eq!(paths(&memory), names);
     drop(memory);
-    assert_eq!(remember(folder.path()).recent(), names);
+    assert_eq!(paths(&remember(folder.path())), names);
     // An earlier version reads the list as well.
     let text = fs::read(folder.path().join("recent.json")).unwrap();
     assert_eq!(serde_json::from_slice::<Vec<String>>(&text).unwrap().len(), names.len());
@@ -177,10 +185,10 @@ fn the_last_change_is_kept_within_two_seconds() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
     let file = memory.run.as_ref().unwrap().look.clone();
-    memory.keep(&look(1.5), Path::new("builtin:chair"), 7);
+    memory.keep(&look(1.5), Path::new("builtin:chair"), 7, &Choice::default());
     wait_until("the first look is kept", || file.exists());
     for gain in [2.0, 2.5, 3.0] {
-        memory.keep(&look(gain), Path::new("builtin:chair"), 7);
+        memory.keep(&look(gain), Path::new("builtin:chair"), 7, &Choice::default());
     }
     let took = wait_until("the last look is kept", || gain_of(&file) == 3.0);
     assert!(took < Duration::from_secs(2), "{took:?}");
@@ -190,7 +198,7 @@ fn the_last_change_is_kept_within_two_seconds() {
 fn looks_of_runs_that_were_cut_off_are_offered_until_the_user_knows() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
-    memory.keep(&look(2.0), Path::new("/data/tooth.nrrd"), 7);
+    memory.keep(&look(2.0), Path::new("/data/tooth.nrrd"), 7, &Choice::default());
     memory.show(Arc::new(ColorImage::filled([40, 20], egui::Color32::RED)));
     kill(memory);
     // Starts and ends do not take it away.
@@ -212,7 +220,7 @@ fn a_run_that_panics_is_one_that_was_cut_off() {
     let path = folder.path().to_owned();
     let window = std::panic::catch_unwind(move || {
         let mut memory = remember(&path);
-        memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
+        memory.keep(&look(2.0), Path::new("builtin:chair"), 7, &Choice::default());
         panic!("as a window might");
     });
     assert!(window.is_err());
@@ -231,7 +239,7 @@ fn starts_that_fail_are_counted_until_one_does_not() {
         fail();
     }
     let mut memory = remember(folder.path());
-    memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
+    memory.keep(&look(2.0), Path::new("builtin:chair"), 7, &Choice::default());
     drop(memory);
     assert!(!starts_have_failed(folder.path()));
     drop(remember(folder.path()));
@@ -242,10 +250,10 @@ fn starts_that_fail_are_counted_until_one_does_not() {
 fn two_windows_take_nothing_from_each_other() {
     let folder = tempfile::tempdir().unwrap();
     let mut first = remember(folder.path());
-    first.keep(&look(2.0), Path::new("builtin:chair"), 7);
+    first.keep(&look(2.0), Path::new("builtin:chair"), 7, &Choice::default());
     let mut second = remember(folder.path());
     assert!(second.earlier().is_empty(), "the first one goes on");
-    second.keep(&look(3.0), Path::new("builtin:fuel"), 8);
+    second.keep(&look(3.0), Path::new("builtin:fuel"), 8, &Choice::default());
     kill(first);
     drop(second);
     let third = remember(folder.path());
@@ -259,7 +267,7 @@ fn ten_runs_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     for at in 0..13 {
         let mut memory = remember(folder.path());
-        memory.keep(&look(f64::from(at)), Path::new("builtin:chair"), 7);
+        memory.keep(&look(f64::from(at)), Path::new("builtin:chair"), 7, &Choice::default());
         drop(memory);
         // Names are in milliseconds.
         std::thread::sleep(Duration::from_millis(3));
@@ -300,7 +308,7 @@ fn what_cannot_be_kept_is_said() {
     let mut memory = remember(folder.path());
     // Nothing can be written where there is no folder.
     fs::remove_dir_all(folder.path().join("runs")).unwrap();
-    memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
+    memory.keep(&look(2.0), Path::new("builtin:chair"), 7, &Choice::default());
     wait_until("the failure is known", || memory.keeper.as_ref().unwrap().failure().is_some());
     assert_eq!(memory.take_notices().len(), 1);
     assert!(memory.take_notices().is_empty(), "once");
@@ -313,7 +321,7 @@ fn what_cannot_be_kept_is_said() {
     fs::write(folder.path().join("file"), "").unwrap();
     let mut nowhere = remember(&folder.path().join("file"));
     assert_eq!(nowhere.take_notices().len(), 1);
-    nowhere.keep(&look(2.0), Path::new("builtin:chair"), 7);
+    nowhere.keep(&look(2.0), Path::new("builtin:chair"), 7, &Choice::default());
     assert!(Memory::new(None, &egui::Context::default()).last_words().is_none());
 }
 
@@ -321,7 +329,7 @@ fn what_cannot_be_kept_is_said() {
 fn last_words_are_written_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
-    memory.keep(&look(2.0), Path::new("builtin:chair"), 7);
+    memory.keep(&look(2.0), Path::new("builtin:chair"), 7, &Choice::default());
     let begin = Instant::now();
     memory.last_words().unwrap().write();
     assert!(begin.elapsed() < Duration::from_millis(900), "before changes have been collected");

@@ -4,9 +4,14 @@ use crate::app::text::data;
 use crate::data::KindName;
 
 pub(crate) const OPEN_DIALOG: &str = "Open…";
+pub(crate) const OPEN_FOLDER: &str = "Open folder…";
+pub(crate) const NEXT_FILE: &str = "Next file of the folder";
+pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";
+pub(crate) const OPEN_DROPPED: &str = "Open what was dropped";
 pub(crate) const OPEN_PATH: &str = "Open path…";
 /// The name of a command, and of the menu of what can be opened.
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
+pub(crate) const TAKE_CHOICE: &str = "Show this one";
 pub(crate) const CANCEL_OPENING: &str = "Cancel";
 pub(crate) const GO_ON: &str = "Go on where you left off";
 pub(crate) const SAVE_SETTINGS: &str = "Save settings…";

@@ -1,6 +1,7 @@
 //! Opening volumes and looks, and the window's title.
 
-use crate::data::load::{Dimension, Offer};
+use crate::data::load::Several;
+use crate::data::plain;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -68,10 +69,42 @@ pub(crate) fn averaged(before: [usize; 3], after: [usize; 3]) -> String {
     format!("{before} voxels are shown as {after}: the graphics adapter cannot hold more")
 }
 
-/// A file holds several volumes, of which the first is shown.
-pub(crate) fn one_of_several(first: &Offer, count: usize, dimension: Dimension) -> String {
-    let (plural, option) = (dimension.plural(), dimension.option());
-    format!("The first of {count} {plural} is shown: {first}. Start with {option} for another one")
+/// A file holds several volumes, of which the first is shown: nobody has said which, or what was said is not there.
+pub(crate) fn first_of_several(several: &Several) -> String {
+    let (count, plural) = (several.offers.len(), several.dimension.plural());
+    let first = several.offers.first().map_or("", |first| first.name.as_str());
+    let first = if first.is_empty() { String::new() } else { format!(" ({first})") };
+    match &several.missed {
+        None => format!("The first of {count} {plural} is shown{first}: the section Data offers the others"),
+        Some(said) => {
+            let said = plain(said, 60);
+            format!("{said} is none of the {count} {plural} that there are now: the first is shown{first}")
+        }
+    }
+}
+
+/// Slices were dropped: what their folder holds is opened.
+pub(crate) fn folder_of_dropped(count: usize, folder: &Path) -> String {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    format!("{count} files were dropped: all slices of their folder {} are opened", plain(&name, 60))
+}
+
+/// Several files were dropped that do not belong together.
+pub(crate) fn first_of_dropped(count: usize, first: &Path) -> String {
+    let name = first.file_name().unwrap_or_default().to_string_lossy();
+    format!("{count} files were dropped: the first, {}, is opened", plain(&name, 60))
+}
+
+/// The open volume is in no folder.
+pub(crate) const NO_FOLDER: &str = "The open volume is in no folder";
+
+/// There is no other file.
+pub(crate) fn no_neighbour(is_forward: bool) -> &'static str {
+    if is_forward {
+        "This is the last volume of its folder"
+    } else {
+        "This is the first volume of its folder"
+    }
 }
 
 /// The system is out of threads.

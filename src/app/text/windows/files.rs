@@ -19,6 +19,8 @@ pub(crate) const OPEN_VOLUME: Question = Question {
     hint: "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
     verb: "Open",
 };
+pub(crate) const OPEN_FOLDER: Question =
+    Question { title: "Open a folder of slices", hint: "a folder of DICOM files or pictures", verb: "Open" };
 pub(crate) const VOLUME_OF_LOOK: Question = Question { title: "Open the volume of the look", ..OPEN_VOLUME };
 pub(crate) const LOAD_SETTINGS: Question = Question {
     title: "Load settings",

@@ -1,5 +1,6 @@
 //! Words of windows over the main one.
 
+pub(in crate::app) mod chooser;
 pub(in crate::app) mod contact_sheet;
 pub(in crate::app) mod export;
 pub(in crate::app) mod files;

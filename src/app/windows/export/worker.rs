@@ -138,7 +138,8 @@ impl Worker {
         shot: &ImageSpec,
         folder: Option<&Path>,
     ) -> String {
-        let volume = VolumeRecord::new(&subject.source, subject.dataset.volume().opened_id(), folder);
+        let of = subject.dataset.volume();
+        let volume = VolumeRecord::new(&subject.source, of.opened_id(), folder).choosing(of.held().choice());
         let how = PictureRecord::new(*shot, self.adapter.clone());
         Record::text(settings, Some(&volume), Some(&how))
     }

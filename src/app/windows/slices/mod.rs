@@ -1,7 +1,7 @@
 //! The window "Slices": three cuts through the data along its axes, through a cursor that they share with the
 //! picture.
 
-mod image;
+pub(in crate::app::windows) mod image;
 
 use std::sync::Arc;
 

@@ -61,14 +61,14 @@ fn files(attempt: Attempt<'_>, control: &LoadControl) -> Result<Vec<PathBuf>, Lo
 
 /// A piece of a name, so that numbers come in the order of their values.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-enum Piece {
+pub(in crate::data::load) enum Piece {
     /// Digits without leading zeros, shorter ones first; then how many there were.
     Number(usize, String, usize),
     Text(String),
 }
 
 /// By what names are put in natural order.
-fn natural(name: &str) -> Vec<Piece> {
+pub(in crate::data::load) fn natural(name: &str) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut rest = name;
     while let Some(first) = rest.chars().next() {

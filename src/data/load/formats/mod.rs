@@ -1,7 +1,7 @@
 //! The formats that are read, and which of them a file has: by how it begins, or by its ending where that says nothing.
 
 mod cube;
-mod dicom;
+pub(super) mod dicom;
 pub(super) mod folder;
 mod metaimage;
 mod mrc;

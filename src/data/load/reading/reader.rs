@@ -146,7 +146,8 @@ impl Source<'_> {
         components: usize,
         is_color: bool,
     ) -> Result<Part, LoadError> {
-        Part::asked(attempt, self.options.choice.component, components, is_color)
+        let component = self.options.choice.component_among(components, is_color);
+        Part::asked(attempt, component, components, is_color)
     }
 }
 

@@ -120,6 +120,7 @@ impl Volume {
             file_dims: self.file_dims,
             block: self.block,
             remarks: self.remarks.clone(),
+            held: std::sync::Arc::clone(&self.held),
             hints,
             ..volume
         })

@@ -16,8 +16,8 @@ mod voxels;
 
 use std::path::{Path, PathBuf};
 
-use super::input::stem;
-use super::reader::{Reader, Source};
+use super::input::{Input, stem};
+use super::reader::{Reader, Source, Start};
 use super::{LoadControl, LoadError, LoadOptions};
 use crate::data::attempt::{Attempt, Dimension, Offer, quoted};
 use crate::data::{Volume, plain};
@@ -38,6 +38,19 @@ pub(super) const READER: Reader = Reader {
     recognises: |start| is_dicom(start.bytes()),
     load,
 };
+
+/// The series of which a file is a slice; none where it is something else, or holds all of it.
+pub(in crate::data::load) fn series_of(path: &Path, control: &LoadControl) -> Option<String> {
+    let attempt = Attempt { what: WHAT, path };
+    let mut input = Input::open(attempt).ok()?;
+    let start = Start::of(&mut input).ok()?;
+    if !is_dicom(start.stored()) {
+        return None;
+    }
+    let (header, _) = Header::of(attempt, input, start.stored(), control).ok()?;
+    let is_slice = header.pixels.is_some() && header.frame_count() == 1;
+    Some(header.found.series).filter(|series| is_slice && !series.is_empty())
+}
 
 /// Loads a DICOM file, and where it is one slice of a series, those beside it.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {

@@ -40,7 +40,8 @@ pub(super) fn load(
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
-    let part = Part::asked(attempt, options.choice.component, shape.samples, shape.samples > 1)?;
+    let component = options.choice.component_among(shape.samples, shape.samples > 1);
+    let part = Part::asked(attempt, component, shape.samples, shape.samples > 1)?;
     let Some(first) = slices.first() else {
         return Err(attempt.bad_input(
             "Number of Frames",

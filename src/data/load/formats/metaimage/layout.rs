@@ -102,7 +102,7 @@ impl Storage {
         };
         // Nothing says what is a colour, but who writes three or four bytes means one.
         let is_color = number == Number::U8 && matches!(components, 3 | 4);
-        let part = Part::asked(attempt, choice.component, components, is_color)?;
+        let part = Part::asked(attempt, choice.component_among(components, is_color), components, is_color)?;
         let is_text = header.flag(&["BinaryData"]) == Some(false);
         let is_big = header.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]) == Some(true);
         // Numbers in text have no byte order: their bytes are made in ours.

@@ -76,7 +76,8 @@ fn read(
             "write its components as volumes of their own",
         ));
     }
-    let part = Part::asked(attempt, options.choice.component, components, number_type.is_color)?;
+    let component = options.choice.component_among(components, number_type.is_color);
+    let part = Part::asked(attempt, component, components, number_type.is_color)?;
     let stored = Stored { number: number_type.number, endian: header.endian, components, part };
     let dims = grid.dims;
     let extent = Extent::checked(attempt, "dim", dims, stored.voxel_type(), options.memory_budget_bytes)?;

@@ -115,7 +115,11 @@ fn chosen(
     // Programs that know no colours write them as vectors of bytes.
     let is_color = geometry.is_color || (number == Number::U8 && (3..=4).contains(&components));
     // Numbers of segments make nothing together: those of the first layer have names.
-    let component = options.choice.component.or(is_layered.then_some(0));
+    let component = if is_layered {
+        options.choice.layer_among(components).or(Some(0))
+    } else {
+        options.choice.component_among(components, is_color)
+    };
     let part = Part::asked(attempt, component, components, is_color)?;
     Ok((frame as u64, part))
 }

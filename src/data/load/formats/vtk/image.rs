@@ -167,7 +167,8 @@ pub(super) fn choose<P>(
         .collect();
     let array = arrays.swap_remove(attempt.chosen(&options.choice, Dimension::Array, offers)?);
     let components = array.components;
-    let part = Part::asked(attempt, options.choice.component, components, array.is_color)?;
+    let component = options.choice.component_among(components, array.is_color);
+    let part = Part::asked(attempt, component, components, array.is_color)?;
     // The byte order is said when they are read.
     let stored = Stored { number: array.number, endian: Endian::Little, components, part };
     let dims = grid.dims(array.of_cells);

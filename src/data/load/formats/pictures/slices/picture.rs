@@ -158,7 +158,8 @@ fn look_at_image(
         ColorType::Rgba16 => (Number::U16, 4),
         other => return Err(attempt.bad_input("data", format!("its colours are {other:?}"), HELP)),
     };
-    let part = Part::asked(attempt, options.choice.component, components, true)?;
+    let component = options.choice.component_among(components, true);
+    let part = Part::asked(attempt, component, components, true)?;
     // Decoders give numbers in the order of this machine.
     let endian = if cfg!(target_endian = "big") { Endian::Big } else { Endian::Little };
     let stored = Stored { number, endian, components, part };

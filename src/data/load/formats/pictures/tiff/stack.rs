@@ -196,9 +196,17 @@ fn page_of(attempt: Attempt<'_>, tiff: &Tiff, number: usize) -> Result<Page, Loa
     })
 }
 
+/// The component that the user has named. Channels are chosen as such.
+fn said_component(page: &Page, options: &LoadOptions) -> Option<usize> {
+    match page.meaning {
+        Meaning::Channels => options.choice.layer_among(page.samples),
+        _ => options.choice.component_among(page.samples, true),
+    }
+}
+
 /// The sample that is fetched alone, where the user has named a component.
 fn chosen_sample(page: &Page, options: &LoadOptions) -> Option<usize> {
-    options.choice.component.filter(|_| page.meaning != Meaning::Channels)
+    said_component(page, options).filter(|_| page.meaning != Meaning::Channels)
 }
 
 /// How the numbers of unpacked pages are stored.
@@ -215,7 +223,7 @@ pub(super) fn stored(
     let Some(number) = page.number() else {
         return Err(attempt.bad_input("first page", "its numbers are of a kind that is not read", HELP));
     };
-    let component = sample.or(options.choice.component).or(match page.meaning {
+    let component = sample.or(said_component(page, options)).or(match page.meaning {
         Meaning::Channels => Some(0),
         _ => None,
     });

@@ -1,25 +1,31 @@
 //! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
 
-use std::path::{Path, PathBuf};
+mod choosing;
+mod folders;
+mod looks;
+
+use std::path::Path;
 use std::sync::Arc;
 
 use eframe::egui;
 
-use super::first_lights::FirstLights;
-use super::history::{History, Step};
-use super::keep_balanced::KeepBalanced;
-use super::object::corrected::Corrected;
-use super::object::treat_as::Treated;
-use super::object::upright::Upright;
-use super::session::Session;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::windows::files::{self, Purpose};
-use crate::app::windows::foreign_path::Answer;
+use crate::app::shell::first_lights::FirstLights;
+use crate::app::shell::history::{History, Step};
+use crate::app::shell::keep_balanced::KeepBalanced;
+use crate::app::shell::object::corrected::Corrected;
+use crate::app::shell::object::treat_as::Treated;
+use crate::app::shell::object::upright::Upright;
+use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Known, Opened, Reading};
 use crate::app::{App, text};
-use crate::data::{Corrections, ValueRanges, Volume};
-use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, VolumeRecord, made_by};
+use crate::data::load::Choice;
+use crate::data::{Corrections, Volume};
+use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, made_by};
+
+use self::folders::Likeness;
+pub(in crate::app) use self::folders::Neighbour;
 
 /// What is opened when nothing is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -31,6 +37,10 @@ pub(in crate::app) enum PendingLook {
     Record(Box<Record>),
     /// Every setting, whatever the first look is.
     Settings(Box<Settings>),
+    /// The look as it is when the volume is there.
+    Current,
+    /// That look, as far as the volume is like the one before.
+    IfAlike,
 }
 
 impl App {
@@ -40,11 +50,33 @@ impl App {
         let source = source.as_ref();
         // It was said of another file.
         self.messages.dismiss();
-        if files::is_record(source) {
+        if files::is_record(source) && !files::is_volume(source) {
             self.open_record(source, ctx);
         } else if self.start_loading(source, Reading::default(), ctx) {
             self.pending = None;
         }
+    }
+
+    /// Opens one of several volumes of a file; what the command line says of which counts more than what was remembered.
+    pub(crate) fn open_chosen(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
+        if self.start_loading(source, self.reading_of(choice), ctx) {
+            self.pending = None;
+        }
+    }
+
+    /// Opens a file that was open before, as it was then.
+    pub(crate) fn open_again(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
+        if choice.is_empty() {
+            self.open(source, ctx);
+        } else {
+            self.open_chosen(source, choice, ctx);
+        }
+    }
+
+    /// How a volume is read that was chosen before.
+    fn reading_of(&self, choice: &Choice) -> Reading {
+        let is_said = choice.is_empty() || !self.loader.options().choice.is_empty();
+        Reading { choice: (!is_said).then(|| choice.clone()), ..Reading::default() }
     }
 
     /// Opens what was named at the start. A look that cannot be used leaves the default volume.
@@ -71,7 +103,7 @@ impl App {
         let Some(volume) = record.volume.clone() else { return };
         match self.place_of(&volume, &session) {
             VolumePlace::Builtin(name) => self.open(name, ctx),
-            VolumePlace::Beside(path) => self.open(path, ctx),
+            VolumePlace::Beside(path) => self.open_chosen(&path, &volume.choice, ctx),
             VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
             VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
         }
@@ -108,7 +140,8 @@ impl App {
             let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
             settings.opacity_unit = Length::Mm(unit);
         }
-        let (source, reading) = (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading });
+        let (source, reading) =
+            (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading.clone() });
         if self.start_loading(&source, reading, ctx) {
             self.pending = Some(PendingLook::Settings(Box::new(settings)));
         }
@@ -125,133 +158,6 @@ impl App {
         started.is_ok()
     }
 
-    /// Takes over the look of a session, a preset or a picture. If it is of another volume than the open one,
-    /// that is opened first; a preset is of any volume.
-    pub(crate) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
-        let record = match files::load_record(path) {
-            Ok(record) => record,
-            Err(err) => return self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-        };
-        let open = self.volume_record().map(|(_, content_id)| content_id);
-        match record.volume.clone() {
-            Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => match self.place_of(&volume, path)
-            {
-                VolumePlace::Builtin(name) => self.open_with(Path::new(&name), record, ctx),
-                VolumePlace::Beside(path) => self.open_with(&path, record, ctx),
-                VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
-                VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
-            },
-            Some(_) => drop(self.apply_record(&record, &self.value_ranges(), self.opened_id())),
-            None => self.use_look(record, ctx),
-        }
-    }
-
-    /// Where the volume of a record is; beside it is also what may be opened without a question.
-    fn place_of(&self, volume: &VolumeRecord, record: &Path) -> VolumePlace {
-        match volume.place(record.parent()) {
-            VolumePlace::Elsewhere(path) if self.is_trusted(record, &path) => VolumePlace::Beside(path),
-            place => place,
-        }
-    }
-
-    /// Whether a record may open a file that is not beside it: the program's own may, and others what the user has
-    /// opened before.
-    fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
-        let is_known = || self.memory.recent().iter().any(|known| known == volume);
-        self.trusts_paths || self.memory.is_own(record) || is_known()
-    }
-
-    /// Takes over a look for whichever volume is open, or is being opened.
-    fn use_look(&mut self, record: Record, ctx: &egui::Context) {
-        if self.loader.progress().is_some() {
-            // What is being opened is what the user will see it on.
-            self.pending = Some(PendingLook::Record(Box::new(record)));
-        } else if self.volume_record().is_none() {
-            self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
-        } else {
-            self.apply_record(&record, &self.value_ranges(), self.opened_id());
-        }
-    }
-
-    /// Opens a volume with a look.
-    fn open_with(&mut self, source: &Path, record: Record, ctx: &egui::Context) {
-        if self.start_loading(source, Reading::default(), ctx) {
-            self.pending = Some(PendingLook::Record(Box::new(record)));
-        }
-    }
-
-    /// Shows the question whether a look may open its volume, and does what the user says.
-    pub(crate) fn ask_for_volume(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
-        let Some(answer) = self.foreign_path.ui(ctx) else { return };
-        if answer == Answer::Choose {
-            // It stays open: choosing may be cancelled.
-            return self.files.ask(Purpose::VolumeOfLook, frame, ctx);
-        }
-        match self.foreign_path.take() {
-            Some((record, Some(path))) if answer == Answer::Open => self.open_with(&path, record, ctx),
-            Some((record, _)) => self.use_look(record, ctx),
-            None => {}
-        }
-    }
-
-    /// Opens what the user has chosen for the look that was asked about.
-    pub(crate) fn open_for_look(&mut self, path: &Path, ctx: &egui::Context) {
-        match self.foreign_path.take() {
-            Some((record, _)) => self.open_with(path, record, ctx),
-            None => self.open(path, ctx),
-        }
-    }
-
-    /// Takes over a look for the open volume, whatever volume it was made for.
-    pub(crate) fn load_settings(&mut self, path: &Path) {
-        match files::load_record(path) {
-            Ok(record) => {
-                let open = self.volume_record().map(|(_, content_id)| content_id);
-                if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
-                    self.messages.note(text::opening::OF_ANOTHER_VOLUME);
-                }
-                self.apply_record(&record, &self.value_ranges(), self.opened_id());
-            }
-            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-        }
-    }
-
-    /// The values of the open volume.
-    pub(crate) fn value_ranges(&self) -> ValueRanges {
-        self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
-    }
-
-    /// The settings with a record laid over them, for a volume with these values.
-    pub(crate) fn with_record(&mut self, record: &Record, ranges: &ValueRanges) -> Result<Settings, String> {
-        let (settings, warnings) = record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
-        if !warnings.is_empty() {
-            self.messages.note(warnings.join("; "));
-        }
-        Ok(settings)
-    }
-
-    /// Lays a record over the settings; whether that could be done. It corrects the volume, if that is the one that it is
-    /// of.
-    fn apply_record(&mut self, record: &Record, ranges: &ValueRanges, opened_id: Option<u64>) -> bool {
-        match self.with_record(record, ranges) {
-            Ok(settings) => {
-                self.settings = settings;
-                if let Some(by) = opened_id.and_then(|open| record.corrections_of(open)) {
-                    self.settings.volume = by;
-                    self.corrected.accept(by);
-                }
-                if record.names_balance() {
-                    self.keep_balanced.accept(&self.settings);
-                }
-                true
-            }
-            Err(err) => {
-                self.messages.error(text::opening::SETTINGS_NOT_LOADED, err);
-                false
-            }
-        }
-    }
-
     /// What can be undone of a volume that has just been opened: that it was corrected as the last time.
     fn history_of(&self, volume: &Volume) -> History {
         let by = self.settings.volume;
@@ -264,29 +170,8 @@ impl App {
     }
 
     /// Identifies the file that is open.
-    fn opened_id(&self) -> Option<u64> {
+    pub(super) fn opened_id(&self) -> Option<u64> {
         self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
-    }
-
-    /// The open volume, for records.
-    pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
-        Some((&self.volume.as_ref()?.source, self.opened_id()?))
-    }
-
-    /// Where Ctrl+S writes, if it may; else why not is said.
-    pub(crate) fn session_to_save(&mut self) -> Option<PathBuf> {
-        let session = self.session.as_ref()?;
-        let Some((path, why)) = session.protection() else { return Some(session.path().to_owned()) };
-        self.messages.note(text::memory::protected(path, why));
-        None
-    }
-
-    pub(crate) fn save_settings(&mut self, path: &Path) {
-        let volume = self.volume.as_ref().map(|volume| volume.source.as_path()).zip(self.opened_id());
-        match Session::save(&mut self.session, path, &self.settings, volume) {
-            Ok(()) => self.messages.note(text::opening::saved(path)),
-            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
-        }
     }
 
     /// Something was found before there was a window to say it.
@@ -299,7 +184,7 @@ impl App {
     /// Keeps the look as it is now, so that nothing is lost however this run ends; and says what could not be kept.
     pub(crate) fn keep_look(&mut self) {
         if let Some((volume, opened_id)) = self.volume.as_ref().zip(self.opened_id()) {
-            self.memory.keep(&self.settings, &volume.source, opened_id);
+            self.memory.keep(&self.settings, &volume.source, opened_id, &volume.held.choice());
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.show(picture);
             }
@@ -316,6 +201,18 @@ impl App {
         let Opened { source, reading, dataset, too_many, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
+        let likeness = match (&self.pending, &self.volume) {
+            (Some(PendingLook::IfAlike), Some(open)) => Likeness::of(open, &volume),
+            _ => Likeness::Nothing,
+        };
+        if let Some(PendingLook::IfAlike) = self.pending {
+            self.pending = (likeness == Likeness::Grid).then_some(PendingLook::Current);
+        }
+        // Another file has corrections of its own.
+        let by = if likeness == Likeness::Grid { settings.volume } else { self.settings.volume };
+        let is_current = matches!(self.pending, Some(PendingLook::Current));
+        let current = is_current.then(|| Settings { volume: by, ..self.settings.clone() });
+        let selected_light = if current.is_some() { self.selected_light } else { 0 };
         if let Some(before) = too_many {
             self.messages.note(text::opening::averaged(before, volume.dims()));
         }
@@ -326,7 +223,7 @@ impl App {
             self.messages.note(text::corrections::as_last_time(&volume.corrections().in_words()));
         }
         self.defaults = settings.clone();
-        let is_kept = self.keeps_look && self.volume.is_some();
+        let is_kept = (self.keeps_look || likeness == Likeness::Kind) && self.volume.is_some();
         if is_kept {
             // As it was, but for where the object is: that is another one, and may stand another way up.
             let mut before = std::mem::take(&mut self.settings);
@@ -356,11 +253,16 @@ impl App {
             }
             self.session = Some(session);
         }
-        self.memory.opened(&source);
+        self.memory.opened(&source, &volume.held().choice());
+        self.recent_pictures.forget();
         match self.pending.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {
                 self.settings = *settings;
+                self.keep_balanced.accept(&self.settings);
+            }
+            Some(PendingLook::Current | PendingLook::IfAlike) => {
+                self.settings = current.unwrap_or_default();
                 self.keep_balanced.accept(&self.settings);
             }
             Some(PendingLook::Record(record)) => {
@@ -384,7 +286,7 @@ impl App {
         self.viewport.set_scene(renderer, dataset);
         self.history = self.history_of(&volume);
         self.corrected = Corrected::new(stamp, self.settings.volume);
-        self.selected_light = 0;
+        self.selected_light = selected_light;
         let title = text::opening::title(self.volume_name().unwrap_or_default());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }

@@ -1,0 +1,162 @@
+//! In what the volumes of a file differ, for menus, panels and the window that shows them all.
+
+use crate::app::text;
+use crate::data::load::{Choice, Components, Dimension, Held, Several, Whole};
+
+/// In what volumes of a file differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Aspect {
+    /// Series, channels, time steps or arrays.
+    Of(Dimension),
+    /// What is shown of voxels of several numbers.
+    Component,
+}
+
+impl Aspect {
+    /// All of them, in the order in which people choose.
+    pub(crate) const ALL: [Self; 5] = [
+        Self::Of(Dimension::Series),
+        Self::Of(Dimension::Array),
+        Self::Of(Dimension::Channel),
+        Self::Of(Dimension::Frame),
+        Self::Component,
+    ];
+
+    /// Whether a volume is shown with the look of another that differs from it in this: both are of one thing, with the
+    /// same values.
+    pub(crate) fn keeps_look(self) -> bool {
+        matches!(self, Self::Of(Dimension::Frame) | Self::Component)
+    }
+
+    /// Its place among all.
+    pub(crate) fn index(self) -> usize {
+        Self::ALL.iter().position(|&other| other == self).unwrap_or_default()
+    }
+}
+
+/// What there is to choose from in an aspect.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Alternatives<'a> {
+    held: &'a Held,
+    of: Of<'a>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Of<'a> {
+    Several(&'a Several),
+    Components(Components),
+}
+
+impl<'a> Alternatives<'a> {
+    /// Those of a file; none where it holds but one.
+    pub(crate) fn of(held: &'a Held, aspect: Aspect) -> Option<Self> {
+        let of = match aspect {
+            Aspect::Of(dimension) => Of::Several(held.of(dimension)?),
+            Aspect::Component => Of::Components(held.components?),
+        };
+        Some(Self { held, of })
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        match self.of {
+            Of::Several(several) => several.offers.len(),
+            Of::Components(components) => components.count + first_component(components),
+        }
+    }
+
+    /// Which of them is shown.
+    pub(crate) fn at(&self) -> usize {
+        match self.of {
+            Of::Several(several) => several.at,
+            Of::Components(components) => {
+                components.shown.map_or(0, |shown| shown + first_component(components))
+            }
+        }
+    }
+
+    /// What one of them is called.
+    pub(crate) fn name(&self, at: usize) -> String {
+        match self.of {
+            Of::Several(several) => {
+                let name = several.offers.get(at).map_or("", |offer| offer.name.as_str());
+                if name.is_empty() { text::chooser::numbered(several.dimension, at) } else { name.to_owned() }
+            }
+            Of::Components(components) => match at.checked_sub(first_component(components)) {
+                None => text::chooser::whole(components.whole).to_owned(),
+                Some(component) => text::chooser::component(component, &components),
+            },
+        }
+    }
+
+    /// Its voxels along x, y, z, where they are known.
+    pub(crate) fn dims(&self, at: usize) -> Option<[u64; 3]> {
+        match self.of {
+            Of::Several(several) => several.offers.get(at).and_then(|offer| offer.dims),
+            Of::Components(_) => None,
+        }
+    }
+
+    /// What opens it: it differs from what is shown in this alone.
+    pub(crate) fn choice(&self, at: usize) -> Choice {
+        let shown = self.held.choice();
+        match self.of {
+            Of::Several(several) => match several.offers.get(at) {
+                Some(offer) => shown.with(several.dimension, &offer.key),
+                None => shown,
+            },
+            Of::Components(components) => {
+                Choice { component: at.checked_sub(first_component(components)), ..shown }
+            }
+        }
+    }
+
+    /// Whether colours are in the file that are not shown as such.
+    pub(crate) fn has_colors(&self) -> bool {
+        matches!(self.of, Of::Components(Components { is_color: true, whole: Whole::Luminance, .. }))
+    }
+}
+
+/// Where components begin in the list: after what all of them make, where they make something.
+fn first_component(components: Components) -> usize {
+    usize::from(components.whole != Whole::First)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::load::Offer;
+
+    fn held(whole: Whole, shown: Option<usize>) -> Held {
+        let offers = [Offer::numbered(0, "", [4; 3]), Offer::numbered(1, "GFP", [4; 3])].to_vec();
+        let several = vec![Several { dimension: Dimension::Channel, offers, at: 1, missed: None }];
+        Held { several, components: Some(Components { count: 3, is_color: false, whole, shown }) }
+    }
+
+    #[test]
+    fn each_alternative_opens_itself() {
+        let held = held(Whole::Magnitude, Some(2));
+        assert!(Alternatives::of(&held, Aspect::Of(Dimension::Frame)).is_none());
+        for aspect in [Aspect::Of(Dimension::Channel), Aspect::Component] {
+            let all = Alternatives::of(&held, aspect).unwrap();
+            assert_eq!(all.choice(all.at()), held.choice());
+            assert!((0..all.count()).all(|at| at == all.at() || all.choice(at) != held.choice()));
+            assert_eq!(all.choice(99).channel, Some(1), "there is no such one");
+        }
+        let channels = Alternatives::of(&held, Aspect::Of(Dimension::Channel)).unwrap();
+        assert_eq!((channels.name(0), channels.name(1)), ("Channel 1".to_owned(), "GFP".to_owned()));
+        let other = channels.choice(0);
+        assert_eq!((other.channel, other.component), (Some(0), Some(2)), "all else stays");
+    }
+
+    #[test]
+    fn what_components_make_is_offered_where_they_make_something() {
+        let vectors = held(Whole::Magnitude, None);
+        let all = Alternatives::of(&vectors, Aspect::Component).unwrap();
+        assert_eq!((all.count(), all.at(), all.choice(0).component), (4, 0, None));
+        assert_eq!(all.choice(1).component, Some(0));
+        let layers = held(Whole::First, None);
+        let all = Alternatives::of(&layers, Aspect::Component).unwrap();
+        assert_eq!((all.count(), all.at(), all.choice(0).component), (3, 0, Some(0)));
+    }
+}

@@ -1,0 +1,105 @@
+//! Small pictures of files that were opened: of each what its look showed last. A file for each, in a folder of their own.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
+
+use super::recent::{RecentFile, text_of};
+use super::{is_builtin, thumbnail};
+use crate::export;
+
+/// The folder, beside the list.
+const FOLDER: &str = "recent";
+
+/// Names that are looked at in it: far more than are kept.
+const MOST_NAMES: usize = 300;
+
+/// Where the picture of a file is: by a number that is made from all of its path.
+fn picture_of(folder: &Path, file: &Path) -> PathBuf {
+    // FNV-1a of 64 bits (<https://datatracker.ietf.org/doc/html/rfc9923>): the same for every version.
+    let number = text_of(file)
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+    folder.join(FOLDER).join(format!("{number:016x}.png"))
+}
+
+/// Keeps what a look of a file shows. Built-in volumes are in no list.
+pub(super) fn write(folder: &Path, file: &Path, picture: &ColorImage) -> Result<(), String> {
+    if is_builtin(file) {
+        return Ok(());
+    }
+    export::make_folder(&folder.join(FOLDER)).map_err(|err| err.to_string())?;
+    let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+    thumbnail::write(picture, &picture_of(folder, &whole))
+}
+
+/// Removes pictures of files that are in the list no more.
+pub(super) fn tidy(folder: &Path, listed: &[RecentFile]) {
+    let kept: Vec<PathBuf> = listed.iter().map(|file| picture_of(folder, &file.path)).collect();
+    let names = std::fs::read_dir(folder.join(FOLDER)).into_iter().flatten().flatten();
+    for path in names.take(MOST_NAMES).map(|entry| entry.path()) {
+        let is_ours = path.extension().is_some_and(|ending| ending == "png");
+        if is_ours && !kept.contains(&path) {
+            export::remove(&path);
+        }
+    }
+}
+
+/// Pictures for the menu, read when it is first opened after a file was.
+#[derive(Default)]
+pub(crate) struct RecentPictures {
+    folder: Option<PathBuf>,
+    read: Vec<(PathBuf, Option<TextureHandle>)>,
+}
+
+impl RecentPictures {
+    /// Those that are kept in a folder.
+    pub(super) fn of(folder: &Path) -> Self {
+        Self { folder: Some(folder.to_owned()), read: Vec::new() }
+    }
+
+    /// Reads them again when they are next asked for: there are others.
+    pub(crate) fn forget(&mut self) {
+        self.read.clear();
+    }
+
+    /// The picture of a file, if there is one.
+    pub(crate) fn get(&mut self, file: &Path, ctx: &egui::Context) -> Option<TextureHandle> {
+        let folder = self.folder.as_ref()?;
+        if let Some((_, known)) = self.read.iter().find(|(known, _)| known == file) {
+            return known.clone();
+        }
+        let picture = thumbnail::read(&picture_of(folder, file))
+            .map(|picture| ctx.load_texture("recent file", Arc::new(picture), TextureOptions::LINEAR));
+        self.read.push((file.to_owned(), picture.clone()));
+        picture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::load::Choice;
+    use egui::Color32;
+
+    #[test]
+    fn pictures_belong_to_their_files_and_go_with_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let (a, b) = (Path::new("/data/a.nrrd"), Path::new("/data/b.nrrd"));
+        write(folder.path(), a, &ColorImage::filled([4, 3], Color32::RED)).unwrap();
+        write(folder.path(), b, &ColorImage::filled([6, 3], Color32::BLUE)).unwrap();
+        write(folder.path(), Path::new("builtin:chair"), &ColorImage::filled([9, 9], Color32::RED)).unwrap();
+        let ctx = egui::Context::default();
+        let mut pictures = RecentPictures::of(folder.path());
+        assert_eq!(pictures.get(a, &ctx).unwrap().size(), [4, 3]);
+        assert_eq!(pictures.get(b, &ctx).unwrap().size(), [6, 3]);
+        assert!(pictures.get(Path::new("/data/c.nrrd"), &ctx).is_none());
+        let listed = [RecentFile { path: b.to_owned(), choice: Choice::default() }];
+        tidy(folder.path(), &listed);
+        assert!(pictures.get(a, &ctx).is_some(), "what was read stays until it is forgotten");
+        pictures.forget();
+        assert!(pictures.get(a, &ctx).is_none() && pictures.get(b, &ctx).is_some());
+        assert!(RecentPictures::default().get(b, &ctx).is_none(), "nothing is remembered");
+    }
+}

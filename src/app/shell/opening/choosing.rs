@@ -1,0 +1,48 @@
+//! Another volume of the file that is open.
+
+use eframe::egui;
+
+use super::PendingLook;
+use crate::app::common::aspect::{Alternatives, Aspect};
+use crate::app::worker::loader::Reading;
+use crate::app::{App, text};
+use crate::data::load::Choice;
+
+impl App {
+    /// Shows what there is to choose from.
+    pub(crate) fn choose(&mut self, aspect: Aspect) {
+        let held = self.volume.as_ref().map(|volume| &volume.held);
+        match held.and_then(|held| Alternatives::of(held, aspect)) {
+            Some(all) => self.chooser.open(aspect, &all),
+            None => self.messages.note(text::chooser::none(aspect)),
+        }
+    }
+
+    /// Opens the volume after the one that is shown, or before it.
+    pub(crate) fn step_choice(&mut self, aspect: Aspect, is_forward: bool, ctx: &egui::Context) {
+        let held = self.volume.as_ref().map(|volume| &volume.held);
+        let Some(all) = held.and_then(|held| Alternatives::of(held, aspect)) else {
+            return self.messages.note(text::chooser::none(aspect));
+        };
+        let next = if is_forward { Some(all.at() + 1) } else { all.at().checked_sub(1) };
+        if let Some(next) = next.filter(|&next| next < all.count()) {
+            let choice = all.choice(next);
+            self.take_choice(&choice, self.chooser.keeps_look(aspect), ctx);
+        }
+    }
+
+    /// Opens another volume of the open file; what is shown stays until it is there, and the look beyond that if wanted.
+    pub(crate) fn take_choice(&mut self, choice: &Choice, keeps_look: bool, ctx: &egui::Context) {
+        let Some(volume) = &self.volume else { return };
+        if volume.held.choice() == *choice {
+            // What was on its way is not wanted any more.
+            self.loader.cancel();
+            return;
+        }
+        let source = volume.source.clone();
+        let reading = Reading { choice: Some(choice.clone()), ..volume.reading.clone() };
+        if self.start_loading(&source, reading, ctx) {
+            self.pending = keeps_look.then_some(PendingLook::Current);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! What the user brings to the window at once, and what lies beside the open file.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui;
+
+use super::PendingLook;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::windows::files;
+use crate::app::worker::loader::Reading;
+use crate::app::worker::task::Work;
+use crate::app::{App, text};
+use crate::data::Volume;
+use crate::data::load::{LoadControl, neighbour};
+
+/// Endings of files that may be slices of one volume; DICOM files often have none.
+const SLICES: [&str; 9] = ["dcm", "dicom", "ima", "png", "jpg", "jpeg", "bmp", "tif", "tiff"];
+
+/// The search for the next file.
+#[derive(Debug)]
+pub(in crate::app) struct Neighbour {
+    control: Arc<LoadControl>,
+    work: Work<Option<PathBuf>>,
+    is_forward: bool,
+}
+
+impl Drop for Neighbour {
+    fn drop(&mut self) {
+        self.control.cancel();
+    }
+}
+
+/// How much a volume has in common with the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Likeness {
+    /// The same kind of data in the same grid: even the view is worth keeping.
+    Grid,
+    /// The same kind of data.
+    Kind,
+    /// Nothing that would be seen well with the same look.
+    Nothing,
+}
+
+impl Likeness {
+    /// How alike the next volume is to the open one. Looks refer to values: where those have another range, one would show
+    /// nothing of the other.
+    pub(super) fn of(open: &VolumeFacts, next: &Volume) -> Self {
+        let is_same_kind = std::mem::discriminant(&open.kind) == std::mem::discriminant(&next.kind().kind);
+        let (a, b) = (open.ranges.robust, next.ranges().robust);
+        let shared = a.high.min(b.high) - a.low.max(b.low);
+        // Half of the longer range: as scans of one protocol have in common, and those of two seldom.
+        let are_same_values = 2.0 * shared >= a.span().max(b.span());
+        let spacing: [f64; 3] = next.spacing_mm().into();
+        match is_same_kind && are_same_values {
+            false => Self::Nothing,
+            true if open.dims == next.dims() && open.spacing_mm == spacing => Self::Grid,
+            true => Self::Kind,
+        }
+    }
+}
+
+impl App {
+    /// Opens what was dropped on the window: a file or a folder. Of several files those of one folder that are slices are
+    /// opened as what that holds, and else the first.
+    pub(crate) fn open_dropped(&mut self, paths: &[PathBuf], ctx: &egui::Context) {
+        let Some(first) = paths.first() else { return };
+        if let Some(folder) = slices_of(paths) {
+            self.open(folder, ctx);
+            self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
+            return;
+        }
+        self.open(first, ctx);
+        if paths.len() > 1 {
+            self.messages.note(text::opening::first_of_dropped(paths.len(), first));
+        }
+    }
+
+    /// Looks for the file after the open one in its folder, or before it.
+    pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
+        // Whoever presses the key again goes on from what is being opened.
+        let opening = self.loader.progress().map(|progress| progress.source.to_owned());
+        let from = opening.or_else(|| self.volume.as_ref().map(|volume| volume.source.clone()));
+        let Some(from) = from.filter(|from| from.exists()) else {
+            return self.messages.note(text::opening::NO_FOLDER);
+        };
+        let control = Arc::new(LoadControl::new());
+        let watched = Arc::clone(&control);
+        // Pictures that carry a look are no volumes.
+        let task = move || neighbour(&from, is_forward, |path| !files::carries_look(path), &watched);
+        match Work::start("next-file", ctx, task) {
+            Ok(work) => self.neighbour = Some(Neighbour { control, work, is_forward }),
+            Err(err) => self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
+        }
+    }
+
+    /// Opens what was found.
+    pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
+        let Some(neighbour) = &self.neighbour else { return };
+        let Some(found) = neighbour.work.take() else { return };
+        let is_forward = neighbour.is_forward;
+        self.neighbour = None;
+        match found {
+            Ok(Some(path)) => {
+                if self.start_loading(&path, Reading::default(), ctx) {
+                    self.pending = Some(PendingLook::IfAlike);
+                }
+            }
+            Ok(None) => self.messages.note(text::opening::no_neighbour(is_forward)),
+            Err(panic) => self.messages.error(text::opening::NOT_OPENED, panic),
+        }
+    }
+}
+
+/// The folder of files that may be slices of one volume: all of one kind, in one folder.
+fn slices_of(paths: &[PathBuf]) -> Option<&Path> {
+    let (first, others) = paths.split_first()?;
+    let ending = |path: &Path| path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let is_slice = ending(first).is_none_or(|ending| SLICES.contains(&ending.as_str()));
+    let is_like = |other: &PathBuf| ending(other) == ending(first) && other.parent() == first.parent();
+    let are_slices = !others.is_empty() && is_slice && others.iter().all(is_like);
+    are_slices.then(|| first.parent()).flatten().filter(|_| paths.iter().all(|path| path.is_file()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Dataset, Samples};
+    use glam::DVec3;
+
+    #[test]
+    fn slices_are_of_one_kind_and_in_one_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = |names: &[&str]| -> Vec<PathBuf> {
+            names
+                .iter()
+                .map(|name| {
+                    let path = folder.path().join(name);
+                    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+                    std::fs::write(&path, "x").unwrap();
+                    path
+                })
+                .collect()
+        };
+        assert_eq!(slices_of(&files(&["1.dcm", "2.DCM"])), Some(folder.path()));
+        assert_eq!(slices_of(&files(&["IM1", "IM2"])), Some(folder.path()));
+        for others in [&["1.dcm"][..], &["1.dcm", "2.png"], &["a.nrrd", "b.nrrd"], &["1.dcm", "s/2.dcm"]] {
+            assert_eq!(slices_of(&files(others)), None, "{others:?}");
+        }
+    }
+
+    #[test]
+    fn looks_are_kept_for_what_is_alike() {
+        let volume = |dims: [usize; 3], high: u8| {
+            let values = (0..dims.iter().product::<usize>()).map(|at| (at % usize::from(high)) as u8);
+            Volume::with_spacing("t", dims, DVec3::ONE, Samples::U8(values.collect())).unwrap()
+        };
+        let open = VolumeFacts::of("a".into(), Reading::default(), &Dataset::new(volume([8, 8, 8], 200)));
+        assert_eq!(Likeness::of(&open, &volume([8, 8, 8], 190)), Likeness::Grid);
+        assert_eq!(Likeness::of(&open, &volume([9, 8, 8], 190)), Likeness::Kind);
+        assert_eq!(Likeness::of(&open, &volume([8, 8, 8], 60)), Likeness::Nothing, "other values");
+    }
+}

@@ -1,0 +1,123 @@
+//! The window that shows the volumes of a file, and the rows that open it.
+
+use crate::app::common::aspect::Aspect;
+use crate::app::text::{Named, named};
+use crate::data::load::{Components, Dimension, Whole};
+
+/// The row of an aspect, with what it means.
+pub(crate) fn row(aspect: Aspect) -> Named {
+    match aspect {
+        Aspect::Of(Dimension::Series) => {
+            named("Series", "The scans that the folder or the file holds: one at a time is shown")
+        }
+        Aspect::Of(Dimension::Array) => {
+            named("Array", "The arrays that the file holds: one at a time is shown")
+        }
+        Aspect::Of(Dimension::Channel) => {
+            named("Channel", "What several dyes or detectors have seen at once: one at a time is shown")
+        }
+        Aspect::Of(Dimension::Frame) => {
+            named("Time step", "The moments that the file holds: one at a time is shown")
+        }
+        Aspect::Component => {
+            named("Component", "What is shown of voxels of several numbers: one of them, or what all make")
+        }
+    }
+}
+
+/// The title of the window.
+pub(crate) fn title(aspect: Aspect) -> &'static str {
+    match aspect {
+        Aspect::Of(Dimension::Series) => "Choose a series",
+        Aspect::Of(Dimension::Array) => "Choose an array",
+        Aspect::Of(Dimension::Channel) => "Choose a channel",
+        Aspect::Of(Dimension::Frame) => "Choose a time step",
+        Aspect::Component => "Choose a component",
+    }
+}
+
+/// The command that opens it.
+pub(crate) fn command(aspect: Aspect) -> String {
+    format!("{}…", title(aspect))
+}
+
+/// The command that takes the next one, or the one before.
+pub(crate) fn step(aspect: Aspect, is_forward: bool) -> String {
+    let what = row(aspect).name.to_lowercase();
+    if is_forward { format!("Next {what}") } else { format!("Previous {what}") }
+}
+
+/// The buttons that take them.
+pub(crate) const BACK: &str = "‹";
+pub(crate) const FORWARD: &str = "›";
+
+/// The open file holds but one.
+pub(crate) fn none(aspect: Aspect) -> String {
+    let what = match aspect {
+        Aspect::Of(dimension) => dimension.plural(),
+        Aspect::Component => "components",
+    };
+    format!("The open file does not hold several {what}")
+}
+
+/// A volume without a name of its own, from 0.
+pub(crate) fn numbered(dimension: Dimension, at: usize) -> String {
+    format!("{} {}", row(Aspect::Of(dimension)).name, at + 1)
+}
+
+/// What all components make.
+pub(crate) fn whole(whole: Whole) -> &'static str {
+    match whole {
+        Whole::Magnitude => "Magnitude",
+        Whole::Luminance => "Luminance",
+        Whole::First => "First",
+    }
+}
+
+/// A component, from 0.
+pub(crate) fn component(at: usize, of: &Components) -> String {
+    const COLORS: [&str; 4] = ["Red", "Green", "Blue", "Opacity"];
+    const GREYS: [&str; 2] = ["Grey", "Opacity"];
+    let names: &[&str] = match (of.is_color, of.count) {
+        (true, 3 | 4) => &COLORS,
+        (true, 2) => &GREYS,
+        _ => &[],
+    };
+    names.get(at).map_or_else(|| format!("Component {}", at + 1), |name| (*name).to_owned())
+}
+
+/// Which of how many is shown, and what it is called.
+pub(crate) fn present(at: usize, count: usize, name: &str) -> String {
+    format!("{} of {count} · {name}", at + 1)
+}
+
+/// What is shown, beside the name of the file: a component by its name, all else by its number.
+pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: &str) -> String {
+    match aspect {
+        Aspect::Component => name.to_owned(),
+        Aspect::Of(_) => format!("{} {}", row(aspect).name, place(at, count)),
+    }
+}
+
+/// Which it is of how many.
+pub(crate) fn place(at: usize, count: usize) -> String {
+    format!("{} of {count}", at + 1)
+}
+
+/// Voxels along x, y and z.
+pub(crate) fn size([x, y, z]: [u64; 3]) -> String {
+    format!("{x} × {y} × {z} voxels")
+}
+
+/// The one that is shown already.
+pub(crate) const SHOWN: &str = "shown";
+
+/// Of colours.
+pub(crate) const NO_COLORS: &str = "Colours are not shown yet: choose their luminance or one of them";
+
+/// Below the list.
+pub(crate) const KEYS: &str = "Arrow keys and Enter choose, Esc closes";
+pub(crate) const KEEP_LOOK: Named = named(
+    "Keep the look",
+    "View, lights and transfer function stay as they are; otherwise a first look is made for what is chosen",
+);

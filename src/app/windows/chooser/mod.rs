@@ -1,0 +1,198 @@
+//! The window in which one of several volumes of a file is chosen: names, sizes and a small picture of each.
+
+mod previews;
+
+use std::ops::Range;
+
+use eframe::egui::{self, Align2, Key, Modifiers, Rect, Sense, TextStyle, Ui, Vec2, pos2, vec2};
+
+use self::previews::{Preview, Previews};
+use crate::app::common::aspect::{Alternatives, Aspect};
+use crate::app::common::commands::Command;
+use crate::app::common::shortcuts::is_typing;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text;
+use crate::data::load::LoadOptions;
+
+/// Points of a picture's longer edge.
+const PICTURE: f32 = 48.0;
+/// Points between a picture and what is around it.
+const MARGIN: f32 = 4.0;
+/// Points of a row.
+const ROW: f32 = PICTURE + 2.0 * MARGIN;
+/// Points of the list's width: names of series take two dozen words at most.
+const WIDTH: f32 = 360.0;
+/// Rows that are shown at once.
+const ROWS: f32 = 7.0;
+
+/// The window.
+#[derive(Default)]
+pub(crate) struct Chooser {
+    open: Option<Aspect>,
+    selected: usize,
+    /// The selected row is to be scrolled to.
+    scrolls: bool,
+    /// What the user has said about looks, for each aspect.
+    keeps_look: [Option<bool>; Aspect::ALL.len()],
+    previews: Previews,
+}
+
+impl std::fmt::Debug for Chooser {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Chooser").field("open", &self.open).finish_non_exhaustive()
+    }
+}
+
+impl Chooser {
+    /// Shows what there is in an aspect.
+    pub(crate) fn open(&mut self, aspect: Aspect, alternatives: &Alternatives<'_>) {
+        (self.open, self.selected, self.scrolls) = (Some(aspect), alternatives.at(), true);
+    }
+
+    /// Whether the look stays when another volume is chosen.
+    pub(crate) fn keeps_look(&self, aspect: Aspect) -> bool {
+        self.keeps_look[aspect.index()].unwrap_or_else(|| aspect.keeps_look())
+    }
+
+    fn close(&mut self) {
+        self.open = None;
+        self.previews.rest();
+    }
+
+    /// Shows the window, and adds what was chosen. Before anything else takes the arrow keys.
+    pub(crate) fn ui(
+        &mut self,
+        ctx: &egui::Context,
+        volume: Option<&VolumeFacts>,
+        options: &LoadOptions,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(aspect) = self.open else { return };
+        let Some(volume) = volume else { return self.close() };
+        let Some(all) = Alternatives::of(&volume.held, aspect) else { return self.close() };
+        let (enter, escape) = self.keys(ctx, all.count());
+        let mut chosen = enter.then_some(self.selected);
+        let mut open = !escape;
+        let window = egui::Window::new(text::chooser::title(aspect)).id(egui::Id::unique("chooser"));
+        let mut visible = 0..0;
+        window.open(&mut open).resizable(false).collapsible(false).default_pos([60.0, 60.0]).show(
+            ctx,
+            |ui| {
+                ui.set_width(WIDTH);
+                if all.has_colors() {
+                    ui.label(text::chooser::NO_COLORS);
+                }
+                visible = self.list(ui, &all, &mut chosen);
+                ui.separator();
+                let mut keeps = self.keeps_look(aspect);
+                let tick = ui.checkbox(&mut keeps, text::chooser::KEEP_LOOK.name);
+                if tick.on_hover_text(text::chooser::KEEP_LOOK.tip).changed() {
+                    self.keeps_look[aspect.index()] = Some(keeps);
+                }
+                ui.weak(text::chooser::KEYS);
+            },
+        );
+        let wanted: Vec<_> = visible.map(|at| all.choice(at)).collect();
+        self.previews.look_at(&volume.source);
+        self.previews.make(&wanted, options, ctx);
+        if let Some(at) = chosen {
+            self.selected = at;
+            commands.push(Command::TakeChoice(Box::new(all.choice(at)), self.keeps_look(aspect)));
+        }
+        if !open {
+            self.close();
+        }
+    }
+
+    /// Moves through the list; whether Enter and Escape were pressed.
+    fn keys(&mut self, ctx: &egui::Context, count: usize) -> (bool, bool) {
+        let last = count.saturating_sub(1);
+        self.selected = self.selected.min(last);
+        // A button that has the focus has its own Enter.
+        if is_typing(ctx) || ctx.memory(egui::Memory::focused).is_some() {
+            return (false, false);
+        }
+        let pressed = |key| ctx.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+        let (down, up) = (pressed(Key::ArrowDown), pressed(Key::ArrowUp));
+        let (home, end) = (pressed(Key::Home), pressed(Key::End));
+        let before = self.selected;
+        self.selected = (self.selected + down).saturating_sub(up).min(last);
+        if home + end > 0 {
+            self.selected = if end > 0 { last } else { 0 };
+        }
+        self.scrolls |= self.selected != before;
+        (pressed(Key::Enter) > 0, pressed(Key::Escape) > 0)
+    }
+
+    /// The list; the rows that are seen.
+    fn list(&mut self, ui: &mut Ui, all: &Alternatives<'_>, chosen: &mut Option<usize>) -> Range<usize> {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let height = (all.count() as f32).min(ROWS) * ROW;
+        let mut area = egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
+        if std::mem::take(&mut self.scrolls) {
+            let middle = self.selected as f32 * ROW - (height - ROW) / 2.0;
+            area =
+                area.vertical_scroll_offset(middle.clamp(0.0, (all.count() as f32 * ROW - height).max(0.0)));
+        }
+        let mut seen = 0..0;
+        area.show_rows(ui, ROW, all.count(), |ui, rows| {
+            seen = rows.clone();
+            for at in rows {
+                if self.row(ui, all, at) {
+                    *chosen = Some(at);
+                }
+            }
+        });
+        seen
+    }
+
+    /// A row; whether it was clicked.
+    fn row(&self, ui: &mut Ui, all: &Alternatives<'_>, at: usize) -> bool {
+        let (rect, row) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+        let (name, is_shown) = (all.name(at), at == all.at());
+        row.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_shown, &name));
+        let visuals = ui.style().interact_selectable(&row, at == self.selected);
+        let painter = ui.painter();
+        if at == self.selected || row.hovered() {
+            painter.rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+        }
+        let frame = Rect::from_min_size(rect.min + Vec2::splat(MARGIN), Vec2::splat(PICTURE));
+        painter.rect_filled(frame, 0.0, theme::EMPTY_CANVAS);
+        match self.previews.get(&all.choice(at)) {
+            Preview::Picture(picture) => {
+                let size = picture.size_vec2();
+                let fitted = Rect::from_center_size(frame.center(), size * (PICTURE / size.max_elem()));
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                painter.image(picture.id(), fitted, whole, egui::Color32::WHITE);
+            }
+            Preview::Never => {}
+            Preview::NotYet => egui::Spinner::new().paint_at(ui, frame.shrink(PICTURE / 3.0)),
+        }
+        let left = frame.right() + 2.0 * MARGIN;
+        let right = if is_shown {
+            let is_marked = at == self.selected;
+            let color = if is_marked { visuals.text_color() } else { theme::accent(ui.visuals()) };
+            let place = pos2(rect.right() - 2.0 * MARGIN, rect.center().y);
+            let font = TextStyle::Small.resolve(ui.style());
+            painter.text(place, Align2::RIGHT_CENTER, text::chooser::SHOWN, font, color).left()
+        } else {
+            rect.right()
+        };
+        let mut facts = vec![text::chooser::place(at, all.count())];
+        facts.extend(all.dims(at).map(text::chooser::size));
+        let lines = [
+            (name.as_str(), TextStyle::Body, visuals.text_color(), Align2::LEFT_BOTTOM),
+            (&facts.join(" · "), TextStyle::Small, ui.visuals().weak_text_color(), Align2::LEFT_TOP),
+        ];
+        for (line, style, color, align) in lines {
+            let font = style.resolve(ui.style());
+            let mut job = egui::text::LayoutJob::simple_singleline(line.to_owned(), font, color);
+            job.wrap = egui::text::TextWrapping::truncate_at_width(right - left - 2.0 * MARGIN);
+            let laid = painter.layout_job(job);
+            let place = align.anchor_size(pos2(left, rect.center().y), laid.size());
+            painter.galley(place.min, laid, color);
+        }
+        row.on_hover_text(&name).clicked()
+    }
+}

@@ -1,0 +1,180 @@
+//! Small pictures of the volumes of a file: the middle slice of each, made one after the other beside the window.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
+use image::RgbImage;
+use image::imageops::{self, FilterType};
+
+use crate::app::windows::slices::image::{Grey, lookup, slice};
+use crate::app::worker::task::Work;
+use crate::data::load::{Choice, LoadControl, LoadOptions};
+use crate::data::{Volume, open};
+
+/// Pixels of the longer edge: twice the points, for dense screens.
+const EDGE: f64 = 96.0;
+
+/// Pictures that are kept: 10 MB on the graphics adapter.
+const MOST: usize = 256;
+
+/// Bytes of the largest volume that is read for a picture: seconds from a slow disk, and little beside the volume that is
+/// open.
+const LARGEST_BYTES: u64 = 256 << 20;
+
+/// Pictures that were made, and the one that is being made.
+#[derive(Default)]
+pub(super) struct Previews {
+    /// What they are of.
+    source: PathBuf,
+    /// The latest last; nothing in place of a picture that could not be made.
+    made: Vec<(Choice, Option<TextureHandle>)>,
+    making: Option<Making>,
+}
+
+/// What is known of a picture.
+#[derive(Clone, Copy)]
+pub(super) enum Preview<'a> {
+    /// It waits for others.
+    NotYet,
+    /// It could not be made.
+    Never,
+    /// It is there.
+    Picture(&'a TextureHandle),
+}
+
+/// It ends when nobody wants it any more.
+struct Making {
+    choice: Choice,
+    control: Arc<LoadControl>,
+    work: Work<Option<ColorImage>>,
+}
+
+impl Drop for Making {
+    fn drop(&mut self) {
+        self.control.cancel();
+    }
+}
+
+impl Previews {
+    /// Forgets the pictures of another file.
+    pub(super) fn look_at(&mut self, source: &std::path::Path) {
+        if self.source != source {
+            *self = Self { source: source.to_owned(), ..Self::default() };
+        }
+    }
+
+    /// Stops to make pictures; those that there are stay.
+    pub(super) fn rest(&mut self) {
+        self.making = None;
+    }
+
+    /// The picture of a volume, as far as it is known.
+    pub(super) fn get(&self, choice: &Choice) -> Preview<'_> {
+        match self.made.iter().find(|(known, _)| known == choice) {
+            None => Preview::NotYet,
+            Some((_, None)) => Preview::Never,
+            Some((_, Some(picture))) => Preview::Picture(picture),
+        }
+    }
+
+    fn is_known(&self, choice: &Choice) -> bool {
+        !matches!(self.get(choice), Preview::NotYet)
+    }
+
+    /// Takes what has been made, and makes the picture of the first volume in a list that has none.
+    pub(super) fn make(&mut self, wanted: &[Choice], options: &LoadOptions, ctx: &egui::Context) {
+        if let Some(made) = self.making.as_ref().and_then(|making| making.work.take())
+            && let Some(making) = self.making.take()
+        {
+            let picture = made.ok().flatten();
+            let texture = picture.map(|picture| ctx.load_texture("preview", picture, TextureOptions::LINEAR));
+            if self.made.len() == MOST {
+                self.made.remove(0);
+            }
+            self.made.push((making.choice.clone(), texture));
+        }
+        // What has been scrolled away is not waited for.
+        if self.making.as_ref().is_some_and(|making| !wanted.contains(&making.choice)) {
+            self.making = None;
+        }
+        let Some(choice) = wanted.iter().find(|choice| !self.is_known(choice)) else { return };
+        if self.making.is_some() {
+            return;
+        }
+        let control = Arc::new(LoadControl::new());
+        let memory_budget_bytes = options.memory_budget_bytes.min(LARGEST_BYTES);
+        let options = LoadOptions { choice: choice.clone(), memory_budget_bytes, ..options.clone() };
+        let (source, watched) = (self.source.clone(), Arc::clone(&control));
+        let task = move || open(&source, &options, &watched).ok().and_then(|volume| middle(&volume));
+        // Without a thread there is no picture.
+        if let Ok(work) = Work::start("preview", ctx, task) {
+            self.making = Some(Making { choice: choice.clone(), control, work });
+        }
+    }
+}
+
+/// The middle slice in greys, as small as it is shown and with its proportions.
+fn middle(volume: &Volume) -> Option<ColorImage> {
+    let shown = volume.shown_range();
+    let table = lookup(volume, Grey { black: shown.low, white: shown.high }, None);
+    let dims = volume.dims();
+    let whole = slice(volume, 2, dims[2] / 2, &table);
+    let bytes = whole.pixels.iter().flat_map(|color| [color.r(), color.g(), color.b()]).collect();
+    let [width, height] = [dims[0], dims[1]].map(|n| u32::try_from(n).ok());
+    let whole = RgbImage::from_raw(width?, height?, bytes)?;
+    let spacing = volume.spacing_mm();
+    let edges = [dims[0] as f64 * spacing.x, dims[1] as f64 * spacing.y];
+    let longest = edges[0].max(edges[1]);
+    let [width, height] = edges.map(|edge| (edge / longest * EDGE).round().max(1.0) as u32);
+    let small = imageops::resize(&whole, width, height, FilterType::Triangle);
+    Some(ColorImage::from_rgb([width as usize, height as usize], &small))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Samples;
+    use glam::DVec3;
+
+    #[test]
+    fn pictures_show_the_middle_in_its_proportions() {
+        // Bright in the middle slice alone; pixels twice as high as wide.
+        let values = (0..3 * 4 * 4).map(|at| if at / 16 == 1 { 9 } else { 0 }).collect();
+        let spacing = DVec3::new(1.0, 2.0, 1.0);
+        let volume = Volume::with_spacing("t", [4, 4, 3], spacing, Samples::U8(values)).unwrap();
+        let picture = middle(&volume).unwrap();
+        assert_eq!(picture.size, [48, 96]);
+        assert!(picture.pixels.iter().all(|pixel| pixel.r() == 255), "{:?}", picture.pixels[0]);
+    }
+
+    #[test]
+    fn one_picture_is_made_at_a_time_and_none_after_the_window_is_closed() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.npy");
+        let header = "{'descr': '|u1', 'fortran_order': False, 'shape': (3, 2, 2, 2), }\n";
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
+        bytes.extend(header.as_bytes());
+        bytes.extend((0..24).map(|at| at * 10));
+        std::fs::write(&file, bytes).unwrap();
+        let ctx = egui::Context::default();
+        let steps: Vec<_> = (0..4).map(|step| Choice { frame: Some(step), ..Choice::default() }).collect();
+        let mut previews = Previews::default();
+        previews.look_at(&file);
+        let start = std::time::Instant::now();
+        while !steps.iter().all(|step| previews.is_known(step)) {
+            previews.make(&steps, &LoadOptions::default(), &ctx);
+            assert!(previews.made.len() <= 4 && start.elapsed().as_secs() < 60);
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        assert!(matches!(previews.get(&steps[2]), Preview::Picture(_)));
+        assert!(matches!(previews.get(&steps[3]), Preview::Never), "there is no such time step");
+        previews.make(&[Choice::default()], &LoadOptions::default(), &ctx);
+        let control = Arc::clone(&previews.making.as_ref().unwrap().control);
+        previews.rest();
+        assert!(control.is_cancelled() && previews.is_known(&steps[0]), "what there is stays");
+        previews.look_at(std::path::Path::new("other"));
+        assert!(!previews.is_known(&steps[0]));
+    }
+}

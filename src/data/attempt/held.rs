@@ -1,0 +1,100 @@
+//! What a file holds beside the one volume that is opened of it, for a window in which another can be chosen.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::choice::{Choice, Dimension, Offer};
+
+/// Several volumes of a file, one of which was opened.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Several {
+    /// In what they differ.
+    pub dimension: Dimension,
+    /// All of them: two at least.
+    pub offers: Vec<Offer>,
+    /// Which of them was opened.
+    pub at: usize,
+    /// What was asked for, if that is none of them: the first was opened then.
+    pub missed: Option<String>,
+}
+
+/// What voxels of several numbers show when no component is named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whole {
+    /// The length of the vector.
+    Magnitude,
+    /// How light the colour is.
+    Luminance,
+    /// The first component: of grey with its opacity, and of layers.
+    First,
+}
+
+/// Voxels of several numbers, of which one is shown, or what all of them make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Components {
+    /// How many numbers a voxel has: two at least.
+    pub count: usize,
+    /// Whether they are a colour: red, green and blue, perhaps with an opacity after them.
+    pub is_color: bool,
+    /// What they show where none is named.
+    pub whole: Whole,
+    /// The component that is shown, from 0, if one was named.
+    pub shown: Option<usize>,
+}
+
+/// All that a file holds, as far as it was read for one volume.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Held {
+    /// A row for each way in which volumes of it differ.
+    pub several: Vec<Several>,
+    /// Of voxels of several numbers.
+    pub components: Option<Components>,
+}
+
+impl Held {
+    /// The choice that opens the same volume again; nothing where the file holds but one.
+    pub fn choice(&self) -> Choice {
+        let component = self.components.and_then(|components| components.shown);
+        self.several.iter().fold(Choice { component, ..Choice::default() }, |choice, several| {
+            match several.offers.get(several.at) {
+                Some(offer) => choice.with(several.dimension, &offer.key),
+                None => choice,
+            }
+        })
+    }
+
+    /// The volumes that differ in a dimension.
+    pub fn of(&self, dimension: Dimension) -> Option<&Several> {
+        self.several.iter().find(|several| several.dimension == dimension)
+    }
+}
+
+/// Where readers write down what they have found, while they open the first volume of several.
+#[derive(Debug, Clone, Default)]
+pub struct Watch(Arc<Mutex<Held>>);
+
+/// Only a watch itself is the same.
+impl PartialEq for Watch {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Eq for Watch {}
+
+impl Watch {
+    /// What was found until now.
+    pub fn held(&self) -> Held {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    pub(super) fn saw_several(&self, several: Several) {
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // A header beside its data is read twice.
+        held.several.retain(|known| known.dimension != several.dimension);
+        held.several.push(several);
+    }
+
+    pub(super) fn saw_components(&self, components: Components) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).components = Some(components);
+    }
+}
