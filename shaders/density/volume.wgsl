@@ -2,6 +2,7 @@
 // it is there.
 #import "density/kernel.wgsl"
 #import "density/presence.wgsl"
+#import "density/stored_presence.wgsl"
 #import "sheets/sheet_frame.wgsl"
 
 struct Grid {
@@ -30,12 +31,8 @@ var<private> grid: Grid;
 // Takes the nearest texel.
 @group(1) @binding(4) var nearest: sampler;
 // Where voxels are missing, level by level as in the pyramid: r the share of kernels that lies on those that are there,
-// gba how it changes from the texel before to the one behind along x, y and z, as a byte with NO_CHANGE in the middle.
+// from −1 for none to 1, gba how it changes from the texel before to the one behind along x, y and z.
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
-
-// Bytes of those changes: 128 for none, so that there is exactly none where nothing is missing, and 127 for all.
-const NO_CHANGE = 128.0 / 255.0;
-const CHANGES = 255.0 / 127.0;
 
 // Whether any slab's pixels are wider than voxels.
 override STRETCH: bool = false;
@@ -110,7 +107,7 @@ fn presence_in_grid(p: vec3f, level: f32) -> f32 {
 // The share of it that lies on voxels that are there.
 fn presence_at(p: vec3f, level: f32) -> f32 {
 #if MISSING
-    return textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
+    return share_stored(textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level));
 #else
     return presence_in_grid(p, level);
 #endif
@@ -133,7 +130,7 @@ fn pyramid_presence(p: vec3f, level: f32) -> f32 {
 // How steeply that rises, in index space: by central differences over as far as the kernel is stretched, made beforehand.
 fn presence_slope(p: vec3f, level: f32) -> vec3f {
     let changes = textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).gba;
-    return (changes - NO_CHANGE) * (0.5 * CHANGES * exp2(-level));
+    return changes * (0.5 * exp2(-level));
 }
 #endif
 

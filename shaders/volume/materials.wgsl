@@ -2,6 +2,7 @@
 // extinction as a share of the table's largest, then colours times that, so that all of it can be summed.
 //
 // A workgroup classifies its 8 × 8 × 4 texels and those around them, each once.
+#import "density/stored_presence.wgsl"
 #import "density/table.wgsl"
 #import "volume/levels.wgsl"
 
@@ -68,7 +69,7 @@ fn main(
         return;
     }
 #if MISSING
-    sum *= textureLoad(presence_level, texel, 0).r;
+    sum *= share_stored(textureLoad(presence_level, texel, 0));
 #endif
     textureStore(level, texel, sum);
 }

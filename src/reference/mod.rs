@@ -125,11 +125,11 @@ impl<'a> Reference<'a> {
             Field::of_presence(volume).map(|field| Pyramid::of(&field, kernel_width(options.fault), None));
         let mut presence_changes = None;
         if options.rounding.is_some() {
-            // Stored in eight bits, of which one says whether it rises or falls.
+            // Stored in signed bytes, the share over all of their range.
             presence_changes = presence
                 .as_ref()
                 .map(|presence| [0, 1, 2].map(|axis| presence.changes(axis).in_steps(127.0)));
-            presence = presence.map(|presence| presence.in_steps(255.0));
+            presence = presence.map(|presence| presence.in_steps(254.0));
         }
         let scene = volume.scene();
         let classified = (settings.sampling.classification == Classification::Pre).then(|| {

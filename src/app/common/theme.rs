@@ -58,6 +58,11 @@ pub(crate) fn accent(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { ACCENT } else { Color32::from_rgb(0x85, 0x52, 0x00) }
 }
 
+/// What is as it must be, as text on a panel: 4.5:1 on both.
+pub(crate) fn good(visuals: &egui::Visuals) -> Color32 {
+    if visuals.dark_mode { Color32::from_rgb(0x7c, 0xcf, 0x86) } else { Color32::from_rgb(0x1d, 0x6b, 0x2b) }
+}
+
 const INK_ON_LIGHT: Color32 = Color32::from_rgb(0x24, 0x28, 0x30);
 const DIM_ON_LIGHT: Color32 = Color32::from_rgb(0x59, 0x60, 0x6c);
 const ERROR: Color32 = Color32::from_rgb(0xff, 0x8a, 0x7a);

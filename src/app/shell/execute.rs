@@ -169,7 +169,7 @@ impl App {
                 self.messages.note(text::messages::OPENING_CANCELLED);
             }
             Some(Outcome::NotDescribed { path, why, guess }) => {
-                self.raw_dialog.ask(&path, why, guess);
+                self.raw_dialog.ask(&path, why, guess, ctx);
             }
             Some(Outcome::Failed { short, details }) => {
                 self.pending = None;

@@ -64,6 +64,11 @@ impl Messages {
         *self = Self::default();
     }
 
+    /// What is being said is over; what went wrong stays known.
+    pub(crate) fn dismiss(&mut self) {
+        self.current = None;
+    }
+
     /// Errors so far.
     pub(crate) fn errors(&self) -> &[String] {
         &self.errors

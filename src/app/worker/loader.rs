@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
-use std::thread::JoinHandle;
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use eframe::egui;
 
 use super::task::Work;
+use super::warm_up::WarmUp;
 use crate::app::memory::{FileStamp, Remembered};
 use crate::app::text;
 use crate::data::load::{
@@ -105,44 +105,6 @@ pub(crate) struct Loader {
     warm_up: WarmUp,
 }
 
-/// Threads that make pipelines ahead of time. Dropping this waits for them: a driver must not be unloaded while a
-/// thread is in it.
-#[derive(Debug, Default)]
-struct WarmUp {
-    stop: Arc<AtomicBool>,
-    threads: Vec<JoinHandle<()>>,
-}
-
-impl WarmUp {
-    fn start(
-        &mut self,
-        shaders: &ShaderLibrary,
-        what: fn(&ShaderLibrary, &AtomicBool) -> Result<(), GpuError>,
-    ) -> std::io::Result<()> {
-        let (shaders, stop) = (shaders.clone(), Arc::clone(&self.stop));
-        let thread = std::thread::Builder::new().name("warm-up".to_owned());
-        self.threads.push(thread.spawn(move || {
-            if let Err(err) = what(&shaders, &stop) {
-                log::error!("pipelines could not be made ahead of time: {err}");
-            }
-            if let Err(err) = shaders.save_cache() {
-                log::warn!("pipelines could not be kept for the next start: {err}");
-            }
-        })?);
-        Ok(())
-    }
-}
-
-impl Drop for WarmUp {
-    fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
-        for thread in self.threads.drain(..) {
-            // That it panicked is logged where it did.
-            drop(thread.join());
-        }
-    }
-}
-
 /// The words for each phase, in the status bar.
 const PHASES: [&str; 5] = [
     text::opening::READING,
@@ -175,7 +137,7 @@ impl Loader {
 
     /// Makes pipelines that may be needed later, once; to be called when nothing else is to be done.
     pub(crate) fn prepare(&mut self) {
-        if self.warm_up.threads.len() < 2
+        if self.warm_up.count() < 2
             && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_rest)
         {
             log::warn!("pipelines will be made when they are needed: {err}");
@@ -281,6 +243,10 @@ fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
     let path = source.to_owned();
     let guess = RawLayout::guess(source).ok()??;
     let is_bare = BARE.iter().any(|ending| name.ends_with(ending));
+    if is_bare && guess.file_bytes == 0 {
+        let short = text::opening::empty(source);
+        return Some(Outcome::Failed { details: short.clone(), short });
+    }
     is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
 }
 

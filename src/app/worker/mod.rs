@@ -12,3 +12,4 @@ mod render_worker;
 pub(super) mod request;
 pub(super) mod response;
 pub(super) mod task;
+mod warm_up;

@@ -4,6 +4,7 @@ mod choices;
 mod corrections;
 mod look;
 mod overlay;
+mod single_settings;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -21,7 +22,7 @@ use crate::data::load::{Choice, Endian, LoadControl, LoadOptions, RawFormat};
 use crate::data::{Dataset, KindName, ValueRanges, Volume, VoxelType, open};
 use crate::gpu::{Context, fitted, small_volume};
 use crate::model::auto::Wishes;
-use crate::model::{Engine, MAX_EDGE, Quality, SceneAxis, Settings, ShadowAlgorithm, assign, auto};
+use crate::model::{MAX_EDGE, SceneAxis, Settings, assign, auto};
 
 /// How high the floor lies, by its path.
 const FLOOR_HEIGHT: &str = "floor.height";
@@ -355,41 +356,6 @@ impl LookArgs {
             };
             is_within(set, path) || is_within(path, set)
         })
-    }
-}
-
-impl LookArgs {
-    /// Lays over settings what the command line says of single ones.
-    fn single_settings(&self, mut settings: Settings, warn: impl Fn(&str)) -> Result<Settings, CliError> {
-        if let Some(level) = self.quality {
-            Quality::from(level).apply(&mut settings);
-        }
-        for assignment in &self.set {
-            let (path, value) = assignment.split_once('=').ok_or_else(|| {
-                CliError::Usage(format!(
-                    "--set: expected PATH=VALUE, found {assignment:?} (command line, --set)"
-                ))
-            })?;
-            let (next, warning) = assign(&settings, path.trim(), value.trim())
-                .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
-            if let Some(warning) = warning {
-                warn(&format!("warning: --set: {warning}"));
-            }
-            settings = next;
-        }
-        match self.shadows {
-            Some(ShadowArg::Off) => settings.shadows.algorithm = ShadowAlgorithm::Off,
-            Some(ShadowArg::Splat) => settings.shadows.algorithm = ShadowAlgorithm::Splat,
-            Some(ShadowArg::Raycast) => settings.shadows.algorithm = ShadowAlgorithm::Raycast,
-            Some(ShadowArg::Direct) => settings.shadows.algorithm = ShadowAlgorithm::Direct,
-            None => {}
-        }
-        match self.engine {
-            Some(EngineArg::Gather) => settings.sampling.engine = Engine::Gather,
-            Some(EngineArg::Scatter) => settings.sampling.engine = Engine::Scatter,
-            None => {}
-        }
-        Ok(settings)
     }
 }
 

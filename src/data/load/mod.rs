@@ -13,7 +13,7 @@ mod tests;
 
 use std::path::Path;
 
-pub use formats::{RawFormat, RawGuess, RawLayout, endings};
+pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 
 use super::Volume;
 use super::attempt::Attempt;

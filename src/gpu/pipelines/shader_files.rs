@@ -22,6 +22,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "density/lighting_density.wgsl",
     "density/presence.wgsl",
     "density/stored_gradient.wgsl",
+    "density/stored_presence.wgsl",
     "density/table.wgsl",
     "density/volume.wgsl",
     "eye/floor.wgsl",

@@ -17,9 +17,9 @@ const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
 /// Bytes of a texel: the share, and its changes along x, y and z.
 const TEXEL_BYTES: usize = 4;
 
-/// The byte of a change that is none, and how many more or fewer stand for a change from nothing to all.
-const NO_CHANGE: f32 = 128.0;
-const WHOLE_CHANGE: f32 = 127.0;
+/// Steps from 0 to 1 of signed bytes. Software drivers interpolate these in floating point, and unsigned ones in eight
+/// bits, which turns normals.
+const STEPS: f32 = 127.0;
 
 /// Texels of level 0 per upload step: some 20 ms, and 16 MiB while it is made.
 const STEP_TEXELS: usize = 1 << 20;
@@ -49,7 +49,7 @@ impl Presence {
             ..texture_3d(
                 "Volume::presence",
                 padded(dims),
-                wgpu::TextureFormat::Rgba8Unorm,
+                wgpu::TextureFormat::Rgba8Snorm,
                 wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             )
         })?;
@@ -79,7 +79,7 @@ impl Presence {
                     origin: wgpu::Origin3d { x: 0, y: 0, z: kept.start as u32 },
                     aspect: wgpu::TextureAspect::All,
                 },
-                &slab.bytes(&kept),
+                bytemuck::cast_slice(&slab.texels(&kept)),
                 wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(width * TEXEL_BYTES as u32),
@@ -202,7 +202,7 @@ impl Slab {
     }
 
     /// Some of its slices as texels.
-    fn bytes(&self, slices: &Range<usize>) -> Vec<u8> {
+    fn texels(&self, slices: &Range<usize>) -> Vec<i8> {
         let slice = self.dims[0] * self.dims[1];
         let kept = (slices.start - self.first) * slice..(slices.end - self.first) * slice;
         kept.into_par_iter().flat_map_iter(|at| self.texel(at)).collect()
@@ -210,15 +210,17 @@ impl Slab {
 
     /// The share at a place of its list, and the differences of its neighbours; beyond the outermost texel is the
     /// outermost, as a sampler has it.
-    fn texel(&self, at: usize) -> [u8; TEXEL_BYTES] {
+    fn texel(&self, at: usize) -> [i8; TEXEL_BYTES] {
         let change = |axis: usize| {
             let stride: usize = self.dims[..axis].iter().product();
             let place = at / stride % self.dims[axis];
             let before = if place > 0 { at - stride } else { at };
             let behind = if place + 1 < self.dims[axis] { at + stride } else { at };
-            (NO_CHANGE + WHOLE_CHANGE * (self.shares[behind] - self.shares[before])).round() as u8
+            (STEPS * (self.shares[behind] - self.shares[before])).round() as i8
         };
-        [(self.shares[at] * 255.0).round() as u8, change(0), change(1), change(2)]
+        // Over all of its range, which is twice as many steps.
+        let share = 2.0 * self.shares[at] - 1.0;
+        [(STEPS * share).round() as i8, change(0), change(1), change(2)]
     }
 }
 
@@ -259,12 +261,12 @@ mod tests {
         let slabs = levels_of(volume.missing().unwrap(), dims, 0..padded(dims)[2] >> MAX_LEVEL);
         let [nx, ny, _] = slabs[0].dims;
         let row = nx * (PYRAMID_PADDING + 2 + ny * (PYRAMID_PADDING + 2));
-        let along_x: Vec<[u8; TEXEL_BYTES]> =
+        let along_x: Vec<[i8; TEXEL_BYTES]> =
             (0..16).map(|x| slabs[0].texel(row + PYRAMID_PADDING + x)).collect();
         // The prefilter of a step: 1/12, 11/12, 1.
-        assert_eq!([6, 7, 8, 9].map(|x: usize| along_x[x][0]), [0, 21, 234, 255]);
-        assert_eq!([5, 6, 7, 8, 9, 10].map(|x: usize| along_x[x][1]), [128, 139, 244, 244, 139, 128]);
-        assert!(along_x.iter().all(|texel| texel[2..] == [NO_CHANGE as u8; 2]), "{along_x:?}");
+        assert_eq!([6, 7, 8, 9].map(|x: usize| along_x[x][0]), [-127, -106, 106, 127]);
+        assert_eq!([5, 6, 7, 8, 9, 10].map(|x: usize| along_x[x][1]), [0, 11, 116, 116, 11, 0]);
+        assert!(along_x.iter().all(|texel| texel[2..] == [0; 2]), "{along_x:?}");
     }
 
     #[test]
@@ -278,7 +280,7 @@ mod tests {
             for ((level, whole), slab) in (0..).zip(&at_once).zip(levels_of(missing, dims, first..first + 1))
             {
                 let kept = first << (MAX_LEVEL - level)..(first + 1) << (MAX_LEVEL - level);
-                assert_eq!(slab.bytes(&kept), whole.bytes(&kept), "slice {first}, level {level}");
+                assert_eq!(slab.texels(&kept), whole.texels(&kept), "slice {first}, level {level}");
             }
         }
     }

@@ -5,4 +5,5 @@ mod corrections;
 mod export;
 mod foreign_paths;
 mod opening;
+pub(crate) mod raw_import;
 mod sessions;

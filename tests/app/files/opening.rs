@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, Options};
-use eframe::egui::{self, Event, Modifiers, Role, Vec2, vec2};
+use eframe::egui::{self, Event, Modifiers, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
@@ -57,38 +57,6 @@ fn a_dropped_picture_brings_its_look_back() {
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     assert!(std::fs::read(&first).unwrap() == std::fs::read(&second).unwrap(), "all bytes, record included");
     assert!(harness.state().errors().is_empty());
-}
-
-#[test]
-fn bare_voxels_are_asked_about() {
-    let mut harness = window();
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scan.raw");
-    std::fs::write(&path, (0..720 + 16).map(|i| (i / 3) as u8).collect::<Vec<_>>()).unwrap();
-    harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
-    let start = Instant::now();
-    while harness.query_by_label("How is it stored?").is_none() {
-        harness.step();
-        assert!(start.elapsed() < PATIENCE, "never asked: {:?}", harness.state().errors());
-    }
-    harness.run_steps(2);
-    assert_eq!(harness.state().volume_name(), Some("chair"), "what is open stays");
-    assert!(harness.unnamed_widgets().is_empty(), "{:?}", harness.unnamed_widgets());
-    assert!(harness.query_by_label_contains("are missing").is_some());
-    for (axis, n) in [("x", 8.0), ("y", 9.0), ("z", 10.0)] {
-        let name = format!("Voxels along {axis}");
-        harness.get_by_role_and_label(Role::SpinButton, &name).set_value_accesskit(n);
-        harness.run_steps(2);
-    }
-    assert!(harness.query_by_label_contains("16 bytes longer").is_some());
-    click(&mut harness, "They are a header");
-    assert!(harness.query_by_label_contains("736 bytes").is_some());
-    click(&mut harness, "Open");
-    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("scan"));
-    wait_until_idle(&mut harness);
-    assert!(harness.state().errors().is_empty());
-    let header = std::fs::read_to_string(folder.path().join("scan.nhdr")).expect("remembered");
-    assert!(header.contains("sizes: 8 9 10") && header.contains("byte skip: 16"), "{header}");
 }
 
 #[test]

@@ -11,6 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::{RgbaImage, imageops};
 
+use crate::files::raw_import::{ask_about, scan};
 use crate::harness::{wait_until_idle, window};
 use crate::names::unfolded;
 use crate::thresholds::{PIXELS, STEPS};
@@ -139,6 +140,27 @@ fn windows_over_the_picture() {
         }
         harness.get_by_label("Close window").click();
         harness.run_steps(6);
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn import_of_raw_voxels() {
+    let mut harness = window();
+    harness.set_size(eframe::egui::vec2(1100.0, 760.0));
+    harness.run_steps(4);
+    wait_until_idle(&mut harness);
+    let folder = tempfile::tempdir().expect("a folder");
+    ask_about(&mut harness, &scan(folder.path()));
+    // Nothing blinks.
+    harness.get_by_label("Cancel").focus();
+    // The slices are read meanwhile.
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let mut failures = Vec::new();
+    for (theme, suffix) in THEMES {
+        let window = in_theme(&mut harness, theme);
+        let area = harness.get_by_role(Role::Window).rect();
+        check(&window, area.shrink(2.0), &format!("raw-{suffix}"), &mut failures);
     }
     assert!(failures.is_empty(), "{failures:#?}");
 }

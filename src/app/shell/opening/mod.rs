@@ -48,6 +48,8 @@ impl App {
     /// that is kept there. What is open stays until it is there.
     pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
         let source = source.as_ref();
+        // It was said of another file.
+        self.messages.dismiss();
         if files::is_record(source) && !files::is_volume(source) {
             self.open_record(source, ctx);
         } else if self.start_loading(source, Reading::default(), ctx) {
@@ -146,6 +148,8 @@ impl App {
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
+        // What was asked or said of the file before is over.
+        self.raw_dialog.close();
         let known = Known { up: self.memory.up_of(source), corrected: self.memory.corrections_of(source) };
         let started = self.loader.open(source, reading, known, ctx);
         if let Err(err) = &started {

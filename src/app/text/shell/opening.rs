@@ -53,6 +53,11 @@ pub(crate) fn stopped(panic: &str) -> String {
     format!("the loader stopped unexpectedly: {panic}")
 }
 
+/// A file without content.
+pub(crate) fn empty(source: &Path) -> String {
+    format!("{} is empty: copy it again", source.display())
+}
+
 /// A volume that was read and is beyond the graphics card.
 pub(crate) fn not_shown(source: &Path) -> String {
     format!("cannot show {}", source.display())

@@ -10,7 +10,7 @@ mod nrrd;
 mod numpy;
 mod pictures;
 mod pvm;
-mod raw;
+pub mod raw;
 mod vtk;
 
 use std::path::Path;

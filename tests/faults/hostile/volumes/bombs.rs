@@ -135,8 +135,8 @@ fn nested_xml(made: &mut Maker) {
     let kept = kept();
     let ome = &kept.iter().find(|(name, _)| *name == "ome.tif").expect("it is kept").1;
     let deep = "<a>".repeat(DEEP);
-    let laughs: String =
-        (1..10).map(|at| format!("<!ENTITY l{at} \"{}\">", format!("&l{};", at - 1).repeat(10))).collect();
+    let laugh = |at: usize| format!("<!ENTITY l{at} \"{}\">", format!("&l{};", at - 1).repeat(10));
+    let laughs = (1..10).map(laugh).collect::<Vec<_>>().concat();
     let doctypes = [
         format!("<!DOCTYPE x [<!ENTITY l0 \"ha\">{laughs}]>"),
         "<!DOCTYPE x SYSTEM \"/etc/passwd\">".to_owned(),
@@ -154,7 +154,7 @@ fn nested_xml(made: &mut Maker) {
     {
         made.add("elements in elements", name, text.as_bytes());
     }
-    let attributes: String = (0..DEEP).map(|at| format!(" a{at}=\"1\"")).collect();
+    let attributes = (0..DEEP).map(|at| format!(" a{at}=\"1\"")).collect::<Vec<_>>().concat();
     for (name, text) in [
         ("odd.vti", image(&format!("<Piece{attributes}/>"))),
         ("odd.ivf", described(&format!("<b{attributes}/>"))),

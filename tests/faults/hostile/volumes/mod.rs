@@ -114,8 +114,10 @@ impl Peak {
 /// What a refusal lacks.
 fn flaw(error: &LoadError, path: &Path) -> Option<String> {
     let explanation = match error {
-        LoadError::BadInput(explanation) | LoadError::Limit(explanation) => explanation,
-        LoadError::Io { explanation, .. } | LoadError::Several { explanation, .. } => explanation,
+        LoadError::BadInput(explanation)
+        | LoadError::Limit(explanation)
+        | LoadError::Io { explanation, .. }
+        | LoadError::Several { explanation, .. } => explanation,
         LoadError::Cancelled => return Some("nobody has cancelled it".to_owned()),
     };
     let said = error.to_string();
@@ -127,7 +129,7 @@ fn flaw(error: &LoadError, path: &Path) -> Option<String> {
         Some(format!("it does not say where, or what helps: {said}"))
     } else if error.kind() == LoadErrorKind::Io && !is_missing {
         Some(format!("it blames the disk: {said}"))
-    } else if said.len() > 4096 || said.chars().any(|c| c.is_control()) {
+    } else if said.len() > 4096 || said.chars().any(char::is_control) {
         Some(format!("it is long, or has signs that terminals obey: {said:?}"))
     } else {
         None

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::super::input::is_gzip;
 use super::super::{Endian, nrrd};
-use super::{RawFormat, sidecar};
+use super::plausible::Said;
+use super::{RawFormat, name, sidecar};
 use crate::data::VoxelType;
 
 /// Everything that must be known of a file of bare voxels.
@@ -15,8 +16,8 @@ pub struct RawLayout {
     pub dims: [usize; 3],
     /// The number type.
     pub voxel_type: VoxelType,
-    /// Distance between voxel centres.
-    pub spacing_mm: [f64; 3],
+    /// Distance between voxel centres, where it is known.
+    pub spacing_mm: Option<[f64; 3]>,
     /// The byte order.
     pub endian: Endian,
     /// Bytes before the first voxel, after inflating.
@@ -32,6 +33,8 @@ pub struct RawGuess {
     pub file_bytes: u64,
     /// Whether it is compressed, so that its length says nothing.
     pub is_gzip: bool,
+    /// What its name says.
+    pub said: Said,
 }
 
 impl RawLayout {
@@ -46,7 +49,7 @@ impl RawLayout {
         RawFormat {
             dims: Some(self.dims),
             voxel_type: Some(self.voxel_type),
-            spacing_mm: Some(self.spacing_mm),
+            spacing_mm: self.spacing_mm,
             endian: Some(self.endian),
             offset: Some(self.offset),
         }
@@ -55,7 +58,9 @@ impl RawLayout {
     /// A detached NRRD header for a data file in the same folder: every program that reads NRRD then knows.
     pub fn header(&self, data_file: &str, is_gzip: bool) -> String {
         let [x, y, z] = self.dims;
-        let [sx, sy, sz] = self.spacing_mm;
+        let spacings = self.spacing_mm.map_or(String::new(), |[sx, sy, sz]| {
+            format!("spacings: {sx} {sy} {sz}\nunits: \"mm\" \"mm\" \"mm\"\n")
+        });
         let voxel_type = match self.voxel_type {
             VoxelType::F32 => "float",
             VoxelType::F64 => "double",
@@ -67,7 +72,7 @@ impl RawLayout {
         };
         let encoding = if is_gzip { "gzip" } else { "raw" };
         format!(
-            "NRRD0004\ntype: {voxel_type}\ndimension: 3\nsizes: {x} {y} {z}\nspacings: {sx} {sy} {sz}\n\
+            "NRRD0004\ntype: {voxel_type}\ndimension: 3\nsizes: {x} {y} {z}\n{spacings}\
              endian: {endian}\nencoding: {encoding}\nbyte skip: {}\ndata file: {data_file}\n",
             self.offset
         )
@@ -89,8 +94,11 @@ impl RawLayout {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
         let length = (!is_gzip).then_some(file_bytes);
         let (dims, voxel_type) = guess_from(&name, length);
-        let layout = Self { dims, voxel_type, spacing_mm: [1.0; 3], endian: Endian::Little, offset: 0 };
-        Ok(Some(RawGuess { layout, file_bytes, is_gzip }))
+        let endian = name::order_of(&name);
+        let said = Said { dims: three_numbers(&name), voxel_type: type_said(&name), endian };
+        let endian = endian.unwrap_or(Endian::Little);
+        let layout = Self { dims, voxel_type, spacing_mm: None, endian, offset: 0 };
+        Ok(Some(RawGuess { layout, file_bytes, is_gzip, said }))
     }
 }
 
@@ -117,8 +125,12 @@ const USUAL: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, Vo
 /// What is offered when nothing is known.
 const NO_IDEA: [usize; 3] = [256; 3];
 
+fn type_said(name: &str) -> Option<VoxelType> {
+    TYPE_WORDS.iter().find(|(word, _)| name.contains(word)).map(|(_, voxel_type)| *voxel_type)
+}
+
 fn guess_from(name: &str, length: Option<u64>) -> ([usize; 3], VoxelType) {
-    let said = TYPE_WORDS.iter().find(|(word, _)| name.contains(word)).map(|(_, voxel_type)| *voxel_type);
+    let said = type_said(name);
     if let Some(dims) = three_numbers(name) {
         // Below 10¹⁵.
         let voxels: u64 = dims.iter().map(|&n| n as u64).product();
@@ -179,7 +191,7 @@ mod tests {
         let layout = RawLayout {
             dims: [3, 4, 5],
             voxel_type: VoxelType::U16,
-            spacing_mm: [0.5, 0.5, 1.25],
+            spacing_mm: Some([0.5, 0.5, 1.25]),
             endian: Endian::Big,
             offset: 7,
         };
@@ -192,6 +204,10 @@ mod tests {
         let by_options = load(&path, &options, &control).unwrap();
         assert_eq!(by_header.samples(), by_options.samples());
         assert_eq!(by_header.spacing_mm(), by_options.spacing_mm());
+        let unspaced = RawLayout { spacing_mm: None, ..layout };
+        std::fs::write(&header, unspaced.header("odd name.bin", false)).unwrap();
+        let by_header = load(&header, &LoadOptions::default(), &control).unwrap();
+        assert!(by_header.has_unknown_scale(), "nobody has said how large its voxels are");
         assert_eq!(RawLayout::guess(&header).unwrap(), None, "it needs no guess");
         let description = folder.path().join("foot.dat");
         std::fs::write(&description, "ObjectFileName: foot.raw\n").unwrap();

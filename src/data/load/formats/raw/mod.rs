@@ -1,10 +1,13 @@
 //! RAW: voxels and nothing else, x fastest. How many and of which type say the options, a small file beside them, or their
 //! own name.
 
+mod bytes;
 mod form;
 mod layout;
 mod name;
+mod plausible;
 mod sidecar;
+mod slices;
 
 use std::path::Path;
 
@@ -15,9 +18,12 @@ use super::reader::{Reader, Source};
 use super::{Endian, LoadError, LoadOptions};
 use crate::data::attempt::{Attempt, is_usable_spacing, quoted, unlike_spacings};
 use crate::data::{Volume, VoxelType, plain};
+pub use bytes::RawBytes;
 use form::Form;
 pub use layout::{RawGuess, RawLayout};
+pub use plausible::{Evidence, Proposal, Said, proposals};
 pub(super) use sidecar::{DAT, INI, IVF};
+pub use slices::{MiddleSlices, Slice, middle_slices};
 
 /// How a RAW file is stored. What is given overrides what the file's name, or a file beside it, says.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -110,6 +110,15 @@ fn type_and_order(word: &str) -> Option<(VoxelType, Option<Endian>)> {
         .find_map(|(end, endian)| voxel_type(word.strip_suffix(end)?).map(|voxel_type| (voxel_type, *endian)))
 }
 
+/// The byte order that a name says, by a word for it or behind a type.
+pub(super) fn order_of(file_name: &str) -> Option<Endian> {
+    let words = words(file_name);
+    let said = |(_, word): &(usize, &str)| {
+        type_and_order(word).and_then(|(_, endian)| endian).or_else(|| order(word))
+    };
+    words.iter().find_map(said)
+}
+
 /// A word for a byte order.
 fn order(word: &str) -> Option<Endian> {
     match word.to_ascii_lowercase().as_str() {

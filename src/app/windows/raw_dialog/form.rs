@@ -1,0 +1,208 @@
+//! The numbers that say how a file is stored.
+
+use std::cmp::Ordering;
+
+use eframe::egui::{self, DragValue, Response, Ui};
+
+use super::looking::Length;
+use crate::app::common::theme;
+use crate::app::text;
+use crate::app::text::raw::Unit;
+use crate::data::VoxelType;
+use crate::data::load::raw::Proposal;
+use crate::data::load::{Endian, RawGuess, RawLayout};
+
+/// The longest edge that can be typed.
+const LONGEST: usize = 65_536;
+
+/// The numbers, and what is known of the file's length.
+#[derive(Debug)]
+pub(super) struct Form {
+    guess: RawGuess,
+    layout: RawLayout,
+    /// Distances between voxels, in a unit; kept while the unit is not known.
+    spacing: [f64; 3],
+    unit: Unit,
+    length: Option<Length>,
+    /// Whether the user has changed a number: then none is changed by itself.
+    is_touched: bool,
+}
+
+impl Form {
+    pub(super) fn new(guess: RawGuess) -> Self {
+        let exact = Length { bytes: guess.file_bytes, is_exact: true };
+        Self {
+            guess,
+            layout: guess.layout,
+            spacing: [1.0; 3],
+            unit: Unit::Unknown,
+            length: (!guess.is_gzip).then_some(exact),
+            is_touched: false,
+        }
+    }
+
+    pub(super) fn is_gzip(&self) -> bool {
+        self.guess.is_gzip
+    }
+
+    /// The numbers as they are now.
+    pub(super) fn layout(&self) -> RawLayout {
+        let spacing_mm = self.unit.mm().map(|mm| self.spacing.map(|spacing| spacing * mm));
+        RawLayout { spacing_mm, ..self.layout }
+    }
+
+    /// What was found of the file.
+    pub(super) fn found(&mut self, length: Option<Length>, first: Option<&Proposal>) {
+        self.length = length.or(self.length);
+        if let Some(first) = first.filter(|_| !self.is_touched) {
+            self.layout = first.layout;
+        }
+    }
+
+    /// Takes over a proposal; distances stay.
+    pub(super) fn fill(&mut self, layout: &RawLayout) {
+        self.layout = *layout;
+        self.is_touched = true;
+    }
+
+    /// Whether the numbers are those of a proposal.
+    pub(super) fn is_of(&self, layout: &RawLayout) -> bool {
+        self.layout == *layout
+    }
+
+    /// Shows the numbers; gives the first of them.
+    pub(super) fn fields(&mut self, ui: &mut Ui) -> Response {
+        let before = self.layout;
+        let grid = egui::Grid::new("raw layout").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
+            ui.label(text::raw::VOXELS);
+            let first = self.dims(ui);
+            ui.end_row();
+            ui.label(text::raw::NUMBER_TYPE);
+            self.voxel_type(ui);
+            ui.end_row();
+            ui.label(text::raw::BYTE_ORDER);
+            self.byte_order(ui);
+            ui.end_row();
+            ui.label(text::raw::HEADER);
+            ui.horizontal(|ui| {
+                let field = DragValue::new(&mut self.layout.offset);
+                ui.name_inputs(text::raw::HEADER_BYTES, |ui| ui.add(field));
+                ui.weak(text::raw::HEADER_UNIT);
+            });
+            ui.end_row();
+            ui.label(text::raw::SPACING);
+            self.spacing(ui);
+            ui.end_row();
+            first
+        });
+        self.is_touched |= self.layout != before;
+        grid.inner
+    }
+
+    fn dims(&mut self, ui: &mut Ui) -> Response {
+        let row = ui.horizontal(|ui| {
+            let mut first = None;
+            for (axis, n) in text::raw::AXES.into_iter().zip(&mut self.layout.dims) {
+                let field = ui.name_inputs(text::raw::voxels_along(axis), |ui| {
+                    ui.add(DragValue::new(n).range(1..=LONGEST))
+                });
+                first.get_or_insert(field);
+            }
+            let label = ui.weak(text::raw::FASTEST_AXIS).on_hover_text(text::raw::FASTEST_AXIS_TIP);
+            first.unwrap_or(label)
+        });
+        row.inner
+    }
+
+    fn voxel_type(&mut self, ui: &mut Ui) {
+        let combo = egui::ComboBox::from_id_salt("voxel type").selected_text(self.layout.voxel_type.name());
+        let shown = combo.show_ui(ui, |ui| {
+            for voxel_type in VoxelType::ALL {
+                ui.selectable_value(&mut self.layout.voxel_type, voxel_type, voxel_type.name());
+            }
+        });
+        let named = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text::raw::NUMBER_TYPE);
+        shown.response.widget_info(named);
+    }
+
+    fn byte_order(&mut self, ui: &mut Ui) {
+        let has_order = self.layout.voxel_type.bytes() > 1;
+        ui.add_enabled_ui(has_order, |ui| {
+            ui.horizontal(|ui| {
+                for (endian, order) in [(Endian::Little, text::raw::LITTLE), (Endian::Big, text::raw::BIG)] {
+                    let choice = ui.selectable_value(&mut self.layout.endian, endian, order.name);
+                    choice.on_hover_text(order.tip).on_disabled_hover_text(text::raw::NO_ORDER);
+                }
+            });
+        });
+    }
+
+    fn spacing(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.add_enabled_ui(self.unit != Unit::Unknown, |ui| {
+                for (axis, spacing) in text::raw::AXES.into_iter().zip(&mut self.spacing) {
+                    let field = DragValue::new(spacing).range(1e-6..=1e6).speed(0.01).max_decimals(6);
+                    ui.name_inputs(text::raw::spacing_along(axis), |ui| ui.add(field));
+                }
+            });
+            let combo =
+                egui::ComboBox::from_id_salt("spacing unit").selected_text(self.unit.name()).width(80.0);
+            let shown = combo.show_ui(ui, |ui| {
+                for unit in Unit::ALL {
+                    ui.selectable_value(&mut self.unit, unit, unit.name());
+                }
+            });
+            let named = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text::raw::SPACING_UNIT);
+            shown.response.widget_info(named);
+            shown.response.clone().on_hover_text(text::raw::SPACING_UNIT_TIP);
+        });
+    }
+
+    /// Says whether the file is as long as that, and what helps. Whether it is, or may be.
+    pub(super) fn length(&mut self, ui: &mut Ui) -> bool {
+        let Some(Length { bytes: found, is_exact }) = self.length else {
+            ui.weak(text::raw::COMPRESSED);
+            return true;
+        };
+        let colors = [theme::good(ui.visuals()), ui.visuals().warn_fg_color, ui.visuals().error_fg_color];
+        let Some(expected) = self.layout.file_bytes() else {
+            ui.colored_label(colors[2], text::raw::TOO_MANY);
+            return false;
+        };
+        match expected.cmp(&found) {
+            Ordering::Equal => ui.colored_label(colors[0], text::raw::fits(found, is_exact)),
+            Ordering::Less => ui.colored_label(colors[1], text::raw::longer(found - expected)),
+            Ordering::Greater => ui.colored_label(colors[2], text::raw::shorter(found, expected)),
+        };
+        ui.horizontal_wrapped(|ui| self.remedies(ui, found, expected));
+        // What the end of a compressed file says may be wrong.
+        expected == found || !is_exact
+    }
+
+    /// Buttons that make the numbers fit.
+    fn remedies(&mut self, ui: &mut Ui, found: u64, expected: u64) {
+        let before = self.layout;
+        if expected < found && ui.small_button(text::raw::ARE_HEADER).clicked() {
+            self.layout.offset += found - expected;
+        }
+        if expected == found {
+            return;
+        }
+        let [x, y, bytes] = [before.dims[0], before.dims[1], before.voxel_type.bytes()].map(|n| n as u64);
+        let slice_bytes = (x * y * bytes).max(1);
+        let voxel_bytes = found.saturating_sub(before.offset);
+        let slices = voxel_bytes / slice_bytes;
+        let is_possible = voxel_bytes.is_multiple_of(slice_bytes) && (1..=LONGEST as u64).contains(&slices);
+        if is_possible && ui.small_button(text::raw::with_slices(slices)).clicked() {
+            self.layout.dims[2] = slices as usize;
+        }
+        let without_header = RawLayout { offset: 0, ..before };
+        if before.offset > 0
+            && without_header.file_bytes() == Some(found)
+            && ui.small_button(text::raw::WITHOUT_HEADER).clicked()
+        {
+            self.layout.offset = 0;
+        }
+        self.is_touched |= self.layout != before;
+    }
+}

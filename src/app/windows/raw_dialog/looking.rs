@@ -1,0 +1,120 @@
+//! What is found of the file on another thread: how it may be stored.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui;
+
+use crate::app::text;
+use crate::app::worker::task::Work;
+use crate::data::load::raw::{Proposal, RawBytes, Said, proposals};
+
+/// The bytes of the file, which tasks take turns to read; the first of them opens it.
+#[derive(Debug, Clone)]
+pub(super) struct SharedBytes {
+    path: PathBuf,
+    bytes: Arc<Mutex<Option<RawBytes>>>,
+}
+
+impl SharedBytes {
+    /// Does something with the bytes. To be called by tasks: it waits for others, and for the disk.
+    pub(super) fn read<T>(&self, task: impl FnOnce(&mut RawBytes) -> io::Result<T>) -> io::Result<T> {
+        // A task that panicked has left nothing half done: bytes are only read.
+        let mut held = self.bytes.lock().unwrap_or_else(PoisonError::into_inner);
+        let bytes = match held.take() {
+            Some(bytes) => bytes,
+            None => RawBytes::open(&self.path)?,
+        };
+        task(held.insert(bytes))
+    }
+}
+
+/// Tells a task to stop when it is dropped.
+#[derive(Debug, Default)]
+pub(super) struct Stopper(pub(super) Arc<AtomicBool>);
+
+impl Drop for Stopper {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// How long the voxels are with all that precedes them, after inflating.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Length {
+    /// In bytes.
+    pub bytes: u64,
+    /// Whether they were counted, not only said by the file's end.
+    pub is_exact: bool,
+}
+
+/// What was found.
+#[derive(Debug)]
+struct Found {
+    length: Length,
+    proposals: Vec<Proposal>,
+}
+
+/// The search for ways of storing the file.
+#[derive(Debug)]
+pub(super) struct Looking {
+    bytes: SharedBytes,
+    work: Option<Work<io::Result<Found>>>,
+    found: Option<Found>,
+    failure: Option<String>,
+    _stopper: Stopper,
+}
+
+impl Looking {
+    pub(super) fn start(path: &Path, said: Said, ctx: &egui::Context) -> Self {
+        let bytes = SharedBytes { path: path.to_owned(), bytes: Arc::default() };
+        let stopper = Stopper::default();
+        let task = {
+            let (bytes, stop) = (bytes.clone(), Arc::clone(&stopper.0));
+            move || {
+                bytes.read(|bytes| {
+                    let length = Length { bytes: bytes.length(), is_exact: bytes.is_exact() };
+                    Ok(Found { length, proposals: proposals(bytes, said, &stop)? })
+                })
+            }
+        };
+        let work = Work::start("raw-proposals", ctx, task);
+        let failure = work.as_ref().err().map(text::raw::not_read);
+        Self { bytes, work: work.ok(), found: None, failure, _stopper: stopper }
+    }
+
+    /// Takes in what was found; whether there is something new.
+    pub(super) fn take(&mut self) -> bool {
+        let Some(result) = self.work.as_ref().and_then(Work::take) else { return false };
+        self.work = None;
+        match result {
+            Ok(Ok(found)) => self.found = Some(found),
+            Ok(Err(error)) => self.failure = Some(text::raw::not_read(&error)),
+            Err(panic) => self.failure = Some(panic),
+        }
+        self.found.is_some()
+    }
+
+    pub(super) fn is_busy(&self) -> bool {
+        self.work.is_some()
+    }
+
+    pub(super) fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
+    pub(super) fn proposals(&self) -> &[Proposal] {
+        // More than these nobody reads.
+        self.found.as_ref().map_or(&[], |found| &found.proposals[..found.proposals.len().min(5)])
+    }
+
+    pub(super) fn length(&self) -> Option<Length> {
+        self.found.as_ref().map(|found| found.length)
+    }
+
+    pub(super) fn bytes(&self) -> &SharedBytes {
+        &self.bytes
+    }
+}

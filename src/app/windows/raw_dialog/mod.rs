@@ -1,0 +1,256 @@
+//! The window that asks how a file of bare voxels is stored: numbers on the left, what the file looks like with them on
+//! the right, and below the numbers the ways that are likeliest by what its bytes are like.
+
+mod form;
+mod looking;
+mod pictures;
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Key, Modifiers};
+
+use self::form::Form;
+pub(crate) use self::looking::Length;
+use self::looking::Looking;
+use self::pictures::Pictures;
+use crate::app::text;
+use crate::data::load::raw::Proposal;
+use crate::data::load::{RawGuess, RawLayout};
+
+/// Width of the numbers and of the proposals, in points.
+const NUMBERS_WIDTH: f32 = 356.0;
+
+/// What the user said.
+#[derive(Debug)]
+pub(crate) struct Described {
+    /// The file.
+    pub path: PathBuf,
+    /// How it is stored.
+    pub layout: RawLayout,
+    /// Where to write a header that says so, if the user asks for it.
+    pub header: Option<PathBuf>,
+    /// Whether the file is compressed.
+    pub is_gzip: bool,
+}
+
+/// A file that is asked about.
+#[derive(Debug)]
+struct Asked {
+    path: PathBuf,
+    why: String,
+    form: Form,
+    looking: Looking,
+    pictures: Pictures,
+    /// Where a header would be written.
+    header: PathBuf,
+    /// Whether one is there already.
+    has_header: bool,
+    writes_header: bool,
+    /// The first field takes the keys, once.
+    takes_focus: bool,
+    /// That field, as soon as it has been shown.
+    first: Option<egui::Id>,
+}
+
+/// State of the window.
+#[derive(Debug, Default)]
+pub(crate) struct RawDialog {
+    asked: Option<Asked>,
+}
+
+impl RawDialog {
+    /// Asks about a file; `why` says what is not known.
+    pub(crate) fn ask(&mut self, path: &Path, why: String, guess: RawGuess, ctx: &egui::Context) {
+        let header = header_of(path);
+        self.asked = Some(Asked {
+            path: path.to_owned(),
+            why,
+            form: Form::new(guess),
+            looking: Looking::start(path, guess.said, ctx),
+            pictures: Pictures::default(),
+            has_header: header.exists(),
+            header,
+            writes_header: false,
+            takes_focus: true,
+            first: None,
+        });
+    }
+
+    /// Closes the window: something else is being opened.
+    pub(crate) fn close(&mut self) {
+        self.asked = None;
+    }
+
+    /// Shows the window, if it is open. Gives what the user said, once.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Described> {
+        let asked = self.asked.as_mut()?;
+        asked.take_proposals();
+        let mut open = true;
+        let mut answer = None;
+        let window = egui::Window::new(text::raw::TITLE).open(&mut open).collapsible(false).resizable(false);
+        window.default_pos([40.0, 40.0]).show(ctx, |ui| {
+            let name = asked.path.file_name().unwrap_or_default().to_string_lossy();
+            ui.horizontal(|ui| {
+                ui.strong(name);
+                ui.add(egui::Label::new(egui::RichText::new(&asked.why).weak()).truncate());
+            });
+            ui.add_space(4.0);
+            ui.horizontal_top(|ui| {
+                ui.vertical(|ui| {
+                    ui.set_width(NUMBERS_WIDTH);
+                    answer = asked.left(ui);
+                });
+                ui.separator();
+                ui.vertical(|ui| {
+                    let layout = asked.form.layout();
+                    asked.pictures.ui(ui, &asked.looking, &layout);
+                });
+            });
+        });
+        // A list of types that is open is closed first.
+        let is_free = !egui::Popup::is_any_open(ctx);
+        if is_free && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) || !open {
+            answer = Some(Answer::Cancel);
+        }
+        match answer? {
+            Answer::Cancel => {
+                self.asked = None;
+                None
+            }
+            Answer::Open => self.asked.take().map(Asked::described),
+        }
+    }
+}
+
+/// What the user answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Answer {
+    Open,
+    Cancel,
+}
+
+impl Asked {
+    /// Takes in what was found of the file. Numbers that nobody has touched become those that are likeliest.
+    fn take_proposals(&mut self) {
+        if !self.looking.take() {
+            return;
+        }
+        self.form.found(self.looking.length(), self.looking.proposals().first());
+    }
+
+    /// The numbers, whether they fit, what is proposed, and the buttons.
+    fn left(&mut self, ui: &mut egui::Ui) -> Option<Answer> {
+        // Before the field is there: then all of its number is selected, and typing replaces it.
+        if let Some(first) = self.first.filter(|_| self.takes_focus && !self.looking.is_busy()) {
+            ui.memory_mut(|memory| memory.request_focus(first));
+            self.takes_focus = false;
+        }
+        self.first = Some(self.form.fields(ui).id);
+        ui.add_space(4.0);
+        let fits = self.form.length(ui);
+        ui.add_space(6.0);
+        self.proposals(ui);
+        ui.add_space(4.0);
+        let header = self.header.file_name().unwrap_or_default().to_string_lossy();
+        let words = if self.has_header { text::raw::rewrite(&header) } else { text::raw::write(&header) };
+        ui.checkbox(&mut self.writes_header, words).on_hover_text(text::raw::HEADER_TIP);
+        ui.add_space(2.0);
+        let mut answer = None;
+        ui.horizontal(|ui| {
+            let button = ui.add_enabled(fits, egui::Button::new(text::raw::OPEN));
+            // Enter opens, unless it presses another button. A number that was being typed is taken over by then.
+            let is_free = ui.memory(egui::Memory::focused).is_none() && !egui::Popup::is_any_open(ui.ctx());
+            let enter = fits && is_free && ui.input(|input| input.key_pressed(Key::Enter));
+            if button.on_hover_text(text::raw::OPEN_TIP).clicked() || enter {
+                answer = Some(Answer::Open);
+            }
+            if ui.button(text::common::CANCEL).clicked() {
+                answer = Some(Answer::Cancel);
+            }
+        });
+        answer
+    }
+
+    /// The likeliest ways of storing the file, which fill in the numbers.
+    fn proposals(&mut self, ui: &mut egui::Ui) {
+        ui.strong(text::raw::PROPOSALS);
+        if self.looking.is_busy() {
+            ui.horizontal(|ui| {
+                ui.spinner();
+                ui.weak(text::raw::LOOKING);
+            });
+            return;
+        }
+        if let Some(why) = self.looking.failure() {
+            ui.colored_label(ui.visuals().error_fg_color, why);
+            return;
+        }
+        let proposals = self.looking.proposals();
+        ui.weak(text::raw::verdict(proposals.first().map(|first| first.evidence)));
+        let mut chosen: Option<Proposal> = None;
+        for proposal in proposals {
+            let is_chosen = self.form.is_of(&proposal.layout);
+            let line = text::raw::layout(&proposal.layout);
+            let why = text::raw::why(&proposal.evidence, &proposal.layout, self.looking.length());
+            if row(ui, is_chosen, &line, &why).clicked() {
+                chosen = Some(*proposal);
+            }
+        }
+        if let Some(proposal) = chosen {
+            self.form.fill(&proposal.layout);
+        }
+    }
+
+    fn described(self) -> Described {
+        Described {
+            layout: self.form.layout(),
+            header: Some(self.header).filter(|_| self.writes_header),
+            is_gzip: self.form.is_gzip(),
+            path: self.path,
+        }
+    }
+}
+
+/// A row of the list: a way of storing, and why.
+fn row(ui: &mut egui::Ui, is_chosen: bool, line: &str, why: &str) -> egui::Response {
+    let style = ui.style();
+    let color = if is_chosen { style.visuals.selection.stroke.color } else { style.visuals.text_color() };
+    let weak = if is_chosen { color } else { style.visuals.weak_text_color() };
+    let mut job = egui::text::LayoutJob::default();
+    let format = |style_name: egui::TextStyle, color| egui::TextFormat {
+        font_id: style_name.resolve(style),
+        color,
+        ..egui::TextFormat::default()
+    };
+    job.append(line, 0.0, format(egui::TextStyle::Body, color));
+    job.append("\n", 0.0, format(egui::TextStyle::Small, weak));
+    job.append(why, 0.0, format(egui::TextStyle::Small, weak));
+    let button = egui::Button::selectable(is_chosen, job).min_size(egui::vec2(NUMBERS_WIDTH, 0.0));
+    let response = ui.add(button);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, line));
+    response
+}
+
+/// The header beside a data file: `scan.raw.gz` has `scan.nhdr`.
+fn header_of(path: &Path) -> PathBuf {
+    let stem = |path: &Path| path.file_stem().map(PathBuf::from).unwrap_or_default();
+    let mut name = stem(path);
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz")) {
+        name = stem(&name);
+    }
+    path.with_file_name(format!("{}.nhdr", name.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_lie_beside_their_data() {
+        for (data, header) in
+            [("/a/scan.raw", "/a/scan.nhdr"), ("scan.raw.gz", "scan.nhdr"), ("b.c/scan", "b.c/scan.nhdr")]
+        {
+            assert_eq!(header_of(Path::new(data)), Path::new(header));
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! The middle slices of the file, as the numbers would have it; they follow while numbers are changed.
+
+use std::io;
+use std::sync::Arc;
+
+use eframe::egui::{
+    self, Color32, ColorImage, Rect, Role, Sense, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
+};
+
+use super::looking::{Looking, Stopper};
+use crate::app::text;
+use crate::app::worker::task::Work;
+use crate::data::load::RawLayout;
+use crate::data::load::raw::{MiddleSlices, Slice, middle_slices};
+
+/// Longest edge of a slice, in points.
+const EDGE: f32 = 184.0;
+
+/// Voxels that the file does not have.
+const MISSING: Color32 = Color32::from_rgb(0x70, 0x2c, 0x28);
+
+/// A slice on screen.
+struct Picture {
+    texture: TextureHandle,
+    /// Of the whole slice, in voxel edges or in millimetres.
+    size: Vec2,
+}
+
+/// Slices that are being read.
+struct Reading {
+    layout: RawLayout,
+    work: Work<io::Result<Option<MiddleSlices>>>,
+    _stopper: Stopper,
+}
+
+/// State of the slices.
+#[derive(Default)]
+pub(super) struct Pictures {
+    reading: Option<Reading>,
+    /// What is shown.
+    shown: Option<(RawLayout, [Picture; 3])>,
+    failure: Option<String>,
+}
+
+impl std::fmt::Debug for Pictures {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Pictures").field("failure", &self.failure).finish_non_exhaustive()
+    }
+}
+
+/// Whether the same bytes are shown; distances only stretch them.
+fn is_same(a: &RawLayout, b: &RawLayout) -> bool {
+    RawLayout { spacing_mm: None, ..*a } == RawLayout { spacing_mm: None, ..*b }
+}
+
+impl Pictures {
+    /// Shows the slices of a layout, or of the one before until they are read.
+    pub(super) fn ui(&mut self, ui: &mut Ui, looking: &Looking, layout: &RawLayout) {
+        self.take(ui.ctx());
+        self.ask(ui.ctx(), looking, layout);
+        egui::Grid::new("raw slices").num_columns(2).spacing([8.0, 8.0]).show(ui, |ui| {
+            self.slice(ui, 0, layout);
+            self.slice(ui, 1, layout);
+            ui.end_row();
+            self.slice(ui, 2, layout);
+            ui.vertical(|ui| {
+                ui.set_max_width(EDGE);
+                match &self.failure {
+                    Some(why) => ui.colored_label(ui.visuals().error_fg_color, why),
+                    None => ui.weak(text::raw::READING_SLICES),
+                };
+            });
+            ui.end_row();
+        });
+    }
+
+    fn slice(&self, ui: &mut Ui, which: usize, layout: &RawLayout) {
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            ui.weak(text::raw::SLICES[which]);
+            let (frame, response) = ui.allocate_exact_size(Vec2::splat(EDGE), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Image, true, text::raw::SLICES[which]));
+            let painter = ui.painter_at(frame);
+            painter.rect_filled(frame, 2.0, Color32::BLACK);
+            if let Some((shown, pictures)) = &self.shown {
+                let (u, v) = [(0, 1), (0, 2), (1, 2)][which];
+                let spacing = if is_same(shown, layout) { layout.spacing_mm } else { shown.spacing_mm };
+                let spacing = spacing.unwrap_or([1.0; 3]);
+                let stretch = vec2(spacing[u] as f32, spacing[v] as f32);
+                let size = pictures[which].size * stretch;
+                let size = (size * (EDGE / size.max_elem())).max(Vec2::splat(1.0));
+                let area = Rect::from_center_size(frame.center(), size);
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                painter.image(pictures[which].texture.id(), area, whole, Color32::WHITE);
+            }
+        });
+    }
+
+    /// Takes in slices that have been read.
+    fn take(&mut self, ctx: &egui::Context) {
+        let Some(result) = self.reading.as_ref().and_then(|reading| reading.work.take()) else { return };
+        let Some(Reading { layout, .. }) = self.reading.take() else { return };
+        match result {
+            Ok(Ok(Some(found))) => {
+                self.failure = None;
+                let picture = |which: usize| {
+                    let (u, v) = [(0, 1), (0, 2), (1, 2)][which];
+                    let texture = ctx.load_texture("raw slice", image(&found, which), TextureOptions::LINEAR);
+                    Picture { texture, size: vec2(layout.dims[u] as f32, layout.dims[v] as f32) }
+                };
+                self.shown = Some((layout, [picture(0), picture(1), picture(2)]));
+            }
+            // The numbers have changed meanwhile.
+            Ok(Ok(None)) => {}
+            Ok(Err(error)) => self.failure = Some(text::raw::not_read(&error)),
+            Err(panic) => self.failure = Some(panic),
+        }
+    }
+
+    /// Starts to read slices that are not shown yet; what is being read for other numbers is given up.
+    fn ask(&mut self, ctx: &egui::Context, looking: &Looking, layout: &RawLayout) {
+        if self.shown.as_ref().is_some_and(|(shown, _)| is_same(shown, layout)) {
+            self.reading = None;
+            return;
+        }
+        // What cannot be read is not tried again and again.
+        if self.failure.is_some()
+            || self.reading.as_ref().is_some_and(|reading| is_same(&reading.layout, layout))
+        {
+            return;
+        }
+        let stopper = Stopper::default();
+        let task = {
+            let (bytes, layout, stop) = (looking.bytes().clone(), *layout, Arc::clone(&stopper.0));
+            move || bytes.read(|bytes| middle_slices(bytes, &layout, &stop))
+        };
+        match Work::start("raw-slices", ctx, task) {
+            Ok(work) => self.reading = Some(Reading { layout: *layout, work, _stopper: stopper }),
+            Err(error) => self.failure = Some(text::raw::not_read(&error)),
+        }
+    }
+}
+
+/// Greys of a slice, its second axis upwards.
+fn image(found: &MiddleSlices, which: usize) -> ColorImage {
+    let Slice { size: [width, height], values } = &found.slices[which];
+    let (low, span) = (found.range.low as f32, found.range.span().max(f64::MIN_POSITIVE) as f32);
+    let color = |value: &Option<f32>| match value {
+        Some(value) => Color32::from_gray((((value - low) / span).clamp(0.0, 1.0) * 255.0).round() as u8),
+        None => MISSING,
+    };
+    let rows = values.chunks(*width).rev().take(*height);
+    ColorImage::new([*width, *height], rows.flatten().map(color).collect())
+}

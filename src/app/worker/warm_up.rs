@@ -1,0 +1,51 @@
+//! Pipelines that are made before they are needed.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+
+use crate::gpu::{GpuError, ShaderLibrary};
+
+/// Threads that make pipelines ahead of time. Dropping this waits for them: a driver must not be unloaded while a
+/// thread is in it.
+#[derive(Debug, Default)]
+pub(super) struct WarmUp {
+    stop: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl WarmUp {
+    /// How many of them were begun.
+    pub(super) fn count(&self) -> usize {
+        self.threads.len()
+    }
+
+    /// Begins to make some of them.
+    pub(super) fn start(
+        &mut self,
+        shaders: &ShaderLibrary,
+        what: fn(&ShaderLibrary, &AtomicBool) -> Result<(), GpuError>,
+    ) -> std::io::Result<()> {
+        let (shaders, stop) = (shaders.clone(), Arc::clone(&self.stop));
+        let thread = std::thread::Builder::new().name("warm-up".to_owned());
+        self.threads.push(thread.spawn(move || {
+            if let Err(err) = what(&shaders, &stop) {
+                log::error!("pipelines could not be made ahead of time: {err}");
+            }
+            if let Err(err) = shaders.save_cache() {
+                log::warn!("pipelines could not be kept for the next start: {err}");
+            }
+        })?);
+        Ok(())
+    }
+}
+
+impl Drop for WarmUp {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        for thread in self.threads.drain(..) {
+            // That it panicked is logged where it did.
+            drop(thread.join());
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! What the command line says of single settings.
+
+use super::LookArgs;
+use super::choices::{EngineArg, ShadowArg};
+use crate::cli::CliError;
+use crate::model::{Engine, Quality, Settings, ShadowAlgorithm, assign};
+
+impl LookArgs {
+    /// Lays over settings what the command line says of single ones.
+    pub(super) fn single_settings(
+        &self,
+        mut settings: Settings,
+        warn: impl Fn(&str),
+    ) -> Result<Settings, CliError> {
+        if let Some(level) = self.quality {
+            Quality::from(level).apply(&mut settings);
+        }
+        for assignment in &self.set {
+            let (path, value) = assignment.split_once('=').ok_or_else(|| {
+                CliError::Usage(format!(
+                    "--set: expected PATH=VALUE, found {assignment:?} (command line, --set)"
+                ))
+            })?;
+            let (next, warning) = assign(&settings, path.trim(), value.trim())
+                .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
+            if let Some(warning) = warning {
+                warn(&format!("warning: --set: {warning}"));
+            }
+            settings = next;
+        }
+        match self.shadows {
+            Some(ShadowArg::Off) => settings.shadows.algorithm = ShadowAlgorithm::Off,
+            Some(ShadowArg::Splat) => settings.shadows.algorithm = ShadowAlgorithm::Splat,
+            Some(ShadowArg::Raycast) => settings.shadows.algorithm = ShadowAlgorithm::Raycast,
+            Some(ShadowArg::Direct) => settings.shadows.algorithm = ShadowAlgorithm::Direct,
+            None => {}
+        }
+        match self.engine {
+            Some(EngineArg::Gather) => settings.sampling.engine = Engine::Gather,
+            Some(EngineArg::Scatter) => settings.sampling.engine = Engine::Scatter,
+            None => {}
+        }
+        Ok(settings)
+    }
+}

@@ -1,0 +1,385 @@
+//! How much voxels differ from those a number of voxels further on in the file, and whether that number is a row or a slice.
+
+use std::io;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::super::bytes::RawBytes;
+use super::codes::{Code, first};
+use super::shapes::SHORTEST;
+use super::spots::Spots;
+use crate::data::VoxelType;
+use crate::data::load::Endian;
+
+/// The longest row that is looked for; longer ones can be said by the file's name.
+pub(super) const LONGEST_ROW: usize = 4096;
+
+/// Voxels of all spots that are compared with others.
+const STARTS: usize = 8192;
+
+/// Runs of voxels, of all spots, that are compared with another slice: of bytes that are in memory more, which cost no
+/// reading.
+const RUNS: [usize; 2] = [16, 64];
+
+/// Voxels that lie near each other, whose results are compared with those of others to see what chance does.
+const GROUP: usize = 128;
+
+/// Bytes that are read in one piece for slices whose size nothing says: two of 1024 × 1024 voxels of two bytes.
+const LONG_BYTES: u64 = 4 << 20;
+
+/// Comparisons of voxels in it with rows behind them: a few milliseconds.
+const LONG_PAIRS: usize = 1 << 21;
+
+/// Every third voxel of a run is enough.
+const LONG_STEP: usize = 3;
+
+/// Numbers of rows that are proposed because voxels agree.
+const FOUND: usize = 6;
+
+/// A dip along rows may be so many times deeper than that from row to row: rows may lie nearer together than their voxels.
+const AS_DEEP: f64 = 3.0;
+
+/// Shares of the voxels that are below black and above white: no single value decides.
+const CLIPPED: [f64; 2] = [0.005, 0.995];
+
+/// How grey levels are made of numbers: from 0 to 1.
+#[derive(Debug, Clone, Copy)]
+struct Greys {
+    voxel_type: VoxelType,
+    endian: Endian,
+    low: f64,
+    per_grey: f64,
+}
+
+impl Greys {
+    fn grey(&self, value: f64) -> f32 {
+        let grey = (value - self.low) / self.per_grey;
+        // What is no number is black.
+        if grey > 0.0 { grey.min(1.0) as f32 } else { 0.0 }
+    }
+
+    fn of(&self, bytes: &[u8]) -> Vec<f32> {
+        let mut greys = Vec::with_capacity(bytes.len() / self.voxel_type.bytes());
+        each_value(bytes, self.voxel_type, self.endian, |value| greys.push(self.grey(value)));
+        greys
+    }
+}
+
+/// Gives the numbers of bytes one after the other.
+pub(in crate::data::load::formats::raw) fn each_value(
+    bytes: &[u8],
+    voxel_type: VoxelType,
+    endian: Endian,
+    mut give: impl FnMut(f64),
+) {
+    macro_rules! values {
+        ($number:ty) => {
+            for chunk in bytes.chunks_exact(size_of::<$number>()) {
+                let raw = chunk.try_into().unwrap_or_default();
+                let value = match endian {
+                    Endian::Little => <$number>::from_le_bytes(raw),
+                    Endian::Big => <$number>::from_be_bytes(raw),
+                };
+                give(value.into());
+            }
+        };
+    }
+    match voxel_type {
+        VoxelType::U8 => values!(u8),
+        VoxelType::I8 => values!(i8),
+        VoxelType::U16 => values!(u16),
+        VoxelType::I16 => values!(i16),
+        VoxelType::U32 => values!(u32),
+        VoxelType::I32 => values!(i32),
+        VoxelType::F32 => values!(f32),
+        VoxelType::F64 => values!(f64),
+    }
+}
+
+/// How much less voxels differ from those at a distance than from those around that place.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Dip {
+    /// Mean difference at the distance.
+    pub(super) difference: f64,
+    /// What it is less, as a share of the difference around: 0 for no dip.
+    pub(super) depth: f64,
+    /// How many times deeper than what chance makes of it.
+    pub(super) sigmas: f64,
+}
+
+/// Differences of voxels and their neighbours, summed in groups.
+#[derive(Debug, Default)]
+struct Groups(Vec<Sums>);
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    at: f64,
+    /// Around it, along a row and from row to row.
+    around: [f64; 2],
+    count: f64,
+}
+
+impl Groups {
+    /// The dip along rows, which a wrong length of rows makes no deeper; unless there is hardly one from row to row, as
+    /// at wrong numbers of rows.
+    fn dip(&self) -> Dip {
+        let [along, across] = [0, 1].map(|which| self.dip_along(which));
+        let most = AS_DEEP * across.depth;
+        if along.depth <= most { along } else { Dip { depth: most, sigmas: across.sigmas, ..along } }
+    }
+
+    fn dip_along(&self, which: usize) -> Dip {
+        let count: f64 = self.0.iter().map(|sums| sums.count).sum();
+        if count == 0.0 {
+            return Dip::default();
+        }
+        let gains = || self.0.iter().map(|sums| sums.around[which] - sums.at);
+        let at: f64 = self.0.iter().map(|sums| sums.at).sum();
+        let around: f64 = self.0.iter().map(|sums| sums.around[which]).sum();
+        let gain: f64 = gains().sum();
+        // The spread of the groups' gains tells how far their sum may be off by chance.
+        let n = self.0.len() as f64;
+        let spread: f64 = gains().map(|group| (group - gain / n).powi(2)).sum();
+        let deviation = (spread * n / (n - 1.0).max(1.0)).sqrt();
+        let depth = if around > 0.0 { gain / around } else { 0.0 };
+        Dip { difference: at / count, depth, sigmas: if deviation > 0.0 { gain / deviation } else { 0.0 } }
+    }
+}
+
+/// A spot's voxels.
+#[derive(Debug)]
+struct Stretch {
+    /// The place of the first voxel in the file.
+    at: u64,
+    greys: Vec<f32>,
+    /// Where something is to be seen.
+    runs: Vec<Range<usize>>,
+}
+
+/// Voxels that are compared with another slice, lying together.
+const RUN: usize = 256;
+
+/// Runs whose parts differ by less than this share of the most show little.
+const LEAST_UNREST: f64 = 0.05;
+
+/// Runs of voxels where something is to be seen.
+fn runs(greys: &[f32]) -> Vec<Range<usize>> {
+    let mut found: Vec<(Range<usize>, f64)> = (0..greys.len())
+        .step_by(RUN)
+        .map(|start| {
+            let run = start..(start + RUN).min(greys.len());
+            // Means of eight, which noise changes less than objects do.
+            let means: Vec<f64> = greys[run.clone()]
+                .chunks(8)
+                .map(|part| part.iter().map(|&grey| f64::from(grey)).sum::<f64>() / 8.0)
+                .collect();
+            let mean = means.iter().sum::<f64>() / means.len() as f64;
+            (run, means.iter().map(|part| (part - mean) * (part - mean)).sum())
+        })
+        .collect();
+    let most = found.iter().map(|run| run.1).fold(0.0, f64::max);
+    found.retain(|run| run.1 >= LEAST_UNREST * most);
+    // From everywhere, whichever number of them is taken: the golden section spreads them.
+    let count = found.len();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|&at| (at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    order.into_iter().map(|at| found[at].0.clone()).collect()
+}
+
+/// Voxels of one type, and how much they differ at each distance.
+#[derive(Debug)]
+pub(super) struct Lags {
+    greys: Greys,
+    stretches: Vec<Stretch>,
+    /// Mean difference at each distance in voxels, from 0 on.
+    pub(super) differences: Vec<f64>,
+    /// Mean difference of voxels that have nothing to do with each other.
+    pub(super) unlike: f64,
+    /// Voxels of one long piece around the middle of the file.
+    long: Vec<f32>,
+}
+
+impl Lags {
+    pub(super) fn of(bytes: &mut RawBytes, spots: &Spots, code: &Code) -> io::Result<Self> {
+        let (voxel_type, endian) = (code.voxel_type, code.endian);
+        let skip = |at: u64, piece: &[u8]| first(at, voxel_type, code.phase).min(piece.len());
+        let mut all = Vec::new();
+        for spot in &spots.0 {
+            let skip = skip(spot.at, &spot.bytes);
+            // Every seventh will do, and that is no power of two.
+            let mut at = 0usize;
+            each_value(&spot.bytes[skip..], voxel_type, endian, |value| {
+                if at.is_multiple_of(7) && value.is_finite() {
+                    all.push(value);
+                }
+                at += 1;
+            });
+        }
+        all.sort_unstable_by(f64::total_cmp);
+        let quantile = |share: f64| all.get((share * all.len() as f64) as usize).copied().unwrap_or_default();
+        let [mut low, mut high] = CLIPPED.map(quantile);
+        if low == high {
+            (low, high) = (quantile(0.0), all.last().copied().unwrap_or_default());
+        }
+        let per_grey = if high > low { high - low } else { 1.0 };
+        let greys = Greys { voxel_type, endian, low, per_grey };
+        let stretches: Vec<Stretch> = spots
+            .0
+            .iter()
+            .map(|spot| {
+                let skip = skip(spot.at, &spot.bytes);
+                let greys = greys.of(&spot.bytes[skip..]);
+                Stretch { at: spot.at + skip as u64, runs: runs(&greys), greys }
+            })
+            .collect();
+        let differences = differences(&stretches);
+        let length = LONG_BYTES.min(bytes.readable());
+        let from = (bytes.readable() - length) / 2;
+        let mut piece = vec![0; length as usize];
+        let read = bytes.read_at(from, &mut piece)?;
+        let skip = skip(from, &piece[..read]);
+        let long = greys.of(&piece[skip..read]);
+        let mut lags = Self { greys, stretches, differences, unlike: 0.0, long };
+        lags.unlike = lags.of_strangers();
+        Ok(lags)
+    }
+
+    /// Voxels of each spot that are compared: as far apart as they can be with room for the longest distance.
+    fn starts(stretch: &Stretch, count: usize, longest: usize) -> impl Iterator<Item = usize> + use<> {
+        let room = stretch.greys.len().saturating_sub(longest);
+        (0..room).step_by((room / count).max(1)).take(count)
+    }
+
+    /// Voxels compared with those of other spots, in another order.
+    fn of_strangers(&self) -> f64 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        let all: Vec<f32> =
+            self.stretches.iter().flat_map(|stretch| stretch.greys.iter().copied().step_by(61)).collect();
+        for (at, grey) in all.iter().enumerate() {
+            // A step that has no factor in common with lengths in use, about 0.618 of the whole.
+            let other = (at * 7919 + all.len() * 5 / 8) % all.len().max(1);
+            sum += f64::from((grey - all[other]).abs());
+            count += 1.0;
+        }
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+
+    /// Whether voxels in a row of so many are nearer to those in the next row than to their neighbours.
+    pub(super) fn row(&self, length: usize) -> Dip {
+        let mut groups = Vec::new();
+        for stretch in &self.stretches {
+            let count = STARTS / self.stretches.len();
+            let starts: Vec<usize> = Self::starts(stretch, count, length + 1).collect();
+            for part in starts.chunks(GROUP) {
+                let mut sums = Sums::default();
+                for &start in part {
+                    let grey = stretch.greys[start];
+                    let difference = |lag: usize| f64::from((stretch.greys[start + lag] - grey).abs());
+                    sums.at += difference(length);
+                    let around = 0.5 * (difference(length - 1) + difference(length + 1));
+                    sums.around = sums.around.map(|sum| sum + around);
+                    sums.count += 1.0;
+                }
+                groups.push(sums);
+            }
+        }
+        Groups(groups).dip()
+    }
+
+    /// Numbers of rows at whose distance voxels are nearer than a row before and behind, the nearest first.
+    pub(super) fn slices(&self, row: usize) -> Vec<usize> {
+        let long = &self.long;
+        let most = long.len() / 2 / row;
+        if most < SHORTEST + 2 {
+            return Vec::new();
+        }
+        let mut sums = vec![0.0f64; most];
+        let lively = runs(&long[..long.len() / 2]).into_iter().flatten();
+        for start in lively.step_by(LONG_STEP).take((LONG_PAIRS / most).max(256)) {
+            let grey = long[start];
+            for (sum, other) in sums.iter_mut().zip(long[start..].iter().step_by(row)) {
+                *sum += f64::from((other - grey).abs());
+            }
+        }
+        let depth =
+            |rows: usize| 1.0 - 2.0 * sums[rows] / (sums[rows - 1] + sums[rows + 1]).max(f64::MIN_POSITIVE);
+        let mut found: Vec<(usize, f64)> =
+            (SHORTEST..most - 1).map(|rows| (rows, depth(rows))).filter(|(_, depth)| *depth > 0.0).collect();
+        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+        found.truncate(FOUND);
+        found.into_iter().map(|(rows, _)| rows).collect()
+    }
+
+    /// Whether voxels are nearer to those of the next slice than to those beside and above these.
+    pub(super) fn slice(&self, bytes: &mut RawBytes, row: usize, rows: usize) -> io::Result<Dip> {
+        let size = self.greys.voxel_type.bytes();
+        if rows < 2 {
+            return Ok(Dip::default());
+        }
+        let (slice, reach) = (row * rows, row + 1);
+        let mut groups = Vec::new();
+        let mut buffer = Vec::new();
+        let runs = RUNS[usize::from(bytes.is_held())].div_ceil(self.stretches.len().max(1));
+        for stretch in &self.stretches {
+            for run in stretch.runs.iter().take(runs) {
+                // Voxels that lie together: one read.
+                let here = &stretch.greys[run.clone()];
+                let at = stretch.at + (run.start * size) as u64;
+                let length = (here.len() + 2 * reach) * size;
+                let ahead = at + ((slice - reach) * size) as u64;
+                let place = if ahead + length as u64 <= bytes.readable() {
+                    ahead
+                } else if let Some(behind) = at.checked_sub(((slice + reach) * size) as u64) {
+                    behind
+                } else {
+                    continue;
+                };
+                buffer.resize(length, 0);
+                let read = bytes.read_at(place, &mut buffer)?;
+                if read < length {
+                    continue;
+                }
+                // Those in the row before, in the same row from one before to one behind, and in the row behind.
+                let part =
+                    |from: usize, count: usize| self.greys.of(&buffer[from * size..(from + count) * size]);
+                let [before, behind] = [1, 1 + 2 * row].map(|from| part(from, here.len()));
+                let same = part(row, here.len() + 2);
+                for part in (0..here.len()).step_by(GROUP) {
+                    let mut sums = Sums::default();
+                    for at in part..(part + GROUP).min(here.len()) {
+                        let difference = |other: f32| f64::from((other - here[at]).abs());
+                        sums.at += difference(same[at + 1]);
+                        sums.around[0] += 0.5 * (difference(same[at]) + difference(same[at + 2]));
+                        sums.around[1] += 0.5 * (difference(before[at]) + difference(behind[at]));
+                        sums.count += 1.0;
+                    }
+                    groups.push(sums);
+                }
+            }
+        }
+        Ok(Groups(groups).dip())
+    }
+}
+
+/// Mean differences at each distance.
+fn differences(stretches: &[Stretch]) -> Vec<f64> {
+    let shortest = stretches.iter().map(|stretch| stretch.greys.len()).min().unwrap_or_default();
+    let longest = LONGEST_ROW.min(shortest / 2);
+    let starts = |stretch: &Stretch| Lags::starts(stretch, STARTS / stretches.len(), longest + 1);
+    let sums: Vec<Vec<f32>> = stretches
+        .par_iter()
+        .map(|stretch| {
+            let mut sums = vec![0.0f32; longest + 1];
+            for start in starts(stretch) {
+                let grey = stretch.greys[start];
+                for (sum, other) in sums.iter_mut().zip(&stretch.greys[start..]) {
+                    *sum += (other - grey).abs();
+                }
+            }
+            sums
+        })
+        .collect();
+    let count = stretches.iter().map(|stretch| starts(stretch).count()).sum::<usize>().max(1) as f64;
+    (0..=longest).map(|lag| sums.iter().map(|sums| f64::from(sums[lag])).sum::<f64>() / count).collect()
+}

@@ -1,0 +1,194 @@
+//! The three slices through the middle of a file of bare voxels, as it would be stored: read where they lie, so that they
+//! follow while numbers are changed, whatever the size of the file.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::bytes::RawBytes;
+use super::layout::RawLayout;
+use super::plausible::each_value;
+use crate::data::ValueRange;
+
+/// The most voxels along the edge of a slice: more than a screen shows of it.
+const LONGEST: usize = 256;
+
+/// Bytes that are read at once to pick voxels from; what lies further apart is read voxel by voxel.
+const TOGETHER: usize = 64 << 10;
+
+/// Shares of the voxels that are as black, or as white, as can be.
+const CLIPPED: [f64; 2] = [0.01, 0.99];
+
+/// A slice, with fewer voxels where it has more than can be shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slice {
+    /// Voxels along its first and second axis.
+    pub size: [usize; 2],
+    /// Their values, the first axis fastest; none where the file ends before them, or they are no number.
+    pub values: Vec<Option<f32>>,
+}
+
+/// Slices across z, y and x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MiddleSlices {
+    /// Of x and y, x and z, y and z.
+    pub slices: [Slice; 3],
+    /// The voxel that all three go through, along x, y and z.
+    pub at: [usize; 3],
+    /// The values that matter, among those of the slices.
+    pub range: ValueRange,
+}
+
+/// Reads the middle slices; none if the work was given up.
+///
+/// Of a compressed file whose start alone is known, they are those in the middle of that.
+///
+/// # Errors
+/// When the file cannot be read.
+pub fn middle_slices(
+    bytes: &mut RawBytes,
+    layout: &RawLayout,
+    stop: &AtomicBool,
+) -> io::Result<Option<MiddleSlices>> {
+    let dims = layout.dims.map(|n| n.max(1));
+    let mut at = dims.map(|n| n / 2);
+    let voxel_bytes = layout.voxel_type.bytes() as u64;
+    let slice_bytes = (dims[0] as u64).saturating_mul(dims[1] as u64).saturating_mul(voxel_bytes);
+    let readable = bytes.readable().saturating_sub(layout.offset);
+    if bytes.readable() < bytes.length() {
+        let slices = readable / slice_bytes.max(1);
+        at[2] = at[2].min((slices / 2) as usize);
+    }
+    let mut reader = Reader { bytes, layout, dims, buffer: Vec::new() };
+    let mut slices = Vec::with_capacity(3);
+    for (u, v) in [(0, 1), (0, 2), (1, 2)] {
+        let (across, up) = (picked(dims[u]), picked(dims[v]));
+        let mut values = Vec::with_capacity(across.len() * up.len());
+        for &second in &up {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
+            let mut first = at;
+            (first[u], first[v]) = (0, second);
+            reader.line(first, u, &across, &mut values)?;
+        }
+        slices.push(Slice { size: [across.len(), up.len()], values });
+    }
+    let range = range_of(&slices);
+    let found: Result<[Slice; 3], _> = slices.try_into();
+    Ok(found.ok().map(|slices| MiddleSlices { slices, at, range }))
+}
+
+/// Evenly spread indices of an axis.
+fn picked(n: usize) -> Vec<usize> {
+    let count = n.min(LONGEST);
+    (0..count).map(|at| (at as u128 * n as u128 / count as u128) as usize).collect()
+}
+
+struct Reader<'a> {
+    bytes: &'a mut RawBytes,
+    layout: &'a RawLayout,
+    dims: [usize; 3],
+    buffer: Vec<u8>,
+}
+
+impl Reader<'_> {
+    /// Reads voxels of a line along an axis.
+    fn line(
+        &mut self,
+        first: [usize; 3],
+        axis: usize,
+        picked: &[usize],
+        values: &mut Vec<Option<f32>>,
+    ) -> io::Result<()> {
+        let size = self.layout.voxel_type.bytes() as u64;
+        let [x, y] = [self.dims[0] as u64, self.dims[1] as u64];
+        let [i, j, k] = first.map(|at| at as u64);
+        let rows = k.saturating_mul(y).saturating_add(j);
+        let voxel = rows.saturating_mul(x).saturating_add(i);
+        let start = voxel.saturating_mul(size).saturating_add(self.layout.offset);
+        let step = [1, x, x.saturating_mul(y)][axis].saturating_mul(size);
+        let place = |at: usize| start.saturating_add(step.saturating_mul(at as u64));
+        let mut from = 0;
+        while from < picked.len() {
+            // As many as lie together.
+            let within = |at: &&usize| place(**at) - place(picked[from]) + size <= TOGETHER as u64;
+            let count = picked[from..].iter().take_while(within).count().max(1);
+            let group = &picked[from..from + count];
+            let length = place(group[count - 1]) - place(group[0]) + size;
+            self.buffer.resize(length as usize, 0);
+            let read = self.bytes.read_at(place(group[0]), &mut self.buffer)?;
+            for &at in group {
+                let begin = (place(at) - place(group[0])) as usize;
+                let end = begin + size as usize;
+                let mut found = None;
+                if end <= read {
+                    let (voxel_type, endian) = (self.layout.voxel_type, self.layout.endian);
+                    each_value(&self.buffer[begin..end], voxel_type, endian, |value| {
+                        found = Some(value as f32).filter(|value| value.is_finite());
+                    });
+                }
+                values.push(found);
+            }
+            from += count;
+        }
+        Ok(())
+    }
+}
+
+/// The range of all values but a few at either end; of all, where those are the same.
+fn range_of(slices: &[Slice]) -> ValueRange {
+    let mut values: Vec<f32> =
+        slices.iter().flat_map(|slice| slice.values.iter().flatten().copied()).collect();
+    values.sort_unstable_by(f32::total_cmp);
+    let quantile = |share: f64| values.get((share * values.len() as f64) as usize).or(values.last()).copied();
+    let [low, high] = CLIPPED.map(|share| f64::from(quantile(share).unwrap_or_default()));
+    if low < high {
+        return ValueRange::new(low, high);
+    }
+    let [low, high] = [0.0, 1.0].map(|share| f64::from(quantile(share).unwrap_or_default()));
+    ValueRange::new(low, high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::VoxelType;
+    use crate::data::load::Endian;
+
+    fn layout(dims: [usize; 3]) -> RawLayout {
+        RawLayout { dims, voxel_type: VoxelType::U16, spacing_mm: None, endian: Endian::Big, offset: 3 }
+    }
+
+    /// Values x + 100 y + 1000 z behind a header.
+    fn file([x, y, z]: [usize; 3]) -> Vec<u8> {
+        let value = |at: usize| (at % x + 100 * (at / x % y) + 1000 * (at / x / y)) as u16;
+        [7, 7, 7].into_iter().chain((0..x * y * z).flat_map(|at| value(at).to_be_bytes())).collect()
+    }
+
+    #[test]
+    fn slices_go_through_the_middle_in_three_directions() {
+        let dims = [5, 4, 3];
+        let mut bytes = RawBytes::from(file(dims));
+        let found = middle_slices(&mut bytes, &layout(dims), &AtomicBool::new(false)).unwrap().unwrap();
+        assert_eq!(found.at, [2, 2, 1]);
+        let value = |slice: usize, at: usize| found.slices[slice].values[at];
+        assert_eq!(found.slices.clone().map(|slice| slice.size), [[5, 4], [5, 3], [4, 3]]);
+        assert_eq!((value(0, 0), value(0, 6)), (Some(1000.0), Some(1101.0)));
+        assert_eq!((value(1, 0), value(1, 6)), (Some(200.0), Some(1201.0)));
+        assert_eq!((value(2, 0), value(2, 5)), (Some(2.0), Some(1102.0)));
+    }
+
+    #[test]
+    fn what_is_not_in_the_file_is_missing() {
+        let mut bytes = RawBytes::from(file([5, 4, 3]));
+        let long = layout([5, 4, 100]);
+        let found = middle_slices(&mut bytes, &long, &AtomicBool::new(false)).unwrap().unwrap();
+        assert!(found.slices[0].values.iter().all(Option::is_none), "the middle lies behind the end");
+        assert_eq!(found.slices[1].values.iter().flatten().count(), 5 * 3);
+        let endless = layout([usize::MAX; 3]);
+        let found = middle_slices(&mut bytes, &endless, &AtomicBool::new(false)).unwrap().unwrap();
+        assert!(found.slices.iter().all(|slice| slice.values.len() == LONGEST * LONGEST));
+        let stopped = middle_slices(&mut bytes, &long, &AtomicBool::new(true)).unwrap();
+        assert_eq!(stopped, None);
+    }
+}
