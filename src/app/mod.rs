@@ -226,6 +226,11 @@ impl App {
         self.messages.errors()
     }
 
+    /// The latest note in the status bar since then, also when it has gone.
+    pub fn latest_note(&self) -> Option<&str> {
+        self.messages.latest_note()
+    }
+
     /// Exports the picture as the export window does.
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
         self.export.set_size(size);

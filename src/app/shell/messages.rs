@@ -34,6 +34,8 @@ pub(crate) struct Messages {
     until_s: Option<f64>,
     /// Since the last volume was opened, for automation.
     errors: Vec<String>,
+    /// The latest since then, also when it has gone.
+    note: Option<String>,
 }
 
 impl Messages {
@@ -47,7 +49,9 @@ impl Messages {
 
     /// Something worth knowing.
     pub(crate) fn note(&mut self, short: impl Into<String>) {
-        self.show(Message { short: short.into(), details: String::new(), is_error: false });
+        let short = short.into();
+        self.note = Some(plain(&short, LONGEST_SHORT));
+        self.show(Message { short, details: String::new(), is_error: false });
     }
 
     fn show(&mut self, Message { short, details, is_error }: Message) {
@@ -72,6 +76,11 @@ impl Messages {
     /// Errors so far.
     pub(crate) fn errors(&self) -> &[String] {
         &self.errors
+    }
+
+    /// The latest note, which may be over.
+    pub(crate) fn latest_note(&self) -> Option<&str> {
+        self.note.as_deref()
     }
 
     /// Shows the message in a row, if there is anything to say.

@@ -95,8 +95,11 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     // The next run opens it so, and says so; a step back shows it as the file says, and forgets.
     let mut harness = start(&file, storage.path(), None);
     assert_eq!(settings(&harness).volume, spaced.volume);
-    let said = harness.query_by_label_contains("Corrected as last time: spacing 1 × 1 ×");
-    assert!(said.is_some(), "nothing is said");
+    let said = harness.state().latest_note().map(str::to_owned);
+    assert!(
+        said.as_ref().is_some_and(|said| said.starts_with("Corrected as last time: spacing 1 × 1 ×")),
+        "{said:?}"
+    );
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert!(settings(&harness).volume.is_none());
     drop(harness);

@@ -101,7 +101,7 @@ fn data_elsewhere_and_broken_lists_are_refused() {
     refused("s%03d.raw 7 8 1", LoadErrorKind::Io, &["no such file"]);
     refused("s%03d.raw a b", LoadErrorKind::Io, &["no such file"]);
     refused("missing.raw", LoadErrorKind::Io, &["no such file"]);
-    refused(".", LoadErrorKind::Io, &["directory"]);
+    refused(".", bad, &["is a folder"]);
     write(&folder, "sub/a.raw", "", &VOXELS[..4]);
     write(&folder, "sub/b.raw", "", &VOXELS[..3]);
     refused("LIST\na.raw\nb.raw", bad, &["b.raw", "truncated", "4 bytes", "3 found"]);
