@@ -1,7 +1,7 @@
 //! The bytes of a file of bare voxels, read where they are wanted: any part of a file, or the start of a compressed one.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek as _, SeekFrom};
+use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -36,7 +36,7 @@ const CODES: usize = 4;
 const HOPELESS: f64 = 1.6;
 
 /// What the name of a file says of it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Said {
     /// Voxels along x, y and z.
     pub dims: Option<[usize; 3]>,

@@ -7,7 +7,7 @@ use super::Said;
 use super::codes::Code;
 use super::lags::{Dip, Lags};
 
-/// Lengths of headers that formats and programs have: none, the smallest of MRC and others in use, Analyze and NIfTI,
+/// Lengths of headers that formats and programs have: none, the smallest of MRC and others in use, Analyze and `NIfTI`,
 /// whole blocks of a disk.
 pub(super) const HEADERS: [u64; 14] = [0, 16, 32, 64, 80, 128, 256, 348, 352, 512, 1024, 2048, 4096, 8192];
 
