@@ -4,10 +4,9 @@ use std::cmp::Ordering;
 
 use eframe::egui::{self, DragValue, Response, Ui};
 
-use super::looking::Length;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::text::raw::Unit;
+use crate::app::text::raw::{Length, Unit};
 use crate::data::VoxelType;
 use crate::data::load::raw::Proposal;
 use crate::data::load::{Endian, RawGuess, RawLayout};
