@@ -1,7 +1,6 @@
 //! The window that asks how a file of bare voxels is stored.
 
 use crate::app::text::{Named, named};
-use crate::app::windows::raw_dialog::Length;
 use crate::data::load::raw::Evidence;
 use crate::data::load::{Endian, RawLayout};
 
@@ -54,6 +53,15 @@ pub(crate) const SLICES: [&str; 3] =
 /// Beside the slices.
 pub(crate) const READING_SLICES: &str = "All three should show the object.\n\nNoise: type, byte order or header.\n\
     Slanted or doubled: voxels along x.\nBands in the lower two: voxels along y.\nDark red: not in the file.";
+
+/// How long the voxels are with all that precedes them, after inflating.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Length {
+    /// In bytes.
+    pub bytes: u64,
+    /// Whether they were counted, not only said by the file's end.
+    pub is_exact: bool,
+}
 
 /// A unit of length; none if nobody knows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,10 +4,9 @@ use std::cmp::Ordering;
 
 use eframe::egui::{self, DragValue, Response, Ui};
 
-use super::looking::Length;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::text::raw::Unit;
+use crate::app::text::raw::{Length, Unit};
 use crate::data::VoxelType;
 use crate::data::load::raw::Proposal;
 use crate::data::load::{Endian, RawGuess, RawLayout};
@@ -164,15 +163,16 @@ impl Form {
             ui.weak(text::raw::COMPRESSED);
             return true;
         };
-        let colors = [theme::good(ui.visuals()), ui.visuals().warn_fg_color, ui.visuals().error_fg_color];
+        let visuals = ui.visuals();
+        let (good, warning, wrong) = (theme::good(visuals), visuals.warn_fg_color, visuals.error_fg_color);
         let Some(expected) = self.layout.file_bytes() else {
-            ui.colored_label(colors[2], text::raw::TOO_MANY);
+            ui.colored_label(wrong, text::raw::TOO_MANY);
             return false;
         };
         match expected.cmp(&found) {
-            Ordering::Equal => ui.colored_label(colors[0], text::raw::fits(found, is_exact)),
-            Ordering::Less => ui.colored_label(colors[1], text::raw::longer(found - expected)),
-            Ordering::Greater => ui.colored_label(colors[2], text::raw::shorter(found, expected)),
+            Ordering::Equal => ui.colored_label(good, text::raw::fits(found, is_exact)),
+            Ordering::Less => ui.colored_label(warning, text::raw::longer(found - expected)),
+            Ordering::Greater => ui.colored_label(wrong, text::raw::shorter(found, expected)),
         };
         ui.horizontal_wrapped(|ui| self.remedies(ui, found, expected));
         // What the end of a compressed file says may be wrong.

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use eframe::egui;
 
 use crate::app::text;
+use crate::app::text::raw::Length;
 use crate::app::worker::task::Work;
 use crate::data::load::raw::{Proposal, RawBytes, Said, proposals};
 
@@ -39,15 +40,6 @@ impl Drop for Stopper {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Relaxed);
     }
-}
-
-/// How long the voxels are with all that precedes them, after inflating.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Length {
-    /// In bytes.
-    pub bytes: u64,
-    /// Whether they were counted, not only said by the file's end.
-    pub is_exact: bool,
 }
 
 /// What was found.

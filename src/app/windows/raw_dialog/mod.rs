@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, Key, Modifiers};
 
 use self::form::Form;
-pub(crate) use self::looking::Length;
 use self::looking::Looking;
 use self::pictures::Pictures;
 use crate::app::text;

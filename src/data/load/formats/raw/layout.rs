@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::super::input::is_gzip;
 use super::super::{Endian, nrrd};
-use super::plausible::Said;
+use super::said::Said;
 use super::{RawFormat, name, sidecar};
 use crate::data::VoxelType;
 

@@ -6,6 +6,7 @@ mod form;
 mod layout;
 mod name;
 mod plausible;
+mod said;
 mod sidecar;
 mod slices;
 
@@ -21,7 +22,8 @@ use crate::data::{Volume, VoxelType, plain};
 pub use bytes::RawBytes;
 use form::Form;
 pub use layout::{RawGuess, RawLayout};
-pub use plausible::{Evidence, Proposal, Said, proposals};
+pub use plausible::{Evidence, Proposal, proposals};
+pub use said::Said;
 pub(super) use sidecar::{DAT, INI, IVF};
 pub use slices::{MiddleSlices, Slice, middle_slices};
 

@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::Said;
+use super::super::said::Said;
 use super::spots::{Spots, unrest};
 use crate::data::VoxelType;
 use crate::data::load::Endian;

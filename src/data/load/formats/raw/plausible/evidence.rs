@@ -1,7 +1,7 @@
 //! What speaks for a way of storing a file.
 
 use super::super::layout::RawLayout;
-use super::Said;
+use super::super::said::Said;
 use super::codes::Code;
 use super::shapes::{HEADERS, Shape};
 

@@ -7,10 +7,12 @@ use rayon::prelude::*;
 
 use super::super::bytes::RawBytes;
 use super::codes::{Code, first};
-use super::shapes::SHORTEST;
 use super::spots::Spots;
 use crate::data::VoxelType;
 use crate::data::load::Endian;
+
+/// The shortest row that is guessed, and the fewest rows of a slice.
+pub(super) const SHORTEST: usize = 8;
 
 /// The longest row that is looked for; longer ones can be said by the file's name.
 pub(super) const LONGEST_ROW: usize = 4096;

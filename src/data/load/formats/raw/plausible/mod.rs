@@ -17,8 +17,7 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::bytes::RawBytes;
-use crate::data::VoxelType;
-use crate::data::load::Endian;
+use super::said::Said;
 use codes::Code;
 pub use evidence::{Evidence, Proposal};
 use lags::Lags;
@@ -34,17 +33,6 @@ const CODES: usize = 4;
 
 /// Number types that take so many times the bits of the best are not looked at.
 const HOPELESS: f64 = 1.6;
-
-/// What the name of a file says of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Said {
-    /// Voxels along x, y and z.
-    pub dims: Option<[usize; 3]>,
-    /// The number type.
-    pub voxel_type: Option<VoxelType>,
-    /// The byte order.
-    pub endian: Option<Endian>,
-}
 
 /// How a file may be stored, the likeliest first; nothing if the work was given up.
 ///

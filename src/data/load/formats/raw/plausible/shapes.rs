@@ -3,9 +3,9 @@
 use std::io;
 
 use super::super::bytes::RawBytes;
-use super::Said;
+use super::super::said::Said;
 use super::codes::Code;
-use super::lags::{Dip, Lags};
+use super::lags::{Dip, Lags, SHORTEST};
 
 /// Lengths of headers that formats and programs have: none, the smallest of MRC and others in use, Analyze and `NIfTI`,
 /// whole blocks of a disk.
@@ -13,9 +13,6 @@ pub(super) const HEADERS: [u64; 14] = [0, 16, 32, 64, 80, 128, 256, 348, 352, 51
 
 /// The longest header that is guessed where voxels do not fill the file.
 const LONGEST_HEADER: u64 = 64 << 10;
-
-/// The shortest row that is guessed, and the fewest rows of a slice.
-pub(super) const SHORTEST: usize = 8;
 
 /// The longest edge that is guessed.
 const LONGEST: usize = 1 << 16;

@@ -4,6 +4,8 @@ use rayon::prelude::*;
 
 use super::*;
 use crate::data::Volume;
+use crate::data::VoxelType;
+use crate::data::load::Endian;
 use crate::data::load::formats::raw::RawLayout;
 use crate::data::synthetic::{NAMES, builtin};
 
