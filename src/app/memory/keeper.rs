@@ -126,10 +126,11 @@ impl Shared {
                 log::warn!("the small picture of the look was not kept: {err}");
             }
         }
-        if !opened.is_empty()
-            && let Err(err) = recent::add(&self.folder, &opened)
-        {
-            log::warn!("files that were opened were not noted: {err}");
+        if !opened.is_empty() {
+            match recent::add(&self.folder, &opened) {
+                Ok(listed) => recent_pictures::tidy(&self.folder, &listed),
+                Err(err) => log::warn!("files that were opened were not noted: {err}"),
+            }
         }
         if !stood.is_empty()
             && let Err(err) = standing::add(&self.folder, stood)

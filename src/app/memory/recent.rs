@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{damaged, recent_pictures};
+use super::damaged;
 use crate::data::load::Choice;
 use crate::data::read_small;
 use crate::export::{hold_lock, write_atomically};
@@ -90,8 +90,8 @@ pub(super) fn put_first(list: &mut Vec<RecentFile>, latest: RecentFile) {
     list.truncate(MOST);
 }
 
-/// Adds files to the list of a folder, the latest last. What another window has added stays.
-pub(super) fn add(folder: &Path, opened: &[RecentFile]) -> Result<(), String> {
+/// Adds files to the list of a folder, the latest last, and gives it. What another window has added stays.
+pub(super) fn add(folder: &Path, opened: &[RecentFile]) -> Result<Vec<RecentFile>, String> {
     // Between reading and writing nobody else writes. Without locks, two windows must be quick to lose an entry.
     let _lock = hold_lock(&folder.join("recent.lock")).map_err(|err| err.to_string())?;
     let (mut list, _) = read(folder);
@@ -103,6 +103,6 @@ pub(super) fn add(folder: &Path, opened: &[RecentFile]) -> Result<(), String> {
     let text = serde_json::to_string_pretty(&paths).map_err(|err| err.to_string())?;
     write_atomically(&folder.join("recent.json"), text.as_bytes()).map_err(|err| err.to_string())?;
     let text = serde_json::to_string_pretty(&chosen).map_err(|err| err.to_string())?;
-    recent_pictures::tidy(folder, &list);
-    write_atomically(&folder.join(CHOSEN), text.as_bytes()).map_err(|err| err.to_string())
+    write_atomically(&folder.join(CHOSEN), text.as_bytes()).map_err(|err| err.to_string())?;
+    Ok(list)
 }

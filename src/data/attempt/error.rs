@@ -4,7 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
-use super::choice::{Choice, Dimension, Offer, Unclear};
+use super::choice::{Choice, Unclear};
+use super::offer::{Dimension, Offer};
 use crate::data::foreign_text::plain;
 
 /// What a user reads: `WHAT: WHY (file, field); HELP`.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::choice::{Choice, Dimension, Offer};
+use super::offer::{Dimension, Offer};
 
 /// In what volumes of a file differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,17 +82,6 @@ pub struct Held {
 }
 
 impl Held {
-    /// The choice that opens the same volume again; nothing where the file holds but one.
-    pub fn choice(&self) -> Choice {
-        let component = self.components.and_then(|components| components.shown);
-        self.several.iter().fold(Choice { component, ..Choice::default() }, |choice, several| {
-            match several.offers.get(several.at) {
-                Some(offer) => choice.with(several.dimension, &offer.key),
-                None => choice,
-            }
-        })
-    }
-
     /// The volumes that differ in a dimension.
     pub fn of(&self, dimension: Dimension) -> Option<&Several> {
         self.several.iter().find(|several| several.dimension == dimension)
