@@ -9,10 +9,8 @@ use super::CliError;
 use super::outputs::{destination, finish, keep_apart, warn_line};
 use super::scene::{LoadArgs, parse_voxel_type};
 use crate::data::load::{LoadControl, LoadOptions};
-use crate::data::{ValueRange, Volume, VolumeError, VoxelType, open};
-use crate::export::{
-    ConvertError, NumberWish, Orientation, Outgoing, VolumeFormat, check_writable, write_volume,
-};
+use crate::data::{Headings, ValueRange, Volume, VolumeError, VoxelType, open};
+use crate::export::{ConvertError, NumberWish, Outgoing, VolumeFormat, check_writable, write_volume};
 
 /// What standard output is for.
 const STANDARD_OUTPUT: &str = "-";
@@ -43,7 +41,7 @@ pub(super) struct ConvertArgs {
     region: Option<Region>,
     /// Sides of the body towards which the axes are to go, fastest first: RAS, LPS or another of the 48
     #[arg(long, value_name = "LETTERS")]
-    orient: Option<Orientation>,
+    orient: Option<Headings>,
     /// Compress the voxels within .nrrd (gzip) or .mha (zlib); .nii.gz always is
     #[arg(long)]
     compress: bool,
@@ -181,8 +179,8 @@ pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let wish = NumberWish { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
     let refused = |err: ConvertError| args.usage(&err);
     let mut outgoing = Outgoing::of(&volume).in_numbers(&wish).map_err(refused)?;
-    if let Some(orientation) = args.orient {
-        outgoing = outgoing.oriented(orientation).map_err(refused)?;
+    if let Some(headings) = args.orient {
+        outgoing = outgoing.oriented(headings).map_err(refused)?;
     }
     write_volume(output.path(), format, &outgoing, args.compress)?;
     let lost = format.lost(&outgoing);

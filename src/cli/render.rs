@@ -9,6 +9,7 @@ use super::CliError;
 use super::image_args::ImageArgs;
 use super::outputs::{destination, finish, hand_over, warn_line, warn_of_nothing};
 use super::scene::SceneArgs;
+use crate::data::fingerprint;
 use crate::export::{Destination, check_picture, check_writable, write_atomically, write_picture};
 use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
 use crate::model::{PictureRecord, Record, VolumeRecord, tells_maker};
@@ -109,11 +110,4 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         hand_over(to)?;
     }
     if is_told { hand_over(output) } else { finish(output) }
-}
-
-/// FNV-1a of a text: the same settings have the same hash in every version and on every machine.
-fn fingerprint(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }

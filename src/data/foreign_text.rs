@@ -1,4 +1,4 @@
-//! Text from outside, made harmless.
+//! Text from outside, made harmless, and told apart.
 
 /// Text from outside as one line of at most `longest` characters, for messages: control characters become `·`.
 pub fn plain(text: &str, longest: usize) -> String {
@@ -18,6 +18,14 @@ pub fn single_line(text: &str, longest: usize) -> String {
 /// Text that may hold words from outside, for a terminal: control characters other than the ends of lines become `·`.
 pub fn without_controls(text: &str) -> String {
     text.chars().map(|c| if c != '\n' && is_odd(c) { '·' } else { c }).collect()
+}
+
+/// A number made from all of a text, the same in every version and on every machine: FNV-1a of 64 bits
+/// (<https://datatracker.ietf.org/doc/html/rfc9923>).
+pub fn fingerprint(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
 }
 
 /// Whether a character could disturb a terminal or turn the direction of a line.

@@ -20,7 +20,7 @@ pub(crate) use attempt::address_bytes_left;
 pub use bricks::Bricks;
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;
-pub use foreign_text::{plain, single_line, without_controls};
+pub use foreign_text::{fingerprint, plain, single_line, without_controls};
 pub use hints::{Hints, Label, Labels, MAX_LABEL_NAME, MAX_LABELS, Meaning, Modality};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use open::open;

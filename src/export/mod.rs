@@ -23,6 +23,4 @@ pub use picture_file::{
 };
 pub use png_file::{encode_png, export_png};
 pub use rows::Rows;
-pub use volumes::{
-    ConvertError, NumberWish, Orientation, Outgoing, VolumeFormat, nrrd_header_like, write_volume,
-};
+pub use volumes::{ConvertError, NumberWish, Outgoing, VolumeFormat, nrrd_header_like, write_volume};

@@ -7,6 +7,7 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 
 use super::recent::{RecentFile, text_of};
 use super::{is_builtin, thumbnail};
+use crate::data::fingerprint;
 use crate::export;
 
 /// The folder, beside the list.
@@ -17,11 +18,7 @@ const MOST_NAMES: usize = 300;
 
 /// Where the picture of a file is: by a number that is made from all of its path.
 fn picture_of(folder: &Path, file: &Path) -> PathBuf {
-    // FNV-1a of 64 bits (<https://datatracker.ietf.org/doc/html/rfc9923>): the same for every version.
-    let number = text_of(file)
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
-    folder.join(FOLDER).join(format!("{number:016x}.png"))
+    folder.join(FOLDER).join(format!("{:016x}.png", fingerprint(&text_of(file))))
 }
 
 /// Keeps what a look of a file shows. Built-in volumes are in no list.

@@ -7,18 +7,17 @@ mod nifti;
 mod npy;
 mod nrrd;
 mod numbers;
-mod orientation;
 mod outgoing;
 #[cfg(test)]
 mod tests;
 mod tiff;
+mod turn;
 mod vti;
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
 pub use numbers::{ConvertError, NumberWish};
-pub use orientation::Orientation;
 pub use outgoing::Outgoing;
 
 use super::ExportError;

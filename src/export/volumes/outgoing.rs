@@ -5,8 +5,8 @@ use std::io::{Result, Write};
 use glam::DAffine3;
 
 use super::numbers::{ConvertError, NumberWish, Numbers, put};
-use super::orientation::Orientation;
-use crate::data::{Hints, Meaning, Samples, Volume, VoxelType};
+use super::turn::Turn;
+use crate::data::{Headings, Hints, Meaning, Samples, Volume, VoxelType};
 
 /// A volume that is to be written. Its voxels are turned and converted while they are.
 #[derive(Debug, Clone)]
@@ -44,11 +44,11 @@ impl<'a> Outgoing<'a> {
     ///
     /// # Errors
     /// When it is not known which way the body lies.
-    pub fn oriented(self, orientation: Orientation) -> std::result::Result<Self, ConvertError> {
+    pub fn oriented(self, headings: Headings) -> std::result::Result<Self, ConvertError> {
         if !self.volume.is_anatomical() {
             return Err(ConvertError::NoOrientation);
         }
-        let turn = orientation.turn(self.world_from_index);
+        let turn = Turn::towards(headings, self.world_from_index);
         let (mut first, mut steps) = (self.first, [0; 3]);
         for (axis, source) in turn.sources.into_iter().enumerate() {
             let step = self.steps[source];

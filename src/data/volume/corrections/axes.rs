@@ -121,9 +121,28 @@ impl Heading {
 }
 
 impl Headings {
+    /// Those of three letters, large or small, one of each pair.
+    fn of_letters(text: &str) -> Option<Self> {
+        // More than three are none, however many.
+        let headings: Option<Vec<_>> = text.chars().take(4).map(Heading::of_letter).collect();
+        let headings: [Heading; 3] = headings?.try_into().ok()?;
+        let has_all = (0..3).all(|axis| headings.iter().any(|heading| heading.axis == axis));
+        has_all.then_some(Self(headings))
+    }
+
     /// The directions of the three axes, in right-anterior-superior space.
     pub fn directions(self) -> [DVec3; 3] {
         self.0.map(Heading::direction)
+    }
+
+    /// All ways in which three axes can run in a body: those along its own axes first.
+    pub fn all() -> impl Iterator<Item = Self> {
+        AxisOrder::ALL.into_iter().flat_map(|order| {
+            (0..8).map(move |signs: usize| {
+                let heading = |place: usize| Heading { axis: place, is_backwards: signs >> place & 1 == 1 };
+                Self(order.places().map(heading))
+            })
+        })
     }
 
     /// The sides to which three axes run most, each pair of sides once: the one that runs most clearly chooses first.
@@ -143,14 +162,9 @@ impl Headings {
 }
 
 impl Orientation {
-    /// All ways in which three axes can run in a body, for lists: those along its own axes first.
+    /// Those of a body that lies in a known way, for lists.
     pub fn all_towards() -> impl Iterator<Item = Self> {
-        AxisOrder::ALL.into_iter().flat_map(|order| {
-            (0..8).map(move |signs: usize| {
-                let heading = |place: usize| Heading { axis: place, is_backwards: signs >> place & 1 == 1 };
-                Self::Towards(Headings(order.places().map(heading)))
-            })
-        })
+        Headings::all().map(Self::Towards)
     }
 }
 
@@ -169,6 +183,17 @@ impl fmt::Display for Orientation {
     }
 }
 
+impl FromStr for Headings {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::of_letters(text).ok_or_else(|| {
+            let shown = crate::data::plain(text, 40);
+            format!("expected one letter of each of R/L, A/P and S/I, as in RAS or LPS; found {shown:?}")
+        })
+    }
+}
+
 impl FromStr for Orientation {
     type Err = String;
 
@@ -176,16 +201,12 @@ impl FromStr for Orientation {
         if text.trim().eq_ignore_ascii_case("unknown") {
             return Ok(Self::Unknown);
         }
-        let refused = || {
+        Headings::of_letters(text.trim()).map(Self::Towards).ok_or_else(|| {
             let shown = crate::data::plain(text, 40);
             format!(
                 "expected one letter of each of R/L, A/P and S/I, as in RAS or LPS, or unknown; found {shown:?}"
             )
-        };
-        let headings: Option<Vec<_>> = text.trim().chars().map(Heading::of_letter).collect();
-        let headings: [Heading; 3] = headings.and_then(|all| all.try_into().ok()).ok_or_else(refused)?;
-        let has_all = (0..3).all(|axis| headings.iter().any(|heading| heading.axis == axis));
-        if has_all { Ok(Self::Towards(Headings(headings))) } else { Err(refused()) }
+        })
     }
 }
 
