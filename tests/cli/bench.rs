@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use crate::checks::{assert_has_keys, keys};
 use crate::program::Folder;
+use crate::volumes::small_ball;
 
 #[test]
 fn orbiting_is_timed_and_rebuilds_no_light_volume() {
@@ -49,4 +50,35 @@ fn the_table_of_the_paper_has_its_three_variants() {
     assert!(light(1) > 0.0 && light(2) > 0.0, "{cases:?}");
     let ratio = &result["ratios"]["light_volume_raycast_over_splat"];
     assert_eq!(keys(ratio), ["measured", "paper"]);
+}
+
+#[test]
+fn loading_is_timed_stage_by_stage() {
+    const STAGES: [&str; 5] = ["first_look", "picture", "read", "statistics", "upload"];
+    let folder = Folder::new();
+    folder.write("ball_8x8x8_uint8.raw", small_ball());
+    let loading = "bench --volume ball_8x8x8_uint8.raw --size 32x32 --frames 1 --reduced";
+    let text = folder.succeed(&format!("{loading} --json --only load"));
+    let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
+    let load = &result["cases"][0];
+    assert_eq!((&load["name"], &load["frames"]), (&"load".into(), &1.into()));
+    assert_eq!(keys(&load["load_ms"]), STAGES);
+    let median = |stage: &str| load["load_ms"][stage]["median"].as_f64().expect("a number");
+    assert!(STAGES.iter().all(|stage| median(stage) > 0.0), "{load}");
+    // Of one time each: what they take together is what loading takes, but for the first look, which is apart.
+    let together = STAGES[1..].iter().map(|stage| median(stage)).sum::<f64>();
+    assert!(together <= load["wall_ms"]["median"].as_f64().expect("a number"), "{load}");
+    let table = folder.succeed(&format!("{loading} --only load"));
+    for words in ["read", "statistics", "upload", "first look", "picture", "ball 8 x 8 x 8"] {
+        assert!(table.contains(words), "{words}: {table}");
+    }
+
+    let text = folder.succeed(&format!("{loading} --json --only read"));
+    let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
+    let read = &result["cases"][0];
+    assert!(result.get("adapter").is_none(), "nothing is drawn");
+    assert_eq!((&read["name"], &read["type"]), (&"read".into(), &"uint8".into()));
+    assert!(read["load_ms"]["read"]["median"].as_f64().is_some_and(|ms| ms > 0.0), "{read}");
+    assert!(read["load_ms"]["upload"].is_null(), "{read}");
+    folder.fail("bench --only read --volume elsewhere.raw", 6);
 }

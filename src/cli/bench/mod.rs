@@ -3,7 +3,8 @@
 //! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
 //! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
 //! halves of the light pass of those frames); *tf-edit* (a transfer function changes); *background* (only the
-//! background does); *load* (from a file to its first picture) and *memory*; *growth* (light volumes of clouds of growing size, splatted
+//! background does); *load* (from a file to its first picture, stage by stage) and *memory*; *read* (of that only what needs
+//! no adapter); *growth* (light volumes of clouds of growing size, splatted
 //! and by rays, with everything that saves work and without);
 //! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
 //! the picture that a volume is opened with).
@@ -16,6 +17,7 @@ use serde_json::{Value, json};
 mod edit;
 mod first_look;
 mod growth;
+mod load;
 mod paper;
 mod report;
 
@@ -35,13 +37,14 @@ const WARM_UP: usize = 2;
 const STEP_DEG: f64 = 12.0;
 
 /// What there is to be measured.
-const CASES: [&str; 10] = [
+const CASES: [&str; 11] = [
     "orbit",
     "light-drag",
     "light-build",
     "tf-edit",
     "background",
     "load",
+    "read",
     "memory",
     "growth",
     "paper",
@@ -71,7 +74,7 @@ pub(super) struct BenchArgs {
     /// Timed frames per case
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
-    /// Only the case of this name; growth, which takes minutes, and first-look run only when asked for
+    /// Only the case of this name; growth, which takes minutes, first-look and read run only when asked for
     #[arg(long, value_name = "CASE", value_parser = CASES)]
     only: Option<String>,
     /// Allow cases that are not rendered at full resolution and with an exact kernel
@@ -87,6 +90,12 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         args.only.as_deref().map_or(!["growth", "first-look"].contains(&case), |only| only == case)
     };
     let mut cases = Vec::new();
+    if args.only.as_deref() == Some("read") {
+        for volume in &args.volumes {
+            load::read(args, volume, &mut cases)?;
+        }
+        return print(args, &json!({ "cases": cases, "ratios": {} }));
+    }
     let mut ratios = serde_json::Map::new();
     let context = Context::headless()?;
     let mut orbits = Vec::new();
@@ -149,12 +158,11 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         "cases": cases,
         "ratios": ratios,
     });
-    if args.json {
-        print_line(&result.to_string())?;
-    } else {
-        print_table(&result)?;
-    }
-    Ok(())
+    print(args, &result)
+}
+
+fn print(args: &BenchArgs, result: &Value) -> Result<(), CliError> {
+    if args.json { print_line(&result.to_string()) } else { print_table(result) }
 }
 
 struct Bench<'a> {
@@ -277,13 +285,15 @@ fn is_full_quality(settings: &Settings) -> bool {
 
 fn print_table(result: &Value) -> Result<(), CliError> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])))?;
+    if result["adapter"].is_string() {
+        print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])))?;
+    }
     let cases = result["cases"].as_array().map_or(&[][..], Vec::as_slice);
-    let looks = first_look::lines(cases);
-    for line in &looks {
+    for line in first_look::lines(cases).iter().chain(&load::lines(cases)) {
         print_line(line)?;
     }
-    if looks.len() > cases.len() {
+    // Those have a table of their own, and nothing to say in this one.
+    if cases.iter().all(|case| case["name"] == "first-look" || case["name"] == "read") {
         return Ok(());
     }
     print_line(

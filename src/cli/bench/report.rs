@@ -73,14 +73,6 @@ impl Samples {
 
     /// Everything, as the JSON of a case.
     pub(super) fn json(&self) -> Value {
-        let spread = |values: &[f64]| {
-            if values.is_empty() {
-                return Value::Null;
-            }
-            let (min, max) =
-                values.iter().fold((f64::INFINITY, 0f64), |(min, max), &v| (min.min(v), max.max(v)));
-            json!({ "median": round(median(values)), "min": round(min), "max": round(max) })
-        };
         json!({
             "frames": self.wall_ms.len(),
             "wall_ms": spread(&self.wall_ms),
@@ -97,6 +89,15 @@ impl Samples {
             "gpu_ms": { "eye": spread(&self.eye_gpu_ms), "light": spread(&self.light_gpu_ms) },
         })
     }
+}
+
+/// Median, least and most; null of nothing.
+pub(super) fn spread(values: &[f64]) -> Value {
+    if values.is_empty() {
+        return Value::Null;
+    }
+    let (min, max) = values.iter().fold((f64::INFINITY, 0f64), |(min, max), &v| (min.min(v), max.max(v)));
+    json!({ "median": round(median(values)), "min": round(min), "max": round(max) })
 }
 
 /// The middle value; 0 of nothing.

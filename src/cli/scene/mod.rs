@@ -251,7 +251,16 @@ impl SceneArgs {
 impl LookArgs {
     /// Loads a volume for an adapter that is open.
     pub(super) fn load(&self, source: &Path, context: &Context) -> Result<Dataset, CliError> {
-        let whole = open(source, &self.load.load_options()?, &LoadControl::new())?;
+        self.shown(source, self.read_volume(source)?, context)
+    }
+
+    /// Reads a volume, whatever shows it.
+    pub(super) fn read_volume(&self, source: &Path) -> Result<Volume, CliError> {
+        Ok(open(source, &self.load.load_options()?, &LoadControl::new())?)
+    }
+
+    /// What an adapter shows of a volume that was read.
+    pub(super) fn shown(&self, source: &Path, whole: Volume, context: &Context) -> Result<Dataset, CliError> {
         let volume = downsampled_to_fit(source, whole, context)?;
         Ok(checked(self.corrected(source, volume)?))
     }

@@ -1,6 +1,14 @@
 //! The values of voxels as files have them, in any number type.
 
+use rayon::prelude::*;
+
 use crate::data::ValueRange;
+
+/// Voxels that a task looks at: enough for starting it to cost nothing.
+const CHUNK: usize = 1 << 16;
+
+/// Ends and voxels without a value, before any is known.
+const NOTHING: (f64, f64, usize) = (f64::INFINITY, f64::NEG_INFINITY, 0);
 
 /// The number types that a voxel can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -132,25 +140,50 @@ impl Samples {
 
     /// What the finite values span that are not `left_out`, and how many voxels are not finite; `None` where there are
     /// none.
+    #[expect(
+        trivial_numeric_casts,
+        clippy::unnecessary_cast,
+        reason = "one of the eight types is f64 already"
+    )]
     pub(in crate::data) fn range_without(&self, left_out: f64) -> Option<(ValueRange, usize)> {
-        #[expect(
-            trivial_numeric_casts,
-            clippy::unnecessary_cast,
-            reason = "one of the eight types is f64 already"
-        )]
-        let (low, high, non_finite) = with_samples!(self, values => values.iter().fold(
-            (f64::INFINITY, f64::NEG_INFINITY, 0),
-            |(low, high, non_finite), &value| {
-                let value = value as f64;
-                if !value.is_finite() {
-                    (low, high, non_finite + 1)
-                } else if value == left_out {
-                    (low, high, non_finite)
-                } else {
-                    (low.min(value), high.max(value), non_finite)
-                }
+        macro_rules! of_whole {
+            ($values:expr, $type:ty) => {
+                $values
+                    .par_chunks(CHUNK)
+                    .map(|chunk| {
+                        let ends = (<$type>::MAX, <$type>::MIN);
+                        let (low, high) =
+                            chunk.iter().fold(ends, |(low, high), &value| (low.min(value), high.max(value)));
+                        (f64::from(low), f64::from(high), 0)
+                    })
+                    .collect()
+            };
+        }
+        let parts: Vec<(f64, f64, usize)> = match self {
+            // The most usual ones; what is whole is finite.
+            Self::U8(values) if left_out.is_nan() => of_whole!(values, u8),
+            Self::U16(values) if left_out.is_nan() => of_whole!(values, u16),
+            Self::I16(values) if left_out.is_nan() => of_whole!(values, i16),
+            _ => with_samples!(self, values => values
+                .par_chunks(CHUNK)
+                .map(|chunk| chunk.iter().fold(NOTHING, |(low, high, non_finite), &value| {
+                    let value = value as f64;
+                    if !value.is_finite() {
+                        (low, high, non_finite + 1)
+                    } else if value == left_out {
+                        (low, high, non_finite)
+                    } else {
+                        (low.min(value), high.max(value), non_finite)
+                    }
+                }))
+                .collect()),
+        };
+        let (low, high, non_finite) = parts.into_iter().fold(
+            NOTHING,
+            |(low, high, non_finite), (part_low, part_high, part_non_finite)| {
+                (low.min(part_low), high.max(part_high), non_finite + part_non_finite)
             },
-        ));
+        );
         (low <= high).then_some((ValueRange::new(low, high), non_finite))
     }
 

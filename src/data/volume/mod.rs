@@ -20,6 +20,7 @@ pub use reduce::reduced_dims;
 pub use shown::Shown;
 
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -60,6 +61,7 @@ pub struct Volume {
     has_unknown_scale: bool,
     remarks: Vec<String>,
     held: Arc<Held>,
+    looking_took: Duration,
     /// Found when it is first asked for.
     kind: OnceLock<KindFound>,
     /// Found when they are first asked for.
@@ -105,17 +107,21 @@ impl Volume {
         if !(world_from_index.is_finite() && lengths.min_element() > 0.0 && flatness > 1e-6) {
             return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
         }
-        let (value_range, non_finite_voxels) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
-        if !value_range.span().is_finite() {
-            let range = format!("from {:e} to {:e}", value_range.low, value_range.high);
-            return Err(VolumeError::TooWide { range });
-        }
-        let ranges = ValueRanges::of(&samples, value_range);
+        let ranges = || {
+            let (all, non_finite) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+            if !all.span().is_finite() {
+                let range = format!("from {:e} to {:e}", all.low, all.high);
+                return Err(VolumeError::TooWide { range });
+            }
+            Ok((ValueRanges::of(&samples, all), non_finite))
+        };
+        // The fingerprint takes one voxel after the other: the other cores need not wait for it.
+        let (fingerprint, found) = rayon::join(|| samples.fingerprint(), ranges);
+        let (ranges, non_finite_voxels) = found?;
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
-        let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
-            hash.rotate_left(17) ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15)
-        });
+        let content_id = geometry
+            .fold(fingerprint, |hash, word| hash.rotate_left(17) ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let volume = Self {
             name,
             dims,
@@ -134,6 +140,7 @@ impl Volume {
             has_unknown_scale: false,
             remarks: Vec::new(),
             held: Arc::default(),
+            looking_took: Duration::ZERO,
             kind: OnceLock::new(),
             labels: OnceLock::new(),
             content_id,
@@ -207,6 +214,18 @@ impl Volume {
     /// What the file holds of which this volume is one: what else could be opened of it.
     pub fn held(&self) -> &Held {
         &self.held
+    }
+
+    /// States how long it took to look at the voxels of a file once they were there.
+    #[must_use]
+    pub(super) fn with_looking_took(self, looking_took: Duration) -> Self {
+        Self { looking_took, ..self }
+    }
+
+    /// How long it took, when its file was read, to find what its values span and what identifies them: what of loading was
+    /// neither reading nor decoding. Nothing for volumes that come from no file.
+    pub fn looking_took(&self) -> Duration {
+        self.looking_took
     }
 
     /// What kind of data it holds. The first to ask waits until that is found.

@@ -7,7 +7,9 @@ pub(super) mod label_files;
 pub(super) mod number;
 pub(super) mod placement;
 pub(super) mod reader;
+pub(super) mod rescaled;
 pub(super) mod samples;
+mod stored;
 pub(super) mod text_numbers;
 
 use super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};

@@ -1,5 +1,7 @@
 //! Where a file's voxels lie in the world, and a volume of all that was read.
 
+use std::time::Instant;
+
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::LoadError;
@@ -127,6 +129,7 @@ impl Parts {
         for remark in &remarks {
             attempt.warn(remark);
         }
+        let start = Instant::now();
         Volume::new(self.name, self.dims, world_from_index, self.samples)
             .map(|volume| {
                 let volume = volume.with_anatomy(is_anatomical).with_hints(self.hints).with_remarks(remarks);
@@ -139,6 +142,7 @@ impl Parts {
                 }
                 _ => Ok(volume),
             })
+            .map(|volume| volume.with_looking_took(start.elapsed()))
             .map_err(|error| attempt.bad_input("data", error.to_string(), help))
     }
 }

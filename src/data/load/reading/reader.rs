@@ -8,6 +8,7 @@ use flate2::bufread::MultiGzDecoder;
 use super::input::{Input, is_gzip};
 use super::number::{Part, Stored};
 use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
+use super::stored::read_file;
 use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, Volume};
@@ -88,6 +89,10 @@ impl Source<'_> {
             if found > needed && after == After::End {
                 let why = format!("there are {found} bytes where {needed} were expected {grid}");
                 return Err(attempt.bad_input("data", why, help));
+            }
+            if stored.is_as_in_memory() {
+                let read = read_file(self.input.reader.get_ref(), at, &layout, control);
+                return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
             }
             self.input.seek(at).map_err(|error| attempt.io(error))?;
         }

@@ -5,6 +5,8 @@
 
 use std::io::{self, Read};
 
+use bytemuck::Pod;
+
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::attempt::{Extent, human_bytes};
@@ -42,6 +44,14 @@ pub(crate) enum Fault {
 }
 
 impl Fault {
+    /// The fault of what comes after so many bytes of voxels that were read.
+    pub(super) fn after(self, bytes: u64) -> Self {
+        match self {
+            Self::Short { got } => Self::Short { got: bytes + got },
+            fault => fault,
+        }
+    }
+
     /// The fault, of which it is known that a decoder lies between the file and what was read.
     pub(in crate::data::load) fn of_stream(self) -> Self {
         match self {
@@ -103,8 +113,11 @@ impl Fault {
 }
 
 /// One voxel's number type: how it is read.
-pub(in crate::data::load) trait Sample: Copy {
+pub(in crate::data::load) trait Sample: Pod + Send {
     fn from_bytes(bytes: &[u8], endian: Endian) -> Self;
+
+    /// The number whose bytes this one's are in a file.
+    fn from_stored(self, endian: Endian) -> Self;
 }
 
 macro_rules! sample {
@@ -117,6 +130,13 @@ macro_rules! sample {
                 match endian {
                     Endian::Little => Self::from_le_bytes(array),
                     Endian::Big => Self::from_be_bytes(array),
+                }
+            }
+
+            fn from_stored(self, endian: Endian) -> Self {
+                match endian {
+                    Endian::Little => Self::from_le_bytes(self.to_ne_bytes()),
+                    Endian::Big => Self::from_be_bytes(self.to_ne_bytes()),
                 }
             }
         }
@@ -139,6 +159,8 @@ macro_rules! read_as {
         }
     };
 }
+
+pub(super) use read_as;
 
 /// Reads binary voxels; what follows them is left alone.
 pub(crate) fn read_binary(
@@ -173,7 +195,9 @@ pub(in crate::data::load) fn fill(
         if fault::is_due(&BLOCKS, fault::Fault::ReadError) {
             return Err(Fault::Io(io::Error::other("a fault was asked for")));
         }
-        match reader.read(&mut block[filled..]) {
+        // Somebody may ask to stop meanwhile.
+        let end = block.len().min(filled + BLOCK_BYTES);
+        match reader.read(&mut block[filled..end]) {
             Ok(0) => break,
             Ok(n) => filled += n,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -207,21 +231,39 @@ fn read_blocks<T: Sample>(
     layout: &Layout,
     control: &LoadControl,
 ) -> Result<Vec<T>, Fault> {
-    let count = layout.extent.voxels;
-    let bytes = size_of::<T>();
-    let mut values = reserve(count)?;
-    let mut block = vec![0; BLOCK_BYTES.min(count.saturating_mul(bytes))];
-    while values.len() < count {
-        let want = block.len().min((count - values.len()) * bytes);
-        let got = fill(reader, &mut block[..want], control)?;
-        values.extend(block[..got].chunks_exact(bytes).map(|voxel| T::from_bytes(voxel, layout.endian)));
-        control.advance(got as u64);
-        if got < want {
-            let whole = (values.len() * bytes) as u64;
-            return Err(Fault::Short { got: whole + (got % bytes) as u64 });
-        }
+    let mut values = zeroed::<T>(layout.extent.voxels)?;
+    let mut done = 0;
+    for block in values.chunks_mut(BLOCK_BYTES / size_of::<T>()) {
+        done += read_block(reader, block, layout.endian, control).map_err(|fault| fault.after(done))?;
     }
     Ok(values)
+}
+
+/// Reads as many voxels as there is room for; how many bytes they have in the file.
+pub(super) fn read_block<T: Sample>(
+    reader: &mut impl Read,
+    block: &mut [T],
+    endian: Endian,
+    control: &LoadControl,
+) -> Result<u64, Fault> {
+    let bytes: &mut [u8] = bytemuck::cast_slice_mut(block);
+    let wanted = bytes.len();
+    let got = fill(reader, bytes, control)?;
+    control.advance(got as u64);
+    if got < wanted {
+        return Err(Fault::Short { got: got as u64 });
+    }
+    // In the order of the machine there is nothing to be done, which the compiler sees.
+    match endian {
+        Endian::Little => block.iter_mut().for_each(|value| *value = value.from_stored(Endian::Little)),
+        Endian::Big => block.iter_mut().for_each(|value| *value = value.from_stored(Endian::Big)),
+    }
+    Ok(got as u64)
+}
+
+/// So many values of 0, or an error where the memory is not there. It is taken as it is written to.
+pub(super) fn zeroed<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
+    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)
 }
 
 /// An empty vector with room for `count` values, or an error where the memory is not there.

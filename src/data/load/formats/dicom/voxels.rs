@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::super::number::{Part, rescaled};
+use super::super::number::Part;
 use super::super::placement::{Parts, Placement};
+use super::super::rescaled::rescaled;
 use super::super::samples::reserve;
 use super::super::{Endian, LoadControl, LoadError, LoadOptions};
 use super::groups::Slice;

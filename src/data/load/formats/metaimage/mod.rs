@@ -13,9 +13,9 @@ mod pieces;
 mod tests;
 
 use super::input::bare_name;
-use super::number::rescaled;
 use super::placement::Parts;
 use super::reader::{Reader, Source};
+use super::rescaled::rescaled;
 use super::samples::{Fault, Layout};
 use super::{LoadError, label_files};
 use crate::data::attempt::{Attempt, Dimension, Extent, Offer};

@@ -15,9 +15,10 @@ mod vectors;
 
 use super::content::Content;
 use super::input::{Input, Witness, bare_name};
-use super::number::{Part, Stored, rescaled};
+use super::number::{Part, Stored};
 use super::placement::Parts;
 use super::reader::{Reader, Source};
+use super::rescaled::rescaled;
 use super::samples::{Fault, Layout};
 use super::{LoadControl, LoadError, LoadOptions, label_files};
 use crate::data::attempt::{Attempt, Dimension, Extent};

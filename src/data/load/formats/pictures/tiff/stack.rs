@@ -180,7 +180,7 @@ impl Stack {
             let slices = slices[range].par_iter().zip(packed.par_iter());
             slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect()
         })?;
-        let samples = crate::data::load::reading::number::rescaled(samples, slope, intercept);
+        let samples = crate::data::load::reading::rescaled::rescaled(samples, slope, intercept);
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }

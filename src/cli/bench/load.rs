@@ -1,0 +1,219 @@
+//! From a file to its first picture, stage by stage, and the memory that it takes.
+//!
+//! *Read* ends when all voxels are there, decoded and in the machine's own order. *Statistics* are what is found out of them:
+//! what values span and which of them matter, an identity, histogram, bounds of bricks and cells, the kind of data. *Upload*
+//! is the way to the adapter, with the pyramid. *First look* is what the automatic look takes beyond all that, and *picture*
+//! a light volume and a picture at full quality.
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::report::{Samples, round, spread};
+use super::{Bench, BenchArgs, describe};
+use crate::cli::CliError;
+use crate::data::{Dataset, Volume};
+use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary, Stage, first_look};
+use crate::model::{Settings, auto};
+use crate::plan::Request;
+
+/// What the stages are called, in their order.
+pub(super) const STAGES: [&str; 5] = ["read", "statistics", "upload", "first_look", "picture"];
+
+/// Loading takes seconds: more frames than these are not needed for a median.
+const MOST_FRAMES: usize = 3;
+
+/// Milliseconds of each of [`STAGES`], for each time that a volume was loaded.
+#[derive(Debug, Default)]
+struct Stages([Vec<f64>; STAGES.len()]);
+
+impl Stages {
+    fn add(&mut self, took_ms: &[f64]) {
+        for (all, &took) in self.0.iter_mut().zip(took_ms) {
+            all.push(took);
+        }
+    }
+
+    fn json(&self) -> Value {
+        STAGES.iter().zip(&self.0).map(|(name, all)| ((*name).to_owned(), spread(all))).collect()
+    }
+}
+
+/// Bytes on the adapter: all, those of light volumes, and the most that there were.
+#[derive(Debug, Default)]
+struct Bytes {
+    all: u64,
+    light: u64,
+    peak: u64,
+}
+
+/// Milliseconds since the last call.
+struct Lap(Instant);
+
+impl Lap {
+    fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    fn take(&mut self) -> f64 {
+        let now = Instant::now();
+        now.duration_since(std::mem::replace(&mut self.0, now)).as_secs_f64() * 1000.0
+    }
+}
+
+/// What reading a file took, and what was found out of its voxels on the way.
+fn read_and_look(lap: &mut Lap, volume: &Volume) -> [f64; 2] {
+    let looking = volume.looking_took().as_secs_f64() * 1000.0;
+    [lap.take() - looking, looking]
+}
+
+/// Reads files, and finds out of their voxels what follows from them: no adapter is needed.
+pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> Result<(), CliError> {
+    let mut stages = Stages::default();
+    // The first time brings the file into memory, and starts the threads.
+    for frame in 0..=usize::from(args.frames) {
+        let mut lap = Lap::start();
+        let volume = args.look.read_volume(source)?;
+        let [read, mut looking] = read_and_look(&mut lap, &volume);
+        let (name, dims, voxel_type) =
+            (volume.name().to_owned(), volume.dims(), volume.samples().voxel_type().name());
+        let dataset = Dataset::new(volume);
+        dataset.volume().kind();
+        looking += lap.take();
+        if frame > 0 {
+            stages.add(&[read, looking]);
+        }
+        if frame == usize::from(args.frames) {
+            cases.push(json!({
+                "name": "read",
+                "volume": name,
+                "dims": dims,
+                "type": voxel_type,
+                "frames": frame,
+                "load_ms": stages.json(),
+            }));
+        }
+    }
+    Ok(())
+}
+
+/// Brings a volume to the adapter; no picture is begun.
+fn upload(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Result<(), CliError> {
+    let options = RenderOptions { timed: true, ..RenderOptions::default() };
+    let (volume, settings) = (loaded.volume().id(), settings.clone());
+    // Of a size that costs nothing: it is not drawn.
+    let request = Request { volume, settings, size: [1; 2], coarse: None };
+    let mut job = renderer.begin(loaded, request, &options)?;
+    while matches!(job.stage(), Some(Stage::Upload | Stage::Pyramid)) {
+        job.step()?;
+    }
+    Ok(())
+}
+
+impl Bench<'_> {
+    /// From a file, or the numbers of a built-in volume, to its first picture at full quality, and the
+    /// memory that it takes. Pipelines are there already.
+    pub(super) fn load(
+        &self,
+        context: &Context,
+        source: &Path,
+        wants: impl Fn(&str) -> bool,
+        cases: &mut Vec<Value>,
+    ) -> Result<(), CliError> {
+        let shaders = ShaderLibrary::new(context);
+        let (mut samples, mut stages) = (Samples::default(), Stages::default());
+        let options = RenderOptions { timed: true, ..RenderOptions::default() };
+        for frame in 0..=usize::from(self.args.frames).min(MOST_FRAMES) {
+            let mut took = [0.0; STAGES.len()];
+            let mut bytes = Bytes::default();
+            let mut warm_up = Samples::default();
+            let keep = if frame == 0 { &mut warm_up } else { &mut samples };
+            let mut loaded = None;
+            keep.time(|| {
+                let mut lap = Lap::start();
+                let volume = self.args.look.read_volume(source)?;
+                [took[0], took[1]] = read_and_look(&mut lap, &volume);
+                let dataset = self.args.look.shown(source, volume, context)?;
+                dataset.volume().kind();
+                took[1] += lap.take();
+                let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
+                upload(&mut renderer, &dataset, &self.settings)?;
+                let uploaded = renderer.report().upload_ms;
+                took[2] = lap.take();
+                renderer.draw(&dataset, &self.settings, self.args.size, &options)?;
+                took[4] = lap.take();
+                let mut report = renderer.report().clone();
+                report.upload_ms += uploaded;
+                bytes = Bytes {
+                    all: renderer.gpu_bytes(),
+                    light: renderer.light_bytes(),
+                    peak: report.peak_gpu_bytes,
+                };
+                loaded = Some(dataset);
+                Ok::<_, CliError>(report)
+            })?;
+            if frame == 0 && wants("memory") {
+                cases.push(self.memory(&bytes));
+                if !wants("load") {
+                    return Ok(());
+                }
+            }
+            if let Some(dataset) = loaded {
+                took[3] = first_look_ms(context, &shaders, &dataset)?;
+            }
+            if frame > 0 {
+                stages.add(&took);
+            }
+        }
+        let mut case = describe("load", self.loaded, self.args.size, &self.settings, &samples, 1);
+        case["load_ms"] = stages.json();
+        cases.push(case);
+        Ok(())
+    }
+
+    fn memory(&self, &Bytes { all, light, peak }: &Bytes) -> Value {
+        let volume = self.loaded.volume();
+        let per_voxel = |bytes: u64| round(bytes as f64 / volume.voxel_count() as f64);
+        json!({
+            "name": "memory",
+            "volume": volume.name(),
+            "dims": volume.dims(),
+            "gpu_bytes": all,
+            "peak_gpu_bytes": peak,
+            "bytes_per_voxel": { "all": per_voxel(all), "light": per_voxel(light), "peak": per_voxel(peak) },
+        })
+    }
+}
+
+/// What a first look takes of a volume that has been brought to an adapter, and of which nothing else has been made.
+fn first_look_ms(context: &Context, shaders: &ShaderLibrary, dataset: &Dataset) -> Result<f64, CliError> {
+    let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
+    let settings = auto::first_settings(dataset.volume(), dataset.histogram());
+    upload(&mut renderer, dataset, &settings)?;
+    let mut lap = Lap::start();
+    first_look(&mut renderer, dataset)?;
+    Ok(lap.take())
+}
+
+/// Lines of the table of stages.
+pub(super) fn lines(cases: &[Value]) -> Vec<String> {
+    let timed = cases.iter().filter(|case| case["load_ms"].is_object());
+    let mut lines: Vec<String> = timed
+        .map(|case| {
+            let stage = |name: &&str| {
+                let median = case["load_ms"][name]["median"].as_f64();
+                format!(" {:>10}", median.map_or("–".to_owned(), |ms| format!("{ms:.1}")))
+            };
+            let [x, y, z] = [0, 1, 2].map(|axis| case["dims"][axis].as_u64().unwrap_or_default());
+            let name = case["volume"].as_str().unwrap_or_default();
+            let name: String = format!("{name} {x} x {y} x {z}").chars().take(40).collect();
+            format!("{name:<40}{}", STAGES.iter().map(stage).collect::<String>())
+        })
+        .collect();
+    if !lines.is_empty() {
+        let names: String = STAGES.iter().map(|name| format!(" {:>10}", name.replace('_', " "))).collect();
+        lines.insert(0, format!("{:<40}{names}", "loading, ms"));
+    }
+    lines
+}
