@@ -75,6 +75,13 @@ impl Content {
         extent: Extent,
         control: &LoadControl,
     ) -> Result<Samples, Fault> {
+        if let Form::Stored(input) = &mut self.form {
+            let bytes = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
+            let samples = stored.read_file(input, self.at, extent, control).map_err(Fault::of_stream)?;
+            self.at = self.at.saturating_add(bytes);
+            input.seek(self.at).map_err(Fault::Io)?;
+            return Ok(samples);
+        }
         stored.read(self, extent, control).map_err(Fault::of_stream)
     }
 

@@ -4,6 +4,7 @@ pub(super) mod beside;
 pub(super) mod content;
 pub(super) mod input;
 pub(super) mod label_files;
+mod large_pages;
 pub(super) mod number;
 pub(super) mod placement;
 pub(super) mod reader;

@@ -3,7 +3,9 @@
 
 use std::io::Read;
 
+use super::input::Input;
 use super::samples::{BLOCK_BYTES, Fault, Layout, Sample as _, fill, read_binary, reserve};
+use super::stored::read_file;
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, VoxelType};
@@ -132,8 +134,25 @@ impl Stored {
         self.number.bytes() as u64 * self.components as u64
     }
 
+    /// Reads all voxels of a grid from a byte of a file on, in which they are not compressed. Where reading the file goes on
+    /// is not said.
+    pub(in crate::data::load) fn read_file(
+        &self,
+        input: &mut Input,
+        at: u64,
+        extent: Extent,
+        control: &LoadControl,
+    ) -> Result<Samples, Fault> {
+        if self.is_as_in_memory() {
+            let layout = Layout { extent, voxel_type: self.voxel_type(), endian: self.endian };
+            return read_file(input.reader.get_ref(), at, &layout, control);
+        }
+        input.seek(at).map_err(Fault::Io)?;
+        self.read(&mut input.reader, extent, control)
+    }
+
     /// Whether voxels have these numbers as they are, but for the order of their bytes.
-    pub(super) fn is_as_in_memory(&self) -> bool {
+    fn is_as_in_memory(&self) -> bool {
         self.components == 1 && self.number.is_kept()
     }
 

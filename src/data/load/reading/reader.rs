@@ -8,7 +8,6 @@ use flate2::bufread::MultiGzDecoder;
 use super::input::{Input, is_gzip};
 use super::number::{Part, Stored};
 use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
-use super::stored::read_file;
 use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, Volume};
@@ -90,13 +89,11 @@ impl Source<'_> {
                 let why = format!("there are {found} bytes where {needed} were expected {grid}");
                 return Err(attempt.bad_input("data", why, help));
             }
-            if stored.is_as_in_memory() {
-                let read = read_file(self.input.reader.get_ref(), at, &layout, control);
-                return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
-            }
-            self.input.seek(at).map_err(|error| attempt.io(error))?;
+            // How long it is has been looked at.
+            let read = stored.read_file(&mut self.input, at, extent, control);
+            return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
         }
-        let skip = if self.start.is_gzip() { at } else { 0 };
+        let skip = at;
         // One byte more than needed tells "too much" from "enough", and no bomb gets further.
         let mut content = self.content().take(skip.saturating_add(needed).saturating_add(1));
         let mut read = || {

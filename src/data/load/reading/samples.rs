@@ -7,6 +7,7 @@ use std::io::{self, Read};
 
 use bytemuck::Pod;
 
+use super::large_pages::prefer_large_pages;
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::attempt::{Extent, human_bytes};
@@ -262,8 +263,10 @@ pub(super) fn read_block<T: Sample>(
 }
 
 /// So many values of 0, or an error where the memory is not there. It is taken as it is written to.
-pub(super) fn zeroed<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
-    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)
+pub(in crate::data::load) fn zeroed<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
+    let mut values = bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)?;
+    prefer_large_pages(&mut values);
+    Ok(values)
 }
 
 /// An empty vector with room for `count` values, or an error where the memory is not there.

@@ -15,6 +15,9 @@ use crate::data::{Samples, VoxelType};
 /// More threads than these do not copy faster: memory is the limit.
 const MOST_THREADS: usize = 4;
 
+/// Bytes that a thread takes at a time: two large pages of memory, lest two threads use the same one first.
+const PART_BYTES: usize = 4 << 20;
+
 /// Reads voxels that begin at a byte of a file; what follows them is left alone.
 pub(super) fn read_file(
     file: &File,
@@ -33,24 +36,27 @@ fn read_parts<T: Sample>(
     control: &LoadControl,
 ) -> Result<Vec<T>, Fault> {
     let mut values = zeroed::<T>(layout.extent.voxels)?;
-    // In order, as disks like it; and before the first block that fails none is left out.
-    let blocks = Mutex::new(values.chunks_mut(BLOCK_BYTES / size_of::<T>()).enumerate());
+    // In order, as disks like it; and before the first part that fails none is left out.
+    let parts = Mutex::new(values.chunks_mut(PART_BYTES / size_of::<T>()).enumerate());
     let failed: Mutex<Option<(usize, Fault)>> = Mutex::new(None);
     let work = || {
         loop {
-            let next = blocks.lock().unwrap_or_else(PoisonError::into_inner).next();
-            let Some((number, block)) = next else { return };
-            let before = (number * BLOCK_BYTES) as u64;
-            let Err(fault) = read_block(&mut Within { file, at: at + before }, block, layout.endian, control)
-            else {
-                continue;
-            };
+            let next = parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((number, part)) = next else { return };
+            let mut done = (number * PART_BYTES) as u64;
+            let mut within = Within { file, at: at.saturating_add(done) };
+            let mut blocks = part.chunks_mut(BLOCK_BYTES / size_of::<T>());
+            let read = blocks.try_for_each(|block| {
+                done += read_block(&mut within, block, layout.endian, control)?;
+                Ok(())
+            });
+            let Err(fault) = read else { continue };
             let mut failed = failed.lock().unwrap_or_else(PoisonError::into_inner);
             if failed.as_ref().is_none_or(|&(first, _)| number < first) {
-                *failed = Some((number, fault.after(before)));
+                *failed = Some((number, Fault::after(fault, done)));
             }
             // Nobody takes another one.
-            blocks.lock().unwrap_or_else(PoisonError::into_inner).by_ref().for_each(drop);
+            parts.lock().unwrap_or_else(PoisonError::into_inner).by_ref().for_each(drop);
             return;
         }
     };
@@ -80,5 +86,47 @@ impl Read for Within<'_> {
         let count = std::os::windows::fs::FileExt::seek_read(self.file, into, self.at)?;
         self.at += count as u64;
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+    use std::path::Path;
+
+    use super::*;
+    use crate::data::attempt::{Attempt, Extent};
+    use crate::data::load::Endian;
+
+    fn layout(voxels: u64, voxel_type: VoxelType, endian: Endian) -> Layout {
+        let attempt = Attempt { what: "test", path: Path::new("t") };
+        let extent = Extent::checked(attempt, "sizes", [voxels, 1, 1], voxel_type, 1 << 30).unwrap();
+        Layout { extent, voxel_type, endian }
+    }
+
+    #[test]
+    fn parts_of_a_file_come_to_their_places() {
+        // Some parts, the last of them not whole, behind three bytes.
+        let count = 3 * PART_BYTES / 2 + 12_345;
+        let words: Vec<u16> =
+            (0..count as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 16) as u16).collect();
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&[9; 3]).unwrap();
+        file.write_all(&words.iter().flat_map(|word| word.to_be_bytes()).collect::<Vec<_>>()).unwrap();
+        let of = |voxels| layout(voxels, VoxelType::U16, Endian::Big);
+        let control = LoadControl::new();
+        let read = read_file(&file, 3, &of(count as u64), &control);
+        assert!(read.unwrap() == Samples::U16(words), "voxels are at other places, or in another order");
+        assert_eq!(control.fraction(), Some(1.0));
+        // One word more than there is: the bytes before it are counted, whoever has read them.
+        let short = read_file(&file, 3, &of(count as u64 + 1), &control);
+        assert!(matches!(short, Err(Fault::Short { got }) if got == 2 * count as u64));
+        let early = read_file(&file, 3, &of(4 * count as u64), &control);
+        assert!(
+            matches!(early, Err(Fault::Short { got }) if got == 2 * count as u64),
+            "the first that fails"
+        );
+        control.cancel();
+        assert!(matches!(read_file(&file, 3, &of(count as u64), &control), Err(Fault::Stopped(_))));
     }
 }

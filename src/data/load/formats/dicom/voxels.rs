@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::super::number::Part;
 use super::super::placement::{Parts, Placement};
 use super::super::rescaled::rescaled;
-use super::super::samples::reserve;
+use super::super::samples::zeroed;
 use super::super::{Endian, LoadControl, LoadError, LoadOptions};
 use super::groups::Slice;
 use super::header::Header;
@@ -109,19 +109,20 @@ impl Slices<'_> {
         let of_slice = self.raster.shape.pixels();
         // The first picture, before there is room for all: one that is not what its header says asks for none.
         if let Some(first) = self.order.first() {
-            let mut room = reserved(attempt, of_slice)?;
-            room.resize(of_slice, T::default());
-            self.slice(first, &mut room)?;
+            self.slice(first, &mut room::<T>(attempt, of_slice)?)?;
         }
-        let mut voxels: Vec<T> = reserved(attempt, self.extent.voxels)?;
-        voxels.resize(self.extent.voxels, T::default());
+        let mut voxels: Vec<T> = room(attempt, self.extent.voxels)?;
         self.control.start(self.extent.bytes);
-        voxels.par_chunks_mut(of_slice).zip(self.order.par_iter()).try_for_each(|(voxels, slice)| {
+        let each = voxels.par_chunks_mut(of_slice).zip(self.order.par_iter()).map(|(voxels, slice)| {
             self.control.check()?;
             self.slice(slice, voxels)?;
             self.control.advance(size_of_val(voxels) as u64);
             Ok(())
-        })?;
+        });
+        // Of several that are broken the first is told, whichever was done first.
+        if let Some(error) = each.find_map_first(Result::err) {
+            return Err(error);
+        }
         Ok(voxels)
     }
 
@@ -133,8 +134,8 @@ impl Slices<'_> {
     }
 }
 
-fn reserved<T>(attempt: Attempt<'_>, count: usize) -> Result<Vec<T>, LoadError> {
-    reserve(count).map_err(|_no_memory| {
+fn room<T: Voxel>(attempt: Attempt<'_>, count: usize) -> Result<Vec<T>, LoadError> {
+    zeroed(count).map_err(|_no_memory| {
         attempt.limit("data", format!("the memory for {count} voxels is not there"), "close other programs")
     })
 }

@@ -124,8 +124,7 @@ fn read_plain(
     stored: &Stored,
     extent: Extent,
 ) -> Result<Samples, LoadError> {
-    source.input.seek(at).map_err(|error| attempt.io(error))?;
-    stored.read(&mut source.input.reader, extent, source.control).map_err(|fault| {
+    stored.read_file(&mut source.input, at, extent, source.control).map_err(|fault| {
         let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
         fault.into_error(attempt, &layout, "bytes", "the file has changed meanwhile: load it again")
     })

@@ -89,14 +89,21 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     }
     let numbers = shape.pixels() * samples;
     decoder.set_max_decoding_buffer_size(numbers.saturating_mul(2));
-    let decoded = decoder.decode().map_err(broken)?;
+    let mut decoded = decoder.decode().map_err(broken)?;
     // Without loss, colours stay as they are.
     let colors = if samples == 3 && !is_lossless { Colors::Rgb } else { shape.colors };
-    let bytes = if decoded.len() == numbers {
-        contained(decoded.into_iter().map(u32::from), shape.bytes())
-    } else {
-        let words = decoded.as_chunks().0.iter();
-        contained(words.map(|&word| u32::from(u16::from_ne_bytes(word))), shape.bytes())
+    let bytes = match (decoded.len() == numbers, shape.bytes()) {
+        (true, 1) => decoded,
+        (true, size) => contained(decoded.into_iter().map(u32::from), size),
+        (false, 2) => {
+            let words = decoded.as_chunks_mut().0.iter_mut();
+            words.for_each(|word| *word = u16::from_ne_bytes(*word).to_le_bytes());
+            decoded
+        }
+        (false, size) => {
+            let words = decoded.as_chunks().0.iter();
+            contained(words.map(|&word| u32::from(u16::from_ne_bytes(word))), size)
+        }
     };
     checked(bytes, Shape { colors, ..shape })
 }

@@ -1,12 +1,14 @@
 //! Pixels as they are stored to voxels.
 
+use bytemuck::Pod;
+
 use super::shape::{Colors, PixelNumber, Shape};
 use crate::data::load::Endian;
 use crate::data::load::reading::number::Part;
 
 /// A type that voxels have.
 pub(in crate::data::load::formats::dicom) trait Voxel:
-    Copy + Default + Send
+    Pod + Send
 {
     fn of_integer(value: i64) -> Self;
     fn of_float(value: f64) -> Self;

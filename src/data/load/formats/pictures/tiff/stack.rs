@@ -178,7 +178,9 @@ impl Stack {
                 })?);
             }
             let slices = slices[range].par_iter().zip(packed.par_iter());
-            slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect()
+            let unpacked: Vec<_> =
+                slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect();
+            unpacked.into_iter().collect()
         })?;
         let samples = crate::data::load::reading::rescaled::rescaled(samples, slope, intercept);
         if let Some([low, high]) = hints.window.take() {

@@ -14,7 +14,7 @@ use super::fault::{HELP, compression_name, unreadable};
 use crate::data::attempt::Attempt;
 use crate::data::load::reading::input::Input;
 use crate::data::load::reading::number::Number;
-use crate::data::load::reading::samples::{Fault, reserve};
+use crate::data::load::reading::samples::{self, Fault};
 use crate::data::load::{Endian, LoadControl, LoadError};
 use bytes::Bytes;
 use codec::Codec;
@@ -141,13 +141,11 @@ impl Tiff {
 
 /// So many bytes of zero.
 fn zeroed(attempt: Attempt<'_>, field: &str, count: u64) -> Result<Vec<u8>, LoadError> {
-    let room = usize::try_from(count).ok().and_then(|count| reserve(count).ok().map(|room| (room, count)));
-    let Some((mut room, count)) = room else {
+    let room = usize::try_from(count).ok().and_then(|count| samples::zeroed(count).ok());
+    room.ok_or_else(|| {
         let why = format!("the memory for {count} bytes is not there");
-        return Err(attempt.limit(field, why, "close other programs or load a smaller volume"));
-    };
-    room.resize(count, 0);
-    Ok(room)
+        attempt.limit(field, why, "close other programs or load a smaller volume")
+    })
 }
 
 impl Page {
@@ -253,11 +251,15 @@ impl Packed {
             let rows = plane
                 .par_chunks_mut(row_bytes.saturating_mul(page.part[1] as usize))
                 .zip(parts.par_chunks(across));
-            rows.enumerate().try_for_each(|(row, (band, parts))| {
+            let rows = rows.enumerate().map(|(row, (band, parts))| {
                 parts.iter().enumerate().try_for_each(|(column, part)| {
                     self.unpack_part(attempt, &field, [column, row], part, band, control)
                 })
-            })?;
+            });
+            // Of several that are broken the first is told.
+            if let Some(error) = rows.find_map_first(Result::err) {
+                return Err(error);
+            }
         }
         if page.is_inverted && matches!(page.format, 1 | 4) {
             invert(&mut all, page.bits);
