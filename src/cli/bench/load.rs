@@ -212,7 +212,7 @@ pub(super) fn lines(cases: &[Value]) -> Vec<String> {
         })
         .collect();
     if !lines.is_empty() {
-        let names: String = STAGES.iter().map(|name| format!(" {:>10}", name.replace('_', " "))).collect();
+        let names = STAGES.map(|name| format!(" {:>10}", name.replace('_', " "))).concat();
         lines.insert(0, format!("{:<40}{names}", "loading, ms"));
     }
     lines

@@ -75,7 +75,9 @@ fn mapped<T: Pod + Send + Sync, U: Pod + Send>(values: Vec<T>, of: impl Fn(T) ->
         match bytemuck::allocation::try_cast_vec::<T, U>(values) {
             Ok(mut cells) => {
                 cells.par_chunks_mut(CHUNK).for_each(|cells| {
-                    cells.iter_mut().for_each(|cell| *cell = of(bytemuck::cast(*cell)));
+                    for cell in cells {
+                        *cell = of(bytemuck::cast(*cell));
+                    }
                 });
                 return cells;
             }

@@ -118,7 +118,7 @@ pub(in crate::data::load) trait Sample: Pod + Send {
     fn from_bytes(bytes: &[u8], endian: Endian) -> Self;
 
     /// The number whose bytes this one's are in a file.
-    fn from_stored(self, endian: Endian) -> Self;
+    fn reordered(self, endian: Endian) -> Self;
 }
 
 macro_rules! sample {
@@ -134,7 +134,7 @@ macro_rules! sample {
                 }
             }
 
-            fn from_stored(self, endian: Endian) -> Self {
+            fn reordered(self, endian: Endian) -> Self {
                 match endian {
                     Endian::Little => Self::from_le_bytes(self.to_ne_bytes()),
                     Endian::Big => Self::from_be_bytes(self.to_ne_bytes()),
@@ -256,8 +256,8 @@ pub(super) fn read_block<T: Sample>(
     }
     // In the order of the machine there is nothing to be done, which the compiler sees.
     match endian {
-        Endian::Little => block.iter_mut().for_each(|value| *value = value.from_stored(Endian::Little)),
-        Endian::Big => block.iter_mut().for_each(|value| *value = value.from_stored(Endian::Big)),
+        Endian::Little => block.iter_mut().for_each(|value| *value = value.reordered(Endian::Little)),
+        Endian::Big => block.iter_mut().for_each(|value| *value = value.reordered(Endian::Big)),
     }
     Ok(got as u64)
 }
