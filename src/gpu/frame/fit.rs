@@ -65,8 +65,8 @@ fn larger(block: [usize; 3], dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 
 
 /// Makes the textures of such a volume and of one light, and gives them back.
 fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuError> {
-    // Sevenths of bytes per voxel: of density, pyramid and light 44, of what is there 32, of classified labels 64.
-    let of_missing = if like.missing().is_some() { 32 } else { 0 };
+    // Sevenths of bytes per voxel: of density, pyramid and light 44, of what is there 48, of classified labels 64.
+    let of_missing = if like.missing().is_some() { 48 } else { 0 };
     let of_labels = if matches!(like.kind().kind, DataKind::LabelMap { .. }) { 64 } else { 0 };
     let bytes = dims.iter().map(|&n| n as u64).product::<u64>() * (44 + of_missing + of_labels) / 7;
     // A software driver takes memory when it is written to, and the system then ends the program.
