@@ -28,6 +28,7 @@ pub use small_file::read_small;
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{Samples, VoxelType};
+use volume::Blocks;
 pub use volume::{
     AxisOrder, Corrections, CountedLabel, DataKind, Flips, Headings, KindFound, KindName, LabelSet,
     MAX_CLASSES, Missing, Orientation, PaddingValue, Shown, SpacingUnit, ValueScale, Volume, VolumeError,

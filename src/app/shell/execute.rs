@@ -33,7 +33,7 @@ impl App {
             Command::Choose(aspect) => self.choose(aspect),
             Command::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
             Command::TakeChoice(choice, keeps_look) => self.take_choice(&choice, keeps_look, ctx),
-            Command::Average(reduce) => self.average(reduce, ctx),
+            Command::Thin(thinning) => self.thin(thinning, ctx),
             Command::GoOn => match self.memory.before() {
                 Some(path) => self.open_record(&path, ctx),
                 None => self.messages.note(text::messages::NOTHING_TO_GO_ON_WITH),

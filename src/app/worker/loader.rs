@@ -23,10 +23,8 @@ use crate::model::{SceneAxis, Settings};
 pub(crate) struct Reading {
     /// How a file of bare voxels is stored.
     pub raw: Option<RawFormat>,
-    /// Which of several volumes is opened.
+    /// Which of several volumes is opened, and how much of it.
     pub choice: Option<Choice>,
-    /// Blocks of so many voxels along each axis are averaged into one.
-    pub reduce: Option<usize>,
 }
 
 /// What is known of a file from earlier times.
@@ -158,10 +156,8 @@ impl Loader {
         let task = {
             let mut options = self.options.clone();
             options.raw = reading.raw.unwrap_or(options.raw);
-            let reduce = reading.reduce.unwrap_or(options.reduce);
-            options.reduce = reduce;
             options.choice = reading.choice.clone().unwrap_or(options.choice);
-            let reading = Reading { reduce: Some(reduce), ..reading.clone() };
+            let reading = reading.clone();
             let opening = Opening {
                 source: source.to_owned(),
                 reading,

@@ -18,7 +18,7 @@ use std::path::Path;
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::attempt::{Attempt, Extent, LoadControl, LoadError, memory_budget_bytes};
+use super::attempt::{Attempt, Choice, Extent, LoadControl, LoadError, Room, memory_budget_bytes};
 use super::{Samples, Volume, VoxelType};
 
 /// The built-in volumes.
@@ -125,7 +125,9 @@ pub(crate) fn builtin_within(
     }
     control.check()?;
     let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
-    Extent::checked(attempt, "N", [n as u64; 3], voxel_type, budget_bytes)?;
+    // All of it is made, whatever is wanted of it.
+    let room = Room { budget_bytes, choice: &Choice::default() };
+    Extent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
     let grid = Grid { n };
     let samples = match name {
         "chair" => Samples::U8(parts::voxelise(grid, &chair::parts(), attempt, control)?),

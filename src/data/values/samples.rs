@@ -31,6 +31,34 @@ impl VoxelType {
         }
     }
 
+    /// The smallest and the largest whole number that it holds; nothing for fractions.
+    const fn whole(self) -> Option<(i64, i64)> {
+        match self {
+            Self::U8 => Some((0, u8::MAX as i64)),
+            Self::I8 => Some((i8::MIN as i64, i8::MAX as i64)),
+            Self::U16 => Some((0, u16::MAX as i64)),
+            Self::I16 => Some((i16::MIN as i64, i16::MAX as i64)),
+            Self::U32 => Some((0, u32::MAX as i64)),
+            Self::I32 => Some((i32::MIN as i64, i32::MAX as i64)),
+            Self::F32 | Self::F64 => None,
+        }
+    }
+
+    /// The smallest type that holds the values of both.
+    pub(in crate::data) fn with(self, other: Self) -> Self {
+        if self == other {
+            return self;
+        }
+        let (Some(one), Some(another)) = (self.whole(), other.whole()) else {
+            // Whole numbers of 16 bits and fewer are exact as F32.
+            let is_exact = |of: Self| of == Self::F32 || (of != Self::F64 && of.bytes() <= 2);
+            return if is_exact(self) && is_exact(other) { Self::F32 } else { Self::F64 };
+        };
+        let (low, high) = (one.0.min(another.0), one.1.max(another.1));
+        let holds = |of: &Self| of.whole().is_some_and(|(first, last)| first <= low && high <= last);
+        Self::ALL.into_iter().find(holds).unwrap_or(Self::F64)
+    }
+
     /// The name used in file names and on the command line: `uint8` … `float64`.
     pub const fn name(self) -> &'static str {
         match self {
@@ -125,6 +153,34 @@ impl Samples {
         picked!(U8, I8, U16, I16, U32, I32, F32, F64)
     }
 
+    /// The same values in a type that holds them, with room for so many; nothing without memory.
+    pub(in crate::data) fn in_type(&self, voxel_type: VoxelType, count: usize) -> Option<Self> {
+        macro_rules! in_type {
+            ($($variant:ident),+) => {
+                match voxel_type {
+                    $(VoxelType::$variant => {
+                        let mut values = Vec::new();
+                        values.try_reserve_exact(count).ok()?;
+                        Self::$variant(values)
+                    })+
+                }
+            };
+        }
+        let mut found = in_type!(U8, I8, U16, I16, U32, I32, F32, F64);
+        found.append(self);
+        Some(found)
+    }
+
+    /// Adds values that are in its type's range.
+    #[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the types is the same")]
+    pub(in crate::data) fn append(&mut self, more: &Self) {
+        with_samples!(self, values => {
+            with_samples!(more, more => for &value in more {
+                values.push(value as _);
+            });
+        });
+    }
+
     /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
     pub(in crate::data) fn finite_range(&self) -> Option<(ValueRange, usize)> {
         self.range_without(f64::NAN)
@@ -166,5 +222,30 @@ impl Samples {
             (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
         }));
         hash
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_of_two_types_are_held_by_a_third() {
+        use VoxelType::{F32, F64, I8, I16, I32, U8, U16, U32};
+        for (one, other, both) in [
+            (U8, U8, U8),
+            (U8, I16, I16),
+            (I16, U16, I32),
+            (U32, I8, F64),
+            (I32, U32, F64),
+            (U16, F32, F32),
+            (I32, F32, F64),
+            (F32, F64, F64),
+        ] {
+            assert_eq!((one.with(other), other.with(one)), (both, both), "{one:?} {other:?}");
+        }
+        let mut samples = Samples::U8(vec![1, 255]).in_type(I16, 4).unwrap();
+        samples.append(&Samples::I16(vec![-3, 7]));
+        assert_eq!(samples, Samples::I16(vec![1, 255, -3, 7]));
     }
 }
