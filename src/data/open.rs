@@ -38,7 +38,7 @@ pub fn open(
             }
         },
     };
-    let volume = synthetic::builtin_within(name, n, options.memory_budget_bytes, control)?;
+    let volume = synthetic::builtin_within(name, n, options.memory_budget_bytes, &options.choice, control)?;
     // It is made whole.
     let (portion, dims) = (options.choice.portion.unwrap_or_default(), volume.dims());
     let Some(wanted) = Kept::of(&portion, dims, false) else { return Err(attempt.outside(dims)) };

@@ -1,21 +1,23 @@
 //! Opens volumes on a thread of their own, up to the first look.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui;
 
 use super::task::Work;
 use super::warm_up::WarmUp;
+use super::weighing::{Room, Weighed};
 use crate::app::memory::{FileStamp, Remembered};
 use crate::app::text;
 use crate::data::load::{
     self, Choice, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, Several,
+    memory_budget_bytes,
 };
 use crate::data::{self, Dataset, Volume};
 use crate::fault::{Place, may_panic};
-use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted};
+use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted, held_of};
 use crate::model::{SceneAxis, Settings};
 
 /// How a volume is read, where the user has said it.
@@ -25,6 +27,8 @@ pub(crate) struct Reading {
     pub raw: Option<RawFormat>,
     /// Which of several volumes is opened, and how much of it.
     pub choice: Option<Choice>,
+    /// It may take all memory that is free.
+    pub takes_all_memory: bool,
 }
 
 /// What is known of a file from earlier times.
@@ -64,6 +68,8 @@ pub(crate) enum Outcome {
     Cancelled,
     /// It is a file of bare voxels, and how these are stored is not known, or not right.
     NotDescribed { path: PathBuf, why: String, guess: RawGuess },
+    /// It has hardly room, or none, and nobody has said how much of it is to be read.
+    Weighed { source: PathBuf, reading: Reading, weighed: Weighed },
     /// A volume that was open in an earlier window is on the device of this one.
     Shown { renderer: Box<Renderer>, dataset: Dataset },
     /// With a message: what, and all that is known.
@@ -90,6 +96,8 @@ pub(crate) struct LoadProgress<'a> {
     pub phase: &'static str,
     /// The share of the phase that is done, where it is known.
     pub fraction: Option<f32>,
+    /// Bytes of voxels that have been read, and of all that are, where that is the phase.
+    pub bytes: Option<[u64; 2]>,
 }
 
 /// Opens one volume at a time; a new request replaces the one before.
@@ -151,10 +159,20 @@ impl Loader {
         ctx: &egui::Context,
     ) -> Result<(), String> {
         self.cancel();
-        let control = Arc::new(LoadControl::new());
         let phase = Arc::new(AtomicU8::new(0));
+        let mut options = self.options.clone();
+        // As much as is free now.
+        options.memory_budget_bytes = options.memory_budget_bytes.min(memory_budget_bytes());
+        let question = Arc::new(Mutex::new(None));
+        let control = Arc::new(if reading.takes_all_memory {
+            LoadControl::new()
+        } else {
+            weighing(self.context.clone(), options.memory_budget_bytes, Arc::clone(&question))
+        });
         let task = {
-            let mut options = self.options.clone();
+            if reading.takes_all_memory {
+                options.memory_budget_bytes = options.memory_budget_bytes / 3 * 4;
+            }
             options.raw = reading.raw.unwrap_or(options.raw);
             options.choice = reading.choice.clone().unwrap_or(options.choice);
             let reading = reading.clone();
@@ -166,6 +184,7 @@ impl Loader {
                 context: self.context.clone(),
                 shaders: self.shaders.clone(),
                 control: Arc::clone(&control),
+                question,
                 phase: Arc::clone(&phase),
             };
             move || open(opening)
@@ -219,12 +238,14 @@ impl Loader {
     pub(crate) fn progress(&self) -> Option<LoadProgress<'_>> {
         let running = self.running.as_ref()?;
         let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
-        let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
+        let is_reading = phase == 0;
+        let fraction = running.control.fraction().filter(|_| is_reading);
         Some(LoadProgress {
             source: &running.source,
             reading: &running.reading,
             phase: PHASES[phase],
             fraction: fraction.map(|fraction| fraction as f32),
+            bytes: running.control.bytes().filter(|_| is_reading),
         })
     }
 }
@@ -255,8 +276,25 @@ struct Opening {
     context: Context,
     shaders: ShaderLibrary,
     control: Arc<LoadControl>,
+    /// Why it is not read before somebody has said how much of it.
+    question: Arc<Mutex<Option<Weighed>>>,
     /// Index of what is being done, in [`PHASES`].
     phase: Arc<AtomicU8>,
+}
+
+/// A control that lets volumes pass that have room in memory and on the adapter, and keeps what there is to ask of others.
+fn weighing(context: Context, budget_bytes: u64, question: Arc<Mutex<Option<Weighed>>>) -> LoadControl {
+    LoadControl::weighing(move |size| {
+        // A device that is lost is spoken of when the volume is shown.
+        let held = held_of(&context, size.dims, size.voxel_type).unwrap_or(size.dims);
+        let room = Room { budget_bytes, held, is_shared: context.is_software() };
+        let weighed = Weighed { size: *size, room };
+        let is_well = weighed.is_well();
+        if !is_well {
+            *question.lock().unwrap_or_else(PoisonError::into_inner) = Some(weighed);
+        }
+        is_well
+    })
 }
 
 /// Opens a volume; of several the first where nobody has said which, of which the user is told.
@@ -284,12 +322,15 @@ fn corrected(volume: Volume, known: Option<&Remembered>, stamp: FileStamp) -> Vo
 }
 
 fn open(opening: Opening) -> Outcome {
-    let Opening { source, reading, known, options, context, shaders, control, phase } = opening;
+    let Opening { source, reading, known, options, context, shaders, control, question, phase } = opening;
     may_panic(Place::Loader);
     let stamp = FileStamp::of(&source);
     let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
-        Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
+        Err(load::LoadError::Cancelled) => {
+            let asked = question.lock().unwrap_or_else(PoisonError::into_inner).take();
+            return asked.map_or(Outcome::Cancelled, |weighed| Outcome::Weighed { source, reading, weighed });
+        }
         Err(err) => {
             if let Some(asked) = not_described(&source, &err) {
                 return asked;

@@ -1,8 +1,10 @@
 //! Watching a load from another thread, and stopping it.
 
+use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::error::LoadError;
+use super::size::Size;
 
 /// Shared by the thread that loads and the one that waits.
 ///
@@ -16,12 +18,34 @@ pub struct LoadControl {
     pub done_bytes: AtomicU64,
     /// Bytes of voxels in the whole volume; 0 until the header has been read.
     pub total_bytes: AtomicU64,
+    weigh: Weigh,
+}
+
+/// Says of a volume whose size is known whether its voxels are read.
+#[derive(Default)]
+struct Weigh(Option<Box<dyn Fn(&Size) -> bool + Send + Sync>>);
+
+impl fmt::Debug for Weigh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "Weigh(somebody)" } else { "Weigh(nobody)" })
+    }
 }
 
 impl LoadControl {
     /// A control that nobody has cancelled.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A control for volumes of which somebody says whether they are read, once their size is known and before their voxels
+    /// take any memory. Loading fails with [`LoadError::Cancelled`] where they are not; of what the user has said how much
+    /// is read of it nobody is asked.
+    pub fn weighing(accepts: impl Fn(&Size) -> bool + Send + Sync + 'static) -> Self {
+        Self { weigh: Weigh(Some(Box::new(accepts))), ..Self::default() }
+    }
+
+    pub(super) fn accepts(&self, size: &Size) -> bool {
+        self.weigh.0.as_ref().is_none_or(|accepts| accepts(size))
     }
 
     /// Asks the load to stop; it then fails with [`LoadError::Cancelled`].
@@ -36,9 +60,13 @@ impl LoadControl {
 
     /// The share that is there, 0 … 1, once the size is known.
     pub fn fraction(&self) -> Option<f64> {
+        self.bytes().map(|[done, total]| done as f64 / total as f64)
+    }
+
+    /// Bytes that are there, and all of them, once that is known.
+    pub fn bytes(&self) -> Option<[u64; 2]> {
         let total = self.total_bytes.load(Ordering::Relaxed);
-        let done = self.done_bytes.load(Ordering::Relaxed);
-        (total > 0).then(|| (done as f64 / total as f64).min(1.0))
+        (total > 0).then(|| [self.done_bytes.load(Ordering::Relaxed).min(total), total])
     }
 
     pub(in crate::data) fn start(&self, total_bytes: u64) {

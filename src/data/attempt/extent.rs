@@ -1,10 +1,12 @@
 //! The size of a volume, checked before anything is allocated: what of it is wanted, and what reading keeps.
 
 use super::choice::Choice;
+use super::control::LoadControl;
 use super::error::{Attempt, LoadError};
 use super::kept::Kept;
 use super::limits::human_bytes;
 use super::portion::{LONGEST_STEP, Portion, Thinning};
+use super::size::{Size, needed_bytes};
 use crate::data::VoxelType;
 
 /// What there is for a volume, and how much of it is wanted.
@@ -14,6 +16,8 @@ pub(in crate::data) struct Room<'a> {
     pub(in crate::data) budget_bytes: u64,
     /// What is said of what is read.
     pub(in crate::data) choice: &'a Choice,
+    /// Who waits for it.
+    pub(in crate::data) control: &'a LoadControl,
 }
 
 /// The size of a grid, what of it is wanted, and what of it reading keeps: that fits into the memory budget.
@@ -57,6 +61,7 @@ impl Extent {
         room: Room<'_>,
     ) -> Result<Self, LoadError> {
         let extent = Self::measured(attempt, field, dims, voxel_type, room)?;
+        extent.weighed(voxel_type, room, false)?;
         let Self { wanted, .. } = extent;
         let boxed = Self { read: wanted.boxed(), ..extent };
         let has_room = boxed.needed_bytes(voxel_type) <= u128::from(room.budget_bytes);
@@ -79,6 +84,7 @@ impl Extent {
         room: Room<'_>,
     ) -> Result<Self, LoadError> {
         let extent = Self::measured(attempt, field, dims, voxel_type, room)?;
+        extent.weighed(voxel_type, room, true)?;
         Self { read: Kept::all(extent.dims), ..extent }.within(attempt, field, voxel_type, room)
     }
 
@@ -126,6 +132,17 @@ impl Extent {
             watch.saw_grid(dims);
         }
         Ok(Self { dims, voxels, bytes, wanted, read: wanted })
+    }
+
+    /// Asks who waits for the volume whether it is read like this, unless that was said.
+    fn weighed(&self, voxel_type: VoxelType, room: Room<'_>, is_read_whole: bool) -> Result<(), LoadError> {
+        if room.choice.portion.is_some()
+            || room.control.accepts(&Size { dims: self.dims, voxel_type, is_read_whole })
+        {
+            Ok(())
+        } else {
+            Err(LoadError::Cancelled)
+        }
     }
 
     /// Checks that there is room for what is read, and for what is made of that.
@@ -187,19 +204,7 @@ impl Extent {
 
     /// Bytes for what is read, for what is made of it, and for what is read at a time.
     fn needed_bytes(&self, voxel_type: VoxelType) -> u128 {
-        let bytes = |voxels: usize, of_voxel: usize| voxels as u128 * of_voxel as u128;
-        let of_voxel = voxel_type.bytes();
-        let kept = bytes(self.read.count(), of_voxel);
-        if self.read != self.wanted {
-            return kept + if self.wanted.is_averaged { bytes(self.wanted.count(), of_voxel) } else { 0 };
-        }
-        if !self.read.is_averaged {
-            return kept;
-        }
-        // Beside the means one voxel of each block, which tells labels; and as many slices as a block is deep, which are
-        // of numbers of at most 8 bytes once they mean what the file says.
-        let [x, y, _] = self.read.edges();
-        2 * kept + bytes(x.saturating_mul(y).saturating_mul(self.read.step[2]), of_voxel + size_of::<f64>())
+        needed_bytes(&self.read, &self.wanted, voxel_type)
     }
 }
 
@@ -241,7 +246,7 @@ mod tests {
     fn extent(dims: [u64; 3], budget_bytes: u64, portion: Portion) -> Result<Extent, LoadError> {
         let attempt = Attempt { what: "test", path: Path::new("t") };
         let choice = Choice { portion: Some(portion), ..Choice::default() };
-        let room = Room { budget_bytes, choice: &choice };
+        let room = Room { budget_bytes, choice: &choice, control: &LoadControl::new() };
         Extent::checked(attempt, "sizes", dims, VoxelType::U16, room)
     }
 

@@ -42,7 +42,7 @@ pub(crate) fn default_budget_bytes() -> u64 {
 }
 
 /// A number of bytes for a message: exact when small, else in the largest unit that fits.
-pub(in crate::data) fn human_bytes(bytes: u128) -> String {
+pub(crate) fn human_bytes(bytes: u128) -> String {
     const UNITS: [&str; 6] = ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     if bytes < 10 * 1024 {
         return format!("{bytes} bytes");

@@ -16,12 +16,12 @@ use std::path::Path;
 pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 
 use super::Volume;
-pub(crate) use super::attempt::memory_budget_bytes;
 pub use super::attempt::{
     Aspect, Choice, Components, Dimension, Explanation, Held, LoadControl, LoadError, LoadErrorKind, Offer,
-    Portion, Region, Several, Stretch, Thinning, Watch, Whole,
+    Portion, Region, Several, Size, Stretch, Thinning, Watch, Whole,
 };
 use super::attempt::{Attempt, Room};
+pub(crate) use super::attempt::{human_bytes, memory_budget_bytes};
 pub use neighbour::neighbour;
 
 use formats::{READERS, folder, reader_of};
@@ -59,8 +59,8 @@ impl Default for LoadOptions {
 
 impl LoadOptions {
     /// What there is for a volume, and how much of it is wanted.
-    fn room(&self) -> Room<'_> {
-        Room { budget_bytes: self.memory_budget_bytes, choice: &self.choice }
+    fn room<'a>(&'a self, control: &'a LoadControl) -> Room<'a> {
+        Room { budget_bytes: self.memory_budget_bytes, choice: &self.choice, control }
     }
 }
 

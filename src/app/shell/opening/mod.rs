@@ -140,10 +140,11 @@ impl App {
             let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
             settings.opacity_unit = Length::Mm(unit);
         }
-        let portion = Portion { thinning, ..volume.held.portion };
-        let choice = Choice { portion: Some(portion), ..volume.held.choice() };
-        let (source, reading) =
-            (volume.source.clone(), Reading { choice: Some(choice), ..volume.reading.clone() });
+        // Whether all of it has room is asked.
+        let portion = Some(Portion { thinning, ..volume.held.portion }).filter(|portion| !portion.is_whole());
+        let choice = Some(Choice { portion, ..volume.held.choice() });
+        let reading = Reading { choice, takes_all_memory: false, ..volume.reading.clone() };
+        let source = volume.source.clone();
         if self.start_loading(&source, reading, ctx) {
             self.pending = Some(PendingLook::Settings(Box::new(settings)));
         }
@@ -152,6 +153,7 @@ impl App {
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
         // What was asked or said of the file before is over.
         self.raw_dialog.close();
+        self.roomy.close();
         let known = Known { up: self.memory.up_of(source), corrected: self.memory.corrections_of(source) };
         let started = self.loader.open(source, reading, known, ctx);
         if let Err(err) = &started {

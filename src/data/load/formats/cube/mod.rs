@@ -35,7 +35,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     };
     let voxel_type = VoxelType::F32;
     // Its slices are none of the volume's: x is slowest. All of it is read before anything is left out.
-    let room = source.options.room();
+    let room = source.options.room(source.control);
     let extent = Extent::checked_whole(attempt, "numbers of voxels", header.dims, voxel_type, room)?;
     let layout = Layout { extent, voxel_type, endian: Endian::Little };
     let values = header.values.len();

@@ -59,7 +59,7 @@ pub(super) fn load(
         stored => stored,
     };
     let dims = [shape.columns as u64, shape.rows as u64, slices.len() as u64];
-    let extent = Extent::checked(attempt, "Rows, Columns", dims, voxel_type, options.room())?;
+    let extent = Extent::checked(attempt, "Rows, Columns", dims, voxel_type, options.room(control))?;
     let stores = stores(headers, shape, extent.read.slices().map(|slice| slices[slice]), options, control)?;
     let raster = Raster { shape, endian: Endian::Little, part, scale: None };
     let slices_of = Slices { headers, stores: &stores, order: slices, raster, is_scaled, control };

@@ -48,7 +48,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let frame = attempt.chosen(&options.choice, Dimension::Frame, offers)?;
     let stored = storage.stored;
     let voxel_type = stored.voxel_type();
-    let extent = Extent::checked(attempt, "DimSize", grid.dims, voxel_type, options.room())?;
+    let extent = Extent::checked(attempt, "DimSize", grid.dims, voxel_type, options.room(control))?;
     let files = Files::of(attempt, &header, &grid)?;
     let described =
         Described { grid: &grid, storage: &storage, files: &files, data_start: header.data_start };

@@ -45,7 +45,13 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let count = all_z / per_volume;
     let dims = [x, y, per_volume];
     let frame = source.numbered(attempt, Dimension::Frame, count, dims, |_| String::new())?;
-    let extent = Extent::checked(attempt, "NX, NY, NZ", dims, stored.voxel_type(), source.options.room())?;
+    let extent = Extent::checked(
+        attempt,
+        "NX, NY, NZ",
+        dims,
+        stored.voxel_type(),
+        source.options.room(source.control),
+    )?;
     let before = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel()).saturating_mul(frame as u64);
     let at = (HEADER_BYTES as u64 + header.extension_bytes(attempt)?).saturating_add(before);
     let voxels = source.voxels(attempt, at, (&stored, extent), After::More, HELP)?;

@@ -85,7 +85,7 @@ fn read(
     // Lengths of vectors are made of several volumes, and known when all have been read.
     let is_planar = grid.components > 1;
     let checked = if is_planar && part == Part::Magnitude { Extent::checked_whole } else { Extent::checked };
-    let extent = checked(attempt, "dim", dims, stored.voxel_type(), options.room())?;
+    let extent = checked(attempt, "dim", dims, stored.voxel_type(), options.room(control))?;
     let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: header.endian };
     let failed = |fault: Fault| {
         fault.into_error(attempt, &layout, "bytes", "check the header, or copy the file again")

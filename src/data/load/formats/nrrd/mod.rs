@@ -53,7 +53,8 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     // Numbers in text are made little-endian, and those of one byte need no order.
     let endian = storage.endian.filter(|_| storage.encoding != Encoding::Text).unwrap_or(Endian::Little);
     let stored = Stored { number: storage.number, endian, components: geometry.components, part };
-    let extent = Extent::checked(attempt, "sizes", geometry.dims, stored.voxel_type(), options.room())?;
+    let extent =
+        Extent::checked(attempt, "sizes", geometry.dims, stored.voxel_type(), options.room(control))?;
     let bytes_of_frame = (extent.voxels as u64)
         .checked_mul(stored.bytes_of_voxel())
         .filter(|bytes| bytes.checked_mul(geometry.frames).is_some())

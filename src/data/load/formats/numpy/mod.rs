@@ -71,7 +71,13 @@ fn wanted(
         let chosen = source.numbered(attempt, dimension, count, grid.dims, |_| String::new())?;
         number = number.saturating_mul(count).saturating_add(chosen as u64);
     }
-    let extent = Extent::checked(attempt, "shape", grid.dims, stored.voxel_type(), source.options.room())?;
+    let extent = Extent::checked(
+        attempt,
+        "shape",
+        grid.dims,
+        stored.voxel_type(),
+        source.options.room(source.control),
+    )?;
     let before = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel()).saturating_mul(number);
     let remark = match part {
         Part::Magnitude => Some("complex numbers are shown by their length"),

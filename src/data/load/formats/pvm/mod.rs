@@ -47,7 +47,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let part = source.part(attempt, components, components > 1)?;
     let stored = Stored { number, endian: Endian::Big, components, part };
     // What is packed is unpacked as a whole, as far as the budget reaches.
-    let room = source.options.room();
+    let room = source.options.room(source.control);
     let extent = Extent::checked(attempt, "dimensions", header.dims, stored.voxel_type(), room)?;
     let (voxels, after) = match unpacked {
         None => {

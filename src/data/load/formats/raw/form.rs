@@ -60,7 +60,7 @@ impl Form {
         let part = source.part(attempt, self.components, self.is_color)?;
         let stored = Stored { number: self.number, endian: self.endian, components: self.components, part };
         let frame = source.numbered(attempt, Dimension::Frame, self.frames, self.dims, |_| String::new())?;
-        let room = source.options.room();
+        let room = source.options.room(source.control);
         let extent = Extent::checked(attempt, self.dims_field, self.dims, stored.voxel_type(), room)?;
         let bytes = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
         let all_bytes = bytes.saturating_mul(self.frames);

@@ -152,6 +152,7 @@ pub(super) fn choose<P>(
     grid: &Grid,
     mut arrays: Vec<Array<P>>,
     options: &LoadOptions,
+    control: &LoadControl,
 ) -> Result<Chosen<P>, LoadError> {
     if arrays.is_empty() {
         return Err(attempt.bad_input(
@@ -173,7 +174,7 @@ pub(super) fn choose<P>(
     // The byte order is said when they are read.
     let stored = Stored { number: array.number, endian: Endian::Little, components, part };
     let dims = grid.dims(array.of_cells);
-    let extent = Extent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.room())?;
+    let extent = Extent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.room(control))?;
     Ok(Chosen { array, stored, extent, is_one_of_several })
 }
 

@@ -169,7 +169,7 @@ fn volume(
     }
     let stored = model.stored;
     let dims = [model.size[0], model.size[1], files.len() as u64];
-    let extent = Extent::checked(attempt, "files", dims, stored.voxel_type(), options.room())?;
+    let extent = Extent::checked(attempt, "files", dims, stored.voxel_type(), options.room(control))?;
     let voxels = read_pile(attempt, &stored, extent, &Meant::as_stored(None), control, |some| {
         some.par_iter()
             .map(|&slice| {

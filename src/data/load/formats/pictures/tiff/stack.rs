@@ -155,7 +155,7 @@ impl Stack {
         let sample = sample.or_else(|| chosen_sample(&model, options));
         let stored = stored(attempt, &model, sample, options)?;
         let dims = [model.width, model.height, slices.len() as u64];
-        let extent = Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.room())?;
+        let extent = Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.room(control))?;
         check_page_bytes(attempt, &model, options)?;
         placement.remarks.extend(stored.part.remark().map(str::to_owned));
         if model.is_inverted {

@@ -26,7 +26,7 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let (control, options) = (source.control, source.options);
     let lines = Lines::new(attempt, content_from(attempt, &mut source, 0)?, control);
     let Scan { title, is_text, grid, arrays, .. } = Scan::of(attempt, lines)?;
-    let chosen = choose(attempt, &grid, arrays, options)?;
+    let chosen = choose(attempt, &grid, arrays, options, control)?;
     let name = chosen.array.name.as_str();
     let Place { start, are_shares } = chosen.array.place;
     let room = if source.start.is_gzip() { u64::MAX } else { source.input.len.saturating_sub(start) };

@@ -76,7 +76,7 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let grid = grid(attempt, piece)?;
     let style = style(attempt, root)?;
     let arrays = arrays(attempt, piece, &grid)?;
-    let chosen = choose(attempt, &grid, arrays, source.options)?;
+    let chosen = choose(attempt, &grid, arrays, source.options, source.control)?;
     let voxels = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
     chosen.volume(attempt, &grid, voxels, "")
 }
