@@ -16,7 +16,7 @@ pub mod synthetic;
 mod values;
 mod volume;
 
-pub(crate) use attempt::address_bytes_left;
+pub(crate) use attempt::{Interrupt, address_bytes_left};
 pub use bricks::Bricks;
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;

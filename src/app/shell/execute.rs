@@ -172,7 +172,7 @@ impl App {
                 self.raw_dialog.ask(&path, why, guess, ctx);
             }
             // A look that waits for this volume goes on waiting.
-            Some(Outcome::Weighed { source, reading, weighed }) => self.roomy.ask(source, reading, weighed),
+            Some(Outcome::Weighed { source, reading, weighed }) => self.roomy.ask(source, *reading, weighed),
             Some(Outcome::Failed { short, details }) => {
                 self.pending = None;
                 self.messages.error(short, details);

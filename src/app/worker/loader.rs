@@ -69,7 +69,7 @@ pub(crate) enum Outcome {
     /// It is a file of bare voxels, and how these are stored is not known, or not right.
     NotDescribed { path: PathBuf, why: String, guess: RawGuess },
     /// It has hardly room, or none, and nobody has said how much of it is to be read.
-    Weighed { source: PathBuf, reading: Reading, weighed: Weighed },
+    Weighed { source: PathBuf, reading: Box<Reading>, weighed: Weighed },
     /// A volume that was open in an earlier window is on the device of this one.
     Shown { renderer: Box<Renderer>, dataset: Dataset },
     /// With a message: what, and all that is known.
@@ -187,7 +187,10 @@ impl Loader {
                 question,
                 phase: Arc::clone(&phase),
             };
-            move || open(opening)
+            move || {
+                let control = Arc::clone(&opening.control);
+                control.during(|| open(opening))
+            }
         };
         let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
         self.running = Some(Running { source: source.to_owned(), reading, control, phase, work });
@@ -226,6 +229,11 @@ impl Loader {
     /// What became of it, once.
     pub(crate) fn take(&mut self) -> Option<Outcome> {
         let running = self.running.as_ref()?;
+        if running.control.is_cancelled() {
+            // Its thread ends by itself, with the next piece of its work.
+            self.running = None;
+            return Some(Outcome::Cancelled);
+        }
         let outcome = running.work.take()?.unwrap_or_else(|panic| Outcome::Failed {
             short: text::opening::failed(&running.source),
             details: text::opening::stopped(&panic),
@@ -329,7 +337,10 @@ fn open(opening: Opening) -> Outcome {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => {
             let asked = question.lock().unwrap_or_else(PoisonError::into_inner).take();
-            return asked.map_or(Outcome::Cancelled, |weighed| Outcome::Weighed { source, reading, weighed });
+            return asked.map_or(Outcome::Cancelled, |weighed| {
+                let reading = Box::new(reading);
+                Outcome::Weighed { source, reading, weighed }
+            });
         }
         Err(err) => {
             if let Some(asked) = not_described(&source, &err) {
@@ -346,16 +357,17 @@ fn open(opening: Opening) -> Outcome {
         details: err.to_string(),
     };
     let dims = volume.dims();
-    let volume = match fitted(&context, volume) {
+    let fit = fitted(&context, volume);
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    let volume = match fit {
         Ok(volume) => volume,
         Err(err) => return not_shown(&err),
     };
     let too_many = (volume.dims() != dims).then_some(dims);
     // It is read in the same way again.
     let reading = Reading { choice: Some(volume.held().choice()), ..reading };
-    if control.is_cancelled() {
-        return Outcome::Cancelled;
-    }
     phase.store(2, Ordering::Relaxed);
     let dataset = Dataset::new(corrected(volume, known.corrected.as_ref(), stamp));
     if control.is_cancelled() {

@@ -1,19 +1,20 @@
 //! Watching a load from another thread, and stopping it.
 
 use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::LoadError;
+use super::interrupt::{Interrupt, Signal};
 use super::size::Size;
 
 /// Shared by the thread that loads and the one that waits.
 ///
-/// Loading looks at `cancel` before every block of at most 1 MiB. The counts are bytes of voxels,
-/// after inflating.
+/// Whether it is cancelled is looked at before every block of at most 1 MiB that is read, and between pieces of what is
+/// found out of the voxels. The counts are bytes of voxels, after inflating.
 #[derive(Debug, Default)]
 pub struct LoadControl {
-    /// Set it to stop loading.
-    pub cancel: AtomicBool,
+    signal: Arc<Signal>,
     /// Bytes of voxels that are there.
     pub done_bytes: AtomicU64,
     /// Bytes of voxels in the whole volume; 0 until the header has been read.
@@ -50,12 +51,12 @@ impl LoadControl {
 
     /// Asks the load to stop; it then fails with [`LoadError::Cancelled`].
     pub fn cancel(&self) {
-        self.cancel.store(true, Ordering::Relaxed);
+        self.signal.is_cancelled.store(true, Ordering::Relaxed);
     }
 
     /// Whether it was asked to stop.
     pub fn is_cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+        self.signal.is_cancelled.load(Ordering::Relaxed)
     }
 
     /// The share that is there, 0 … 1, once the size is known.
@@ -79,6 +80,23 @@ impl LoadControl {
     }
 
     pub(in crate::data) fn check(&self) -> Result<(), LoadError> {
-        if self.is_cancelled() { Err(LoadError::Cancelled) } else { Ok(()) }
+        if self.signal.is_due() { Err(LoadError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Does work that is given up when this is cancelled. What comes of it then is to be thrown away.
+    pub(crate) fn during<T>(&self, work: impl FnOnce() -> T) -> T {
+        Interrupt::of(&self.signal).during(work)
+    }
+
+    /// Pieces of work that were begun: blocks that were read, slices that were counted. None of them takes longer than a
+    /// slice does.
+    pub fn begun(&self) -> u64 {
+        self.signal.begun.load(Ordering::Relaxed)
+    }
+
+    /// Cancels it by itself after so many pieces.
+    #[cfg(any(test, feature = "testing"))]
+    pub fn cancel_after(&self, pieces: u64) {
+        self.signal.last.store(pieces.max(1), Ordering::Relaxed);
     }
 }

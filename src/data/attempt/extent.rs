@@ -286,11 +286,11 @@ mod tests {
 
     #[test]
     fn too_large_a_volume_hears_how_much_of_it_has_room() {
-        let said = extent([2000, 2000, 1000], 64 << 20, Portion::default()).unwrap_err().to_string();
+        let said = extent([2000, 2000, 1000], 1 << 30, Portion::default()).unwrap_err().to_string();
         for words in [
-            "need 7.5 GiB, 64.0 MiB are allowed",
-            "--every 5 reads 400 x 400 x 200 voxels in 61.0 MiB",
-            "--reduce ",
+            "need 7.5 GiB, 1.0 GiB are allowed",
+            "--every 2 reads 1000 x 1000 x 500 voxels in 953.7 MiB",
+            "--reduce 3 ",
         ] {
             assert!(said.contains(words), "{words}: {said}");
         }

@@ -16,12 +16,14 @@ use std::path::Path;
 pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 
 use super::Volume;
+#[cfg(feature = "window")]
+pub(crate) use super::attempt::human_bytes;
+pub(crate) use super::attempt::memory_budget_bytes;
 pub use super::attempt::{
     Aspect, Choice, Components, Dimension, Explanation, Held, LoadControl, LoadError, LoadErrorKind, Offer,
     Portion, Region, Several, Size, Stretch, Thinning, Watch, Whole,
 };
 use super::attempt::{Attempt, Room};
-pub(crate) use super::attempt::{human_bytes, memory_budget_bytes};
 pub use neighbour::neighbour;
 
 use formats::{READERS, folder, reader_of};
@@ -77,7 +79,10 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
     let read = |are_labels: bool| {
         let (choice, watch) = Choice { are_labels, ..options.choice.clone() }.watched();
         let options = LoadOptions { choice, ..options.clone() };
-        let volume = load_watched(path, &options, control)?;
+        let volume = control.during(|| load_watched(path, &options, control));
+        // Whatever became of it.
+        control.check()?;
+        let volume = volume?;
         let volume = volume.with_held(Held { portion, ..watch.held() });
         Ok::<_, LoadError>((watch.has_averaged() && volume.is_of_labels(), volume))
     };

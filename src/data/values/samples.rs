@@ -1,6 +1,7 @@
 //! The values of voxels as files have them, in any number type.
 
 use crate::data::ValueRange;
+use crate::data::attempt::{Interrupt, PIECE};
 
 /// The number types that a voxel can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,6 +107,12 @@ macro_rules! with_samples {
 
 pub(in crate::data) use with_samples;
 
+/// Values in pieces, as long as they are wanted.
+fn wanted<T>(values: &[T]) -> impl Iterator<Item = &[T]> {
+    let interrupt = Interrupt::here();
+    values.chunks(PIECE).take_while(move |_| !interrupt.is_due())
+}
+
 impl Samples {
     /// Number of voxels.
     pub fn len(&self) -> usize {
@@ -194,7 +201,7 @@ impl Samples {
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let (low, high, non_finite) = with_samples!(self, values => values.iter().fold(
+        let (low, high, non_finite) = with_samples!(self, values => wanted(values).flatten().fold(
             (f64::INFINITY, f64::NEG_INFINITY, 0),
             |(low, high, non_finite), &value| {
                 let value = value as f64;
@@ -218,7 +225,7 @@ impl Samples {
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let hash = with_samples!(self, values => values.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
+        let hash = with_samples!(self, values => wanted(values).flatten().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
             (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
         }));
         hash

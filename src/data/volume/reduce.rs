@@ -4,6 +4,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::{Samples, Volume, VolumeError};
+use crate::data::attempt::{Interrupt, PIECE};
 
 impl Volume {
     /// The volume with blocks of so many voxels along x, y and z averaged into one each: same place in the world,
@@ -110,7 +111,12 @@ impl Blocks {
         let &Self { dims, block, padding } = self;
         let [nx, ny, _] = dims;
         let [width, height, depth] = reduced_dims(dims, block);
+        let interrupt = Interrupt::here();
         let choose = |at: usize| {
+            // Where nobody wants it any voxel will do.
+            if at % PIECE == 0 && interrupt.is_due() {
+                return 0;
+            }
             let low = [at % width, at / width % height, at / (width * height)];
             let [xs, ys, zs] = [0, 1, 2]
                 .map(|axis| low[axis] * block[axis]..((low[axis] + 1) * block[axis]).min(dims[axis]));
@@ -148,9 +154,10 @@ impl Blocks {
         let &Self { dims, block, padding } = self;
         let [nx, ny, nz] = dims;
         let [width, height, depth] = reduced_dims(dims, block);
+        let interrupt = Interrupt::here();
         let slice = |k: usize| {
             let (mut sums, mut counts) = (vec![0.0; width * height], vec![0u32; width * height]);
-            for z in k * block[2]..nz.min((k + 1) * block[2]) {
+            for z in (k * block[2]..nz.min((k + 1) * block[2])).take_while(|_| !interrupt.is_due()) {
                 for y in 0..ny {
                     let row = &values[(z * ny + y) * nx..][..nx];
                     let first = y / block[1] * width;

@@ -1,6 +1,7 @@
 //! Stored numbers to values: times a slope, and an intercept added.
 
 use crate::data::Samples;
+use crate::data::attempt::made;
 
 /// Values as a file means them: times a slope, and an intercept added. They stay whole numbers where that is exact.
 pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f64) -> Samples {
@@ -10,7 +11,7 @@ pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f
     }
     let is_integer = !matches!(samples, Samples::F32(_) | Samples::F64(_));
     let is_wide = matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
-    let values = (0..samples.len()).map(|voxel| samples.value(voxel).mul_add(slope, intercept));
+    let value = |voxel: usize| samples.value(voxel).mul_add(slope, intercept);
     let ends =
         samples.finite_range().map(|(range, _)| [range.low, range.high].map(|v| v.mul_add(slope, intercept)));
     if let Some(ends) = ends
@@ -20,19 +21,19 @@ pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f
     {
         let within = |low: f64, high: f64| ends.iter().all(|end| (low..=high).contains(end));
         if within(0.0, 255.0) {
-            return Samples::U8(values.map(|value| value as u8).collect());
+            return Samples::U8(made(samples.len(), |voxel| value(voxel) as u8));
         } else if within(f64::from(i16::MIN), f64::from(i16::MAX)) {
-            return Samples::I16(values.map(|value| value as i16).collect());
+            return Samples::I16(made(samples.len(), |voxel| value(voxel) as i16));
         } else if within(0.0, f64::from(u16::MAX)) {
-            return Samples::U16(values.map(|value| value as u16).collect());
+            return Samples::U16(made(samples.len(), |voxel| value(voxel) as u16));
         } else if within(f64::from(i32::MIN), f64::from(i32::MAX)) {
-            return Samples::I32(values.map(|value| value as i32).collect());
+            return Samples::I32(made(samples.len(), |voxel| value(voxel) as i32));
         }
     }
     if is_wide {
-        Samples::F64(values.collect())
+        Samples::F64(made(samples.len(), value))
     } else {
-        Samples::F32(values.map(|value| value as f32).collect())
+        Samples::F32(made(samples.len(), |voxel| value(voxel) as f32))
     }
 }
 

@@ -28,12 +28,6 @@ impl Voxels {
     pub(in crate::data::load) fn in_file(&self) -> &Samples {
         self.picked.as_ref().unwrap_or(&self.samples)
     }
-
-    /// Numbers as the file means them; for voxels that are no means.
-    #[must_use]
-    pub(in crate::data::load) fn map(self, meant: impl Fn(Samples) -> Samples) -> Self {
-        Self { samples: meant(self.samples), picked: self.picked.map(&meant) }
-    }
 }
 
 /// How stored numbers become values.

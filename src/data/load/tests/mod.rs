@@ -1,5 +1,6 @@
 //! RAW files and dispatch, from the outside: what is read and what is refused.
 
+mod cancelling;
 mod portions;
 pub(super) mod shared;
 
