@@ -11,8 +11,8 @@ use std::ops::RangeInclusive;
 use rayon::prelude::*;
 
 use super::Volume;
-use super::attempt::Interrupt;
 use super::cells::{self, BRICK_EDGE, CellBounds};
+use super::interrupt::Interrupt;
 
 /// How far a brick's range looks beyond its voxels: the kernel's radius of 2 and one for the
 /// quadrature offset, at most 2 · 0.289 voxel with the thickest slab.

@@ -11,7 +11,7 @@
 use rayon::prelude::*;
 
 use super::Volume;
-use super::attempt::Interrupt;
+use super::interrupt::Interrupt;
 
 /// Voxels along the edge of a brick, for which the bounds of its cells are kept together.
 pub const BRICK_EDGE: usize = 8;

@@ -1,6 +1,6 @@
 //! How often each value occurs.
 
-use super::attempt::Interrupt;
+use super::interrupt::Interrupt;
 use super::{Missing, Volume};
 
 /// Bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.

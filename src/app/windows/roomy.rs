@@ -58,6 +58,16 @@ pub(crate) struct Roomy {
     asked: Option<Asked>,
 }
 
+/// What there is to say of how a part fits.
+fn but(fit: Fit) -> Option<&'static str> {
+    match fit {
+        Fit::Well => None,
+        Fit::Tight => Some(text::roomy::TIGHT),
+        Fit::Averaged => Some(text::roomy::AVERAGED),
+        Fit::No => Some(text::roomy::TOO_MUCH),
+    }
+}
+
 impl Asked {
     fn portion(&self, wish: Wish) -> Option<Portion> {
         match wish {
@@ -87,8 +97,8 @@ impl Asked {
         ui.horizontal(|ui| {
             ui.add_enabled_ui(can_be, |ui| ui.radio_value(&mut self.wish, wish, name).on_hover_text(tip));
             ui.weak(match facts {
-                Some((dims, host, fit)) => text::roomy::takes(dims, host, fit),
-                None => text::roomy::NOT_POSSIBLE.to_owned(),
+                Some((dims, host, fit)) => text::roomy::takes(dims, host, but(fit)),
+                None => text::roomy::TOO_MUCH.to_owned(),
             });
         });
     }

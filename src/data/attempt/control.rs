@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::LoadError;
-use super::interrupt::{Interrupt, Signal};
 use super::size::Size;
+use crate::data::interrupt::{Interrupt, Signal};
 
 /// Shared by the thread that loads and the one that waits.
 ///

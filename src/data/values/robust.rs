@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::samples::with_samples;
-use crate::data::attempt::Interrupt;
+use crate::data::interrupt::Interrupt;
 use crate::data::{Samples, ValueRange, VoxelType};
 
 /// Voxels that are looked at: the 0.01 % at either end are 26 of them, whose rank is uncertain by a fifth.

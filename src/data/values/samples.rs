@@ -1,7 +1,7 @@
 //! The values of voxels as files have them, in any number type.
 
 use crate::data::ValueRange;
-use crate::data::attempt::{Interrupt, PIECE};
+use crate::data::interrupt::{Interrupt, PIECE};
 
 /// The number types that a voxel can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::{Samples, Shown, Volume, VolumeError};
 use crate::data::ValueRanges;
-use crate::data::attempt::{Interrupt, PIECE};
+use crate::data::interrupt::{Interrupt, PIECE};
 
 /// Words of 64 voxels between two looks at whether they are still wanted.
 const WORDS: usize = PIECE / 64;

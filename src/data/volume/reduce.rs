@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::{Samples, Volume, VolumeError};
-use crate::data::attempt::{Interrupt, PIECE};
+use crate::data::interrupt::{Interrupt, PIECE};
 
 impl Volume {
     /// The volume with blocks of so many voxels along x, y and z averaged into one each: same place in the world,

@@ -1,7 +1,6 @@
 //! The question how much of a large volume is read.
 
 use crate::app::text::data::{dimensions, ordinal};
-use crate::app::worker::weighing::Fit;
 use crate::data::load::{Size, human_bytes};
 
 pub(crate) const TITLE: &str = "A large volume: how much of it?";
@@ -28,19 +27,16 @@ pub(crate) fn adapter(needed: u64, held: Option<[usize; 3]>) -> String {
     }
 }
 
-/// What a part takes.
-pub(crate) fn takes(dims: [usize; 3], bytes: u64, fit: Fit) -> String {
+/// What a part takes, and what there is to say of that.
+pub(crate) fn takes(dims: [usize; 3], bytes: u64, but: Option<&str>) -> String {
     let taken = format!("{} voxels, {}", dimensions(dims), human_bytes(bytes.into()));
-    match fit {
-        Fit::Well => taken,
-        Fit::Tight => format!("{taken}: most of what is free"),
-        Fit::Averaged => format!("{taken}: the graphics adapter shows means of it"),
-        Fit::No => format!("{taken}: too much"),
-    }
+    but.map_or(taken.clone(), |but| format!("{taken}: {but}"))
 }
 
-/// A way that has no room either.
-pub(crate) const NOT_POSSIBLE: &str = "too much";
+/// A part has no room either, takes most of it, or more than the graphics adapter has.
+pub(crate) const TOO_MUCH: &str = "too much";
+pub(crate) const TIGHT: &str = "most of what is free";
+pub(crate) const AVERAGED: &str = "the graphics adapter shows means of it";
 
 pub(crate) fn average(block: usize) -> String {
     format!("Average {block} × {block} × {block}")

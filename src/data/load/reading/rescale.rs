@@ -1,7 +1,7 @@
 //! Stored numbers to values: times a slope, and an intercept added.
 
 use crate::data::Samples;
-use crate::data::attempt::made;
+use crate::data::interrupt::made;
 
 /// Values as a file means them: times a slope, and an intercept added. They stay whole numbers where that is exact.
 pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f64) -> Samples {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Values between two looks at whether they are still wanted: at a few nanoseconds each well below a millisecond.
-pub(crate) const PIECE: usize = 1 << 16;
+pub(in crate::data) const PIECE: usize = 1 << 16;
 
 thread_local! {
     static HERE: RefCell<Interrupt> = const { RefCell::new(Interrupt(None)) };
@@ -17,12 +17,12 @@ thread_local! {
 
 /// Whether work has been given up, and how many of its pieces were begun before.
 #[derive(Debug, Default)]
-pub(super) struct Signal {
-    pub(super) is_cancelled: AtomicBool,
+pub(in crate::data) struct Signal {
+    pub(in crate::data) is_cancelled: AtomicBool,
     /// Pieces that were begun.
-    pub(super) begun: AtomicU64,
+    pub(in crate::data) begun: AtomicU64,
     /// After so many it is given up by itself, in tests; 0 for never.
-    pub(super) last: AtomicU64,
+    pub(in crate::data) last: AtomicU64,
 }
 
 /// Asks whether the work of a thread has been given up. It goes with the work to other threads.
@@ -35,7 +35,7 @@ impl Interrupt {
         HERE.with_borrow(Clone::clone)
     }
 
-    pub(super) fn of(signal: &Arc<Signal>) -> Self {
+    pub(in crate::data) fn of(signal: &Arc<Signal>) -> Self {
         Self(Some(Arc::clone(signal)))
     }
 
@@ -50,7 +50,7 @@ impl Interrupt {
     }
 
     /// Does work of this thread that can be given up.
-    pub(super) fn during<T>(self, work: impl FnOnce() -> T) -> T {
+    pub(in crate::data) fn during<T>(self, work: impl FnOnce() -> T) -> T {
         /// Puts back what was, also when the work panics.
         struct Before(Interrupt);
         impl Drop for Before {
@@ -64,7 +64,7 @@ impl Interrupt {
 }
 
 impl Signal {
-    pub(super) fn is_due(&self) -> bool {
+    pub(in crate::data) fn is_due(&self) -> bool {
         if self.is_cancelled.load(Ordering::Relaxed) {
             return true;
         }
