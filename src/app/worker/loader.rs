@@ -1,14 +1,14 @@
 //! Opens volumes on a thread of their own, up to the first look.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui;
 
 use super::task::Work;
 use super::warm_up::WarmUp;
-use super::weighing::{Room, Weighed};
+use super::weighing::{Question, Weighed, weighing};
 use crate::app::memory::{FileStamp, Remembered};
 use crate::app::text;
 use crate::data::load::{
@@ -17,7 +17,7 @@ use crate::data::load::{
 };
 use crate::data::{self, Dataset, Volume};
 use crate::fault::{Place, may_panic};
-use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted, held_of};
+use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted};
 use crate::model::{SceneAxis, Settings};
 
 /// How a volume is read, where the user has said it.
@@ -163,11 +163,11 @@ impl Loader {
         let mut options = self.options.clone();
         // As much as is free now.
         options.memory_budget_bytes = options.memory_budget_bytes.min(memory_budget_bytes());
-        let question = Arc::new(Mutex::new(None));
+        let question = Question::default();
         let control = Arc::new(if reading.takes_all_memory {
             LoadControl::new()
         } else {
-            weighing(self.context.clone(), options.memory_budget_bytes, Arc::clone(&question))
+            weighing(self.context.clone(), options.memory_budget_bytes, question.clone())
         });
         let task = {
             if reading.takes_all_memory {
@@ -285,24 +285,9 @@ struct Opening {
     shaders: ShaderLibrary,
     control: Arc<LoadControl>,
     /// Why it is not read before somebody has said how much of it.
-    question: Arc<Mutex<Option<Weighed>>>,
+    question: Question,
     /// Index of what is being done, in [`PHASES`].
     phase: Arc<AtomicU8>,
-}
-
-/// A control that lets volumes pass that have room in memory and on the adapter, and keeps what there is to ask of others.
-fn weighing(context: Context, budget_bytes: u64, question: Arc<Mutex<Option<Weighed>>>) -> LoadControl {
-    LoadControl::weighing(move |size| {
-        // A device that is lost is spoken of when the volume is shown.
-        let held = held_of(&context, size.dims, size.voxel_type).unwrap_or(size.dims);
-        let room = Room { budget_bytes, held, is_shared: context.is_software() };
-        let weighed = Weighed { size: *size, room };
-        let is_well = weighed.is_well();
-        if !is_well {
-            *question.lock().unwrap_or_else(PoisonError::into_inner) = Some(weighed);
-        }
-        is_well
-    })
 }
 
 /// Opens a volume; of several the first where nobody has said which, of which the user is told.
@@ -336,7 +321,7 @@ fn open(opening: Opening) -> Outcome {
     let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => {
-            let asked = question.lock().unwrap_or_else(PoisonError::into_inner).take();
+            let asked = question.take();
             return asked.map_or(Outcome::Cancelled, |weighed| {
                 let reading = Box::new(reading);
                 Outcome::Weighed { source, reading, weighed }

@@ -1,7 +1,9 @@
 //! What a volume takes of the memory and of the graphics adapter, before it is read, and how much of it has room.
 
-use crate::data::load::{Portion, Region, Size, Stretch, Thinning};
-use crate::gpu::bytes_with_one_light;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::data::load::{LoadControl, Portion, Region, Size, Stretch, Thinning};
+use crate::gpu::{Context, bytes_with_one_light, held_of};
 
 /// Steps, and edges of blocks, that are offered: an eighth of the voxels each time. More would leave hardly anything to see.
 const STEPS: [usize; 6] = [2, 4, 8, 16, 32, 64];
@@ -37,6 +39,36 @@ pub(crate) struct Weighed {
     pub size: Size,
     /// What there is for it.
     pub room: Room,
+}
+
+/// What there is to ask of a volume, once its header has been read.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Question(Arc<Mutex<Option<Weighed>>>);
+
+impl Question {
+    fn ask(&self, weighed: Weighed) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(weighed);
+    }
+
+    /// What there is to ask, once.
+    pub(crate) fn take(&self) -> Option<Weighed> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+/// A control that lets volumes pass that have room in memory and on the adapter, and keeps what there is to ask of others.
+pub(crate) fn weighing(context: Context, budget_bytes: u64, question: Question) -> LoadControl {
+    LoadControl::weighing(move |size| {
+        // A device that is lost is spoken of when the volume is shown.
+        let held = held_of(&context, size.dims, size.voxel_type).unwrap_or(size.dims);
+        let room = Room { budget_bytes, held, is_shared: context.is_software() };
+        let weighed = Weighed { size: *size, room };
+        let is_well = weighed.is_well();
+        if !is_well {
+            question.ask(weighed);
+        }
+        is_well
+    })
 }
 
 impl Room {
