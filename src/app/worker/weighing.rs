@@ -9,7 +9,7 @@ use crate::gpu::{Context, bytes_with_one_light, held_of};
 const STEPS: [usize; 6] = [2, 4, 8, 16, 32, 64];
 
 /// What there is for a volume.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Room {
     /// Bytes of memory that may be taken without a question: three quarters of those that are free.
     pub budget_bytes: u64,
@@ -33,7 +33,7 @@ pub(crate) enum Fit {
 }
 
 /// A volume that is not read before the user has said how much of it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Weighed {
     /// What the file holds.
     pub size: Size,

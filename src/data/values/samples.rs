@@ -179,7 +179,7 @@ impl Samples {
     }
 
     /// Adds values that are in its type's range.
-    #[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the types is the same")]
+    #[expect(trivial_numeric_casts, reason = "one of the types is the same")]
     pub(in crate::data) fn append(&mut self, more: &Self) {
         with_samples!(self, values => {
             with_samples!(more, more => for &value in more {

@@ -33,7 +33,7 @@ impl Missing {
         let bits: Vec<u64> = (0..voxels.div_ceil(64))
             .into_par_iter()
             .map(|word| {
-                if word % WORDS == 0 && interrupt.is_due() {
+                if word.is_multiple_of(WORDS) && interrupt.is_due() {
                     return 0;
                 }
                 let places = word * 64..((word + 1) * 64).min(voxels);

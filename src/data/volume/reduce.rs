@@ -114,7 +114,7 @@ impl Blocks {
         let interrupt = Interrupt::here();
         let choose = |at: usize| {
             // Where nobody wants it any voxel will do.
-            if at % PIECE == 0 && interrupt.is_due() {
+            if at.is_multiple_of(PIECE) && interrupt.is_due() {
                 return 0;
             }
             let low = [at % width, at / width % height, at / (width * height)];

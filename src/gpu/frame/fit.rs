@@ -31,8 +31,9 @@ pub fn fitted(context: &Context, volume: Volume) -> Result<Volume, GpuError> {
     volume.reduced(block).map_err(|err| GpuError::Refused(err.to_string()))
 }
 
-/// Voxels along x, y and z of what would be shown of a volume of so many that has not been read: as many as the adapter can
-/// hold with one light. What is missing in it, and labels, which take more, show when it has been read.
+/// Voxels along x, y and z of what would be shown of a volume of so many: as many as the adapter can hold with one light.
+///
+/// The volume need not have been read. What is missing in it, and labels, which take more, show when it has been.
 ///
 /// # Errors
 /// When not even a small volume can be held, or the device is lost.

@@ -5,8 +5,9 @@ use super::samples::{BLOCK_BYTES, Fault};
 use crate::data::attempt::Kept;
 use crate::data::{Blocks, Samples};
 
-/// Bytes of slices that are averaged at a time, at least: enough for all cores, little beside a volume.
-const SLAB_BYTES: usize = 8 * BLOCK_BYTES;
+/// Bytes of slices that are averaged at a time, at least: enough for all cores, little beside a volume. In tests two slices
+/// of the smallest volumes, so that there are several slabs.
+const SLAB_BYTES: usize = if cfg!(test) { 64 } else { 8 * BLOCK_BYTES };
 
 /// What was read of a grid.
 #[derive(Debug, PartialEq)]
@@ -53,8 +54,10 @@ pub(in crate::data::load) enum NoMeans<E> {
     NoMemory,
 }
 
-/// The means of the blocks of a box, whose slices `read` gives, some at a time and in order: from the first to before the
-/// last, counted from that of the box. `means` says what the values are, and what is left out.
+/// The means of the blocks of a box.
+///
+/// `read` gives its slices, some at a time and in order: from the first to before the last, counted from that of the box.
+/// `meant` says what the values are, and what is left out.
 pub(in crate::data::load) fn averaged<E>(
     kept: &Kept,
     of_voxel: usize,
