@@ -159,7 +159,7 @@ mod tests {
         (0..60).flat_map(|voxel| [voxel, 100]).chain([7, 7, 7]).collect()
     }
 
-    fn sieved(bytes: &[u8], portion: &Portion, leap: Option<Leap<&[u8]>>) -> (Vec<u8>, usize) {
+    fn sieved<'a>(bytes: &'a [u8], portion: &Portion, leap: Option<Leap<&'a [u8]>>) -> (Vec<u8>, usize) {
         let kept = Kept::of(portion, [5, 4, 3], false).unwrap();
         let control = LoadControl::new();
         let mut rest = bytes;
