@@ -23,8 +23,11 @@ pub struct LoadControl {
 }
 
 /// Says of a volume whose size is known whether its voxels are read.
+type Accepts = dyn Fn(&Size) -> bool + Send + Sync;
+
+/// Who is asked, if anybody.
 #[derive(Default)]
-struct Weigh(Option<Box<dyn Fn(&Size) -> bool + Send + Sync>>);
+struct Weigh(Option<Box<Accepts>>);
 
 impl fmt::Debug for Weigh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -195,11 +195,13 @@ impl Extent {
             format!("{x} x {y} x {z} voxels in {}", human_bytes(bytes))
         };
         let Some(every) = fits(Thinning::Every) else { return OTHERWISE.to_owned() };
-        let mut help = format!("--every {} reads {}, ", step(every), said(every));
-        if let Some(average) = fits(Thinning::Average) {
-            help += &format!("--reduce {} averages blocks into {}, ", step(average), said(average));
-        }
-        help + "--region X0:X1,Y0:Y1,Z0:Z1 reads a part; or check the dimensions, or close other programs"
+        let means = fits(Thinning::Average).map_or_else(String::new, |average| {
+            format!("--reduce {} averages blocks into {}, ", step(average), said(average))
+        });
+        let every = format!("--every {} reads {}, ", step(every), said(every));
+        every
+            + &means
+            + "--region X0:X1,Y0:Y1,Z0:Z1 reads a part; or check the dimensions, or close other programs"
     }
 
     /// Bytes for what is read, for what is made of it, and for what is read at a time.

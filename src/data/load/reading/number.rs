@@ -180,12 +180,9 @@ impl Stored {
         };
         // To where the grid ends: what is left out must be there, too.
         let ended = read.and_then(|voxels| fill(&mut sieve, &mut [0], control).map(|_none| voxels));
-        ended.map_err(|fault| match (sieve.fault.take(), fault) {
-            (Some(fault), _) => fault,
-            (None, Fault::Short { .. }) => {
-                Fault::Short { got: sieve.voxels_passed() * voxel_type.bytes() as u64 }
-            }
-            (None, fault) => fault,
+        ended.map_err(|fault| match sieve.fault.take().unwrap_or(fault) {
+            Fault::Short { .. } => Fault::Short { got: sieve.voxels_passed() * voxel_type.bytes() as u64 },
+            fault => fault,
         })
     }
 

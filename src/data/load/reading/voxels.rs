@@ -79,9 +79,9 @@ where
         let end = depth.min(first + at_once);
         let samples = (meant.values)(read(first..end).map_err(NoMeans::Unread)?);
         let blocks = Blocks { dims: [width, height, end - first], block: kept.step, padding: meant.padding };
-        means.add(blocks.averaged(&samples, kept.are_labels)).map_err(|_full| NoMeans::NoMemory)?;
+        means.add(&blocks.averaged(&samples, kept.are_labels)).map_err(|_full| NoMeans::NoMemory)?;
         if let Some(picked) = &mut picked {
-            picked.add(blocks.firsts(&samples)).map_err(|_full| NoMeans::NoMemory)?;
+            picked.add(&blocks.firsts(&samples)).map_err(|_full| NoMeans::NoMemory)?;
         }
     }
     Ok(Voxels { samples: means.samples, picked: picked.map(|picked| picked.samples) })
@@ -99,14 +99,14 @@ impl Joined {
         Self { samples: Samples::U8(Vec::new()), count }
     }
 
-    fn add(&mut self, more: Samples) -> Result<(), Fault> {
+    fn add(&mut self, more: &Samples) -> Result<(), Fault> {
         let is_first = self.samples.is_empty();
         let wanted =
             if is_first { more.voxel_type() } else { self.samples.voxel_type().with(more.voxel_type()) };
         if is_first || self.samples.voxel_type() != wanted {
             self.samples = self.samples.in_type(wanted, self.count).ok_or(Fault::NoMemory)?;
         }
-        self.samples.append(&more);
+        self.samples.append(more);
         Ok(())
     }
 }
