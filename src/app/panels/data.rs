@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::controls::{choice, row, short, spacing};
+use super::controls::{row, short, spacing};
 use super::{Panels, corrections, range, several};
 use crate::app::common::commands::{Command, THINNINGS};
 use crate::app::common::volume_facts::VolumeFacts;
@@ -81,10 +81,21 @@ fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     if !THINNINGS.contains(&current) {
         options.push((current, text::data::thinning(current)));
     }
-    let mut chosen = current;
-    if choice(ui, text::data::THINNING, &mut chosen, &options) {
-        commands.push(Command::Thin(chosen));
-    }
+    let named = text::data::THINNING;
+    row(ui, named, |ui| {
+        let shown = text::data::thinning(current).name;
+        let combo = egui::ComboBox::from_id_salt("fewer voxels").selected_text(shown).width(120.0);
+        ui.name_inputs(named.name, |ui| {
+            combo.show_ui(ui, |ui| {
+                for (thinning, option) in options {
+                    let label = ui.selectable_label(thinning == current, option.name);
+                    if label.on_hover_text(option.tip).clicked() && thinning != current {
+                        commands.push(Command::Thin(thinning));
+                    }
+                }
+            })
+        });
+    });
 }
 
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {

@@ -68,7 +68,7 @@ impl Extent {
         if wanted.is_averaged && has_room && !is_short_of_room() {
             return Ok(boxed);
         }
-        let extent = extent.within(attempt, field, voxel_type, room)?;
+        let extent = extent.within(attempt, field, voxel_type, room, false)?;
         if let Some(watch) = room.choice.watch.as_ref().filter(|_| extent.read.is_averaged) {
             watch.saw_averaging();
         }
@@ -85,7 +85,7 @@ impl Extent {
     ) -> Result<Self, LoadError> {
         let extent = Self::measured(attempt, field, dims, voxel_type, room)?;
         extent.weighed(voxel_type, room, true)?;
-        Self { read: Kept::all(extent.dims), ..extent }.within(attempt, field, voxel_type, room)
+        Self { read: Kept::all(extent.dims), ..extent }.within(attempt, field, voxel_type, room, true)
     }
 
     /// The extent of a grid, of which what is wanted is read.
@@ -152,6 +152,7 @@ impl Extent {
         field: &str,
         voxel_type: VoxelType,
         room: Room<'_>,
+        is_read_whole: bool,
     ) -> Result<Self, LoadError> {
         let needed = self.needed_bytes(voxel_type);
         if needed <= u128::from(room.budget_bytes) {
@@ -168,15 +169,15 @@ impl Extent {
                 human_bytes(needed),
                 human_bytes(u128::from(room.budget_bytes))
             ),
-            self.help(voxel_type, room),
+            self.help(voxel_type, room, is_read_whole),
         ))
     }
 
     /// What helps where not all of it has room.
-    fn help(&self, voxel_type: VoxelType, room: Room<'_>) -> String {
+    fn help(&self, voxel_type: VoxelType, room: Room<'_>, is_read_whole: bool) -> String {
         const OTHERWISE: &str =
             "check the dimensions, close other programs, or load a smaller or cropped volume";
-        if self.read != self.wanted {
+        if is_read_whole {
             return OTHERWISE.to_owned();
         }
         let fits = |thinning: fn(usize) -> Thinning| {

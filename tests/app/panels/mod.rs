@@ -64,8 +64,12 @@ fn voxels_are_averaged_and_the_look_stays() {
     harness.key_press(egui::Key::CloseBracket);
     click(&mut harness, "Data");
     let before = harness.state().settings().clone();
-    let choose = |harness: &mut Harness<'_, App>, block: &str, voxels: &'static str| {
-        click(harness, block);
+    let choose = |harness: &mut Harness<'_, App>, thinning: &str, voxels: &'static str| {
+        harness.get_by_role_and_label(Role::ComboBox, "Fewer voxels").click();
+        harness.run_steps(4);
+        // The list is over all else, and shown last.
+        harness.get_all_by_label(thinning).last().expect("it is in the list").click();
+        harness.run_steps(4);
         wait_until(harness, "never read again", App::is_idle);
         harness.run_steps(3);
         assert_eq!(harness.query_all_by_label_contains(voxels).count(), 1, "the title says {voxels}");
