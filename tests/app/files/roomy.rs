@@ -49,7 +49,7 @@ fn who_opens_a_large_volume_is_asked_how_much_of_it() {
     ask_about(&mut harness, &path);
     assert_eq!(harness.state().volume_name(), Some("chair"), "what is open stays");
     assert!(harness.unnamed_widgets().is_empty(), "{:?}", harness.unnamed_widgets());
-    for words in ["holds 64×64×64 voxels of uint8, 256.0 KiB", "400.0 KiB are free", "32×32×32 voxels, 41."]
+    for words in ["holds 64 × 64 × 64 voxels of uint8, 256.0 KiB", "400.0 KiB are free", "32 × 32 × 32 voxels, 41."]
     {
         assert!(is_said(&harness, words), "{words}");
     }
@@ -86,7 +86,7 @@ fn a_region_is_typed_and_nothing_can_be_opened_as_well() {
         harness.get_by_role_and_label(Role::SpinButton, name).set_value_accesskit(n);
         harness.run_steps(2);
     }
-    assert!(is_said(&harness, "20×24×16 voxels"), "its size is said at once");
+    assert!(is_said(&harness, "20 × 24 × 16 voxels"), "its size is said at once");
     harness.key_press(Key::Enter);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("large"));
     wait_until_idle(&mut harness);
