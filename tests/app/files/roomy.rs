@@ -49,7 +49,8 @@ fn who_opens_a_large_volume_is_asked_how_much_of_it() {
     ask_about(&mut harness, &path);
     assert_eq!(harness.state().volume_name(), Some("chair"), "what is open stays");
     assert!(harness.unnamed_widgets().is_empty(), "{:?}", harness.unnamed_widgets());
-    for words in ["holds 64 × 64 × 64 voxels of uint8, 256.0 KiB", "400.0 KiB are free", "32 × 32 × 32 voxels, 41."]
+    for words in
+        ["holds 64 × 64 × 64 voxels of uint8, 256.0 KiB", "400.0 KiB are free", "32 × 32 × 32 voxels, 41."]
     {
         assert!(is_said(&harness, words), "{words}");
     }
