@@ -88,9 +88,8 @@ struct Running {
 /// How far a volume is that is being opened.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoadProgress<'a> {
-    /// What is being opened.
+    /// What is being opened, and how it is read.
     pub source: &'a Path,
-    /// How it is read.
     pub reading: &'a Reading,
     /// What is being done, in words.
     pub phase: &'static str,
@@ -175,10 +174,9 @@ impl Loader {
             }
             options.raw = reading.raw.unwrap_or(options.raw);
             options.choice = reading.choice.clone().unwrap_or(options.choice);
-            let reading = reading.clone();
             let opening = Opening {
                 source: source.to_owned(),
-                reading,
+                reading: reading.clone(),
                 known,
                 options,
                 context: self.context.clone(),
@@ -246,14 +244,16 @@ impl Loader {
     pub(crate) fn progress(&self) -> Option<LoadProgress<'_>> {
         let running = self.running.as_ref()?;
         let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
-        let is_reading = phase == 0;
-        let fraction = running.control.fraction().filter(|_| is_reading);
+        let read = running.control.bytes().filter(|_| phase == 0);
+        // When the last byte is there, the values are looked at.
+        let bytes = read.filter(|[done, total]| done < total);
+        let phase = if read.is_some() && bytes.is_none() { 2 } else { phase };
         Some(LoadProgress {
             source: &running.source,
             reading: &running.reading,
             phase: PHASES[phase],
-            fraction: fraction.map(|fraction| fraction as f32),
-            bytes: running.control.bytes().filter(|_| is_reading),
+            fraction: bytes.map(|[done, total]| done as f32 / total as f32),
+            bytes,
         })
     }
 }
