@@ -87,7 +87,7 @@ fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
         let combo = egui::ComboBox::from_id_salt("fewer voxels").selected_text(shown).width(120.0);
         ui.name_inputs(named.name, |ui| {
             combo.show_ui(ui, |ui| {
-                for (thinning, option) in options {
+                for &(thinning, option) in &options {
                     let label = ui.selectable_label(thinning == current, option.name);
                     if label.on_hover_text(option.tip).clicked() && thinning != current {
                         commands.push(Command::Thin(thinning));
