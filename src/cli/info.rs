@@ -10,7 +10,7 @@ use super::outputs::print_line;
 use super::scene::{LoadArgs, corrected_by};
 use crate::data::load::LoadControl;
 use crate::data::{CountedLabel, DataKind, Dataset, Hints, ValueRange, Volume, open};
-use crate::gpu::small_volume;
+use crate::gpu::{bytes_with_one_light, small_volume};
 use crate::model::auto;
 
 /// Percentiles that are listed.
@@ -45,11 +45,13 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         PERCENTILES.iter().map(|&p| (format!("p{p}"), json!(percentile(p)))).collect();
     let spacing = volume.spacing_mm();
     let voxels = volume.voxel_count() as u64;
-    // Density 2 bytes, pyramid 2 and a seventh, one attenuation volume 2.
-    let gpu_bytes = voxels * 44 / 7;
+    let gpu_bytes = bytes_with_one_light(volume.dims());
+    let portion = volume.held().portion;
     let facts = json!({
         "name": volume.name(),
         "dims": volume.dims(),
+        "file_dims": volume.held().grid.unwrap_or_else(|| volume.file_dims()),
+        "portion": portion,
         "type": volume.samples().voxel_type().name(),
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
         "range": [low, high],
@@ -77,6 +79,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let [nx, ny, nz] = volume.dims();
     print_line(volume.name())?;
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
+    if let Some([x, y, z]) = volume.held().grid.filter(|_| !portion.is_whole()) {
+        print_line(&format!("  read         {} {x} × {y} × {z}", portion.in_words()))?;
+    }
     let unit = if volume.has_unknown_scale() { "(nobody knows of what)" } else { "mm" };
     print_line(&format!("  spacing      {} × {} × {} {unit}", spacing.x, spacing.y, spacing.z))?;
     print_line(&format!("  values       {low} … {high}"))?;

@@ -94,6 +94,8 @@ fn parts_turns_and_numbers() {
     // A region counts voxels of the file, and blocks are averaged in it.
     folder.succeed("convert builtin:sphere:16 half.nrrd --region 0:8,0:6,0:4 --reduce 2");
     assert_eq!(facts(&folder, "half.nrrd")["dims"], serde_json::json!([4, 3, 2]));
+    folder.succeed("convert ct.nrrd thin.nrrd --every 2");
+    assert_eq!(facts(&folder, "thin.nrrd")["dims"], serde_json::json!([2, 2, 1]));
     folder.succeed("convert ct.nrrd float.mha --type float32");
     assert_eq!(facts(&folder, "float.mha")["type"], "float32");
     folder.succeed("convert ct.nrrd small.tif --type uint8 --rescale -1000:1000");

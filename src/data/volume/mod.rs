@@ -2,12 +2,14 @@
 
 mod corrections;
 mod error;
+mod in_file;
 mod kind;
 mod label_set;
 mod missing;
 mod reduce;
 mod region;
 mod shown;
+mod thinned;
 
 pub use corrections::{
     AxisOrder, Corrections, Flips, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale,
@@ -16,6 +18,7 @@ pub use error::VolumeError;
 pub use kind::{DataKind, KindFound, KindName};
 pub use label_set::{CountedLabel, LabelSet, MAX_CLASSES};
 pub use missing::Missing;
+pub(super) use reduce::Blocks;
 pub use reduce::reduced_dims;
 pub use shown::Shown;
 
@@ -24,6 +27,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{DAffine3, DMat3, DVec3};
 
 use self::corrections::Corrected;
+use self::in_file::InFile;
 use super::attempt::Held;
 use super::values::robust::quantile;
 use super::{Hints, Samples, ValueRange, ValueRanges};
@@ -45,8 +49,8 @@ pub struct Volume {
     name: String,
     dims: [usize; 3],
     file_dims: [usize; 3],
-    /// Voxels of the file along each axis of which one is the mean.
-    block: [usize; 3],
+    /// How voxels lie among those of the file.
+    block: InFile,
     world_from_index: DAffine3,
     samples: Arc<Samples>,
     ranges: ValueRanges,
@@ -120,7 +124,7 @@ impl Volume {
             name,
             dims,
             file_dims: dims,
-            block: [1; 3],
+            block: InFile::default(),
             world_from_index,
             samples,
             ranges,
@@ -214,6 +218,11 @@ impl Volume {
         self.kind.get_or_init(|| KindFound::of(self))
     }
 
+    /// Whether its values are labels, whose numbers have no mean.
+    pub(in crate::data) fn is_of_labels(&self) -> bool {
+        matches!(self.kind().kind, DataKind::LabelMap { .. })
+    }
+
     /// States what else is known of the volume whose blocks this one's voxels are.
     #[must_use]
     pub(super) fn standing_for(self, whole: &Self) -> Self {
@@ -254,8 +263,8 @@ impl Volume {
         self.dims
     }
 
-    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]); [`Self::dims`] where none
-    /// were.
+    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]), or of which every so manyth was
+    /// kept ([`Self::thinned`]); [`Self::dims`] where that is all of them.
     pub fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }

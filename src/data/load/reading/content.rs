@@ -8,8 +8,9 @@ use flate2::bufread::MultiGzDecoder;
 use super::input::Input;
 use super::number::Stored;
 use super::samples::{Fault, fill, skip_bytes};
+use super::sieve::{Leap, leap_in_file};
+use super::voxels::{Meant, Voxels};
 use super::{LoadControl, LoadError};
-use crate::data::Samples;
 use crate::data::attempt::{Attempt, Extent};
 
 /// The content of a file.
@@ -68,14 +69,28 @@ impl Content {
         Ok(())
     }
 
-    /// Reads the voxels that come next.
+    /// Goes forward in what is stored as it is.
+    fn leap(&mut self, count: u64) -> io::Result<()> {
+        self.at += count;
+        match &mut self.form {
+            Form::Stored(input) => leap_in_file(&mut input.reader, count),
+            Form::Inflated(_) => Err(io::Error::from(io::ErrorKind::Unsupported)),
+        }
+    }
+
+    /// Reads the voxels that come next: what is kept of them.
     pub(in crate::data::load) fn voxels(
         &mut self,
         stored: &Stored,
         extent: Extent,
+        meant: &Meant<'_>,
         control: &LoadControl,
-    ) -> Result<Samples, Fault> {
-        stored.read(self, extent, control).map_err(Fault::of_stream)
+    ) -> Result<Voxels, Fault> {
+        let leap: Option<Leap<Self>> = match self.form {
+            Form::Stored(_) => Some(Self::leap),
+            Form::Inflated(_) => None,
+        };
+        stored.read_meant(self, leap, extent, meant, control).map_err(Fault::of_stream)
     }
 
     /// Makes a decoder look at the checksum, which comes after the last byte. What follows the voxels is nobody's business.

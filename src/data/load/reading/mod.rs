@@ -7,7 +7,10 @@ pub(super) mod label_files;
 pub(super) mod number;
 pub(super) mod placement;
 pub(super) mod reader;
+pub(super) mod rescale;
 pub(super) mod samples;
+pub(super) mod sieve;
 pub(super) mod text_numbers;
+pub(super) mod voxels;
 
 use super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};

@@ -4,6 +4,8 @@
 use std::io::Read;
 
 use super::samples::{BLOCK_BYTES, Fault, Layout, Sample as _, fill, read_binary, reserve};
+use super::sieve::{Leap, Sieve};
+use super::voxels::{Meant, NoMeans, Voxels, averaged};
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, VoxelType};
@@ -132,8 +134,60 @@ impl Stored {
         self.number.bytes() as u64 * self.components as u64
     }
 
-    /// Reads all voxels of a grid; what follows them is left alone.
+    /// Reads what is kept of a grid's voxels, which are values as they are stored; what follows them is left alone.
     pub(in crate::data::load) fn read(
+        &self,
+        reader: &mut impl Read,
+        extent: Extent,
+        control: &LoadControl,
+    ) -> Result<Voxels, Fault> {
+        self.read_meant(reader, None, extent, &Meant::as_stored(None), control)
+    }
+
+    /// Reads what is kept of a grid's voxels as values; what follows them is left alone. What is left out is leapt over
+    /// where the reader can.
+    pub(in crate::data::load) fn read_meant<R: Read>(
+        &self,
+        reader: &mut R,
+        leap: Option<Leap<R>>,
+        extent: Extent,
+        meant: &Meant<'_>,
+        control: &LoadControl,
+    ) -> Result<Voxels, Fault> {
+        let Extent { read: kept, .. } = extent;
+        let voxel_type = self.voxel_type();
+        if kept.is_all() {
+            control.start(extent.bytes);
+            return Ok((meant.values)(self.read_all(reader, extent, control)?).into());
+        }
+        let mut sieve =
+            Sieve::new(reader, leap, kept.boxed_if_averaged(), self.bytes_of_voxel() as usize, control);
+        let read = if kept.is_averaged {
+            control.start(Extent::sized(kept.edges(), voxel_type).bytes);
+            let [width, height, _] = kept.edges();
+            let read = averaged(&kept, voxel_type.bytes(), meant, control, |slices| {
+                let slab = Extent::sized([width, height, slices.len()], voxel_type);
+                self.read_all(&mut sieve, slab, control)
+            });
+            read.map_err(|why| match why {
+                NoMeans::Unread(fault) => fault,
+                NoMeans::NoMemory => Fault::NoMemory,
+            })
+        } else {
+            let part = Extent::sized(kept.dims(), voxel_type);
+            control.start(part.bytes);
+            self.read_all(&mut sieve, part, control).map(|samples| (meant.values)(samples).into())
+        };
+        // To where the grid ends: what is left out must be there, too.
+        let ended = read.and_then(|voxels| fill(&mut sieve, &mut [0], control).map(|_none| voxels));
+        ended.map_err(|fault| match sieve.fault.take().unwrap_or(fault) {
+            Fault::Short { .. } => Fault::Short { got: sieve.voxels_passed() * voxel_type.bytes() as u64 },
+            fault => fault,
+        })
+    }
+
+    /// Reads all voxels of a grid.
+    fn read_all(
         &self,
         reader: &mut impl Read,
         extent: Extent,
@@ -143,7 +197,6 @@ impl Stored {
         if self.components == 1 && self.number.is_kept() {
             return read_binary(reader, &layout, control);
         }
-        control.start(extent.bytes);
         let size = self.number.bytes();
         let endian = self.endian;
         macro_rules! of_component {
@@ -272,50 +325,13 @@ fn narrowed(samples: Samples) -> Samples {
     }
 }
 
-/// Values as a file means them: times a slope, and an intercept added. They stay whole numbers where that is exact.
-pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f64) -> Samples {
-    let is_said = slope.is_finite() && intercept.is_finite() && slope != 0.0;
-    if !is_said || (slope, intercept) == (1.0, 0.0) {
-        return samples;
-    }
-    let is_integer = !matches!(samples, Samples::F32(_) | Samples::F64(_));
-    let is_wide = matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
-    let values = (0..samples.len()).map(|voxel| samples.value(voxel).mul_add(slope, intercept));
-    let ends =
-        samples.finite_range().map(|(range, _)| [range.low, range.high].map(|v| v.mul_add(slope, intercept)));
-    if let Some(ends) = ends
-        && is_integer
-        && slope.fract() == 0.0
-        && intercept.fract() == 0.0
-    {
-        let within = |low: f64, high: f64| ends.iter().all(|end| (low..=high).contains(end));
-        if within(0.0, 255.0) {
-            return Samples::U8(values.map(|value| value as u8).collect());
-        } else if within(f64::from(i16::MIN), f64::from(i16::MAX)) {
-            return Samples::I16(values.map(|value| value as i16).collect());
-        } else if within(0.0, f64::from(u16::MAX)) {
-            return Samples::U16(values.map(|value| value as u16).collect());
-        } else if within(f64::from(i32::MIN), f64::from(i32::MAX)) {
-            return Samples::I32(values.map(|value| value as i32).collect());
-        }
-    }
-    if is_wide {
-        Samples::F64(values.collect())
-    } else {
-        Samples::F32(values.map(|value| value as f32).collect())
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
 
-    fn read(stored: Stored, bytes: &[u8], voxels: u64) -> Samples {
-        let attempt = Attempt { what: "test", path: Path::new("t") };
-        let extent = Extent::checked(attempt, "sizes", [voxels, 1, 1], stored.voxel_type(), 1 << 20).unwrap();
-        stored.read(&mut &bytes[..], extent, &LoadControl::new()).unwrap()
+    fn read(stored: Stored, bytes: &[u8], voxels: usize) -> Samples {
+        let extent = Extent::sized([voxels, 1, 1], stored.voxel_type());
+        stored.read(&mut &bytes[..], extent, &LoadControl::new()).unwrap().samples
     }
 
     #[test]
@@ -349,17 +365,5 @@ mod tests {
         assert_eq!(read(vector, &vectors, 1), Samples::F32(vec![5.0]));
         assert_eq!(Part::chosen(Some(3), 3, true), None);
         assert_eq!(Part::chosen(None, 2, true), Some(Part::Component(0)), "grey and its opacity");
-    }
-
-    #[test]
-    fn values_are_rescaled_and_stay_whole_where_they_can() {
-        let bytes = Samples::U8(vec![0, 200]);
-        assert_eq!(rescaled(bytes.clone(), 1.0, -1024.0), Samples::I16(vec![-1024, -824]));
-        assert_eq!(rescaled(bytes.clone(), 0.5, 0.0), Samples::F32(vec![0.0, 100.0]));
-        for (slope, intercept) in [(1.0, 0.0), (0.0, 5.0), (f64::NAN, 0.0), (2.0, f64::INFINITY)] {
-            assert_eq!(rescaled(bytes.clone(), slope, intercept), bytes, "{slope} {intercept}");
-        }
-        let words = Samples::U16(vec![0, 65535]);
-        assert_eq!(rescaled(words, 1.0, -32768.0), Samples::I16(vec![-32768, 32767]));
     }
 }

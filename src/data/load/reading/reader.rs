@@ -8,9 +8,11 @@ use flate2::bufread::MultiGzDecoder;
 use super::input::{Input, is_gzip};
 use super::number::{Part, Stored};
 use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
+use super::sieve::leap_in_file;
+use super::voxels::{Meant, Voxels};
 use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
+use crate::data::Volume;
 use crate::data::attempt::{Attempt, Extent};
-use crate::data::{Samples, Volume};
 
 /// Bytes of a file's beginning that are looked at: a header of NIfTI-2 has 540, DICOM's mark ends at 132.
 const START_BYTES: usize = 1024;
@@ -61,8 +63,8 @@ impl Source<'_> {
         }
     }
 
-    /// Reads the voxels of a grid, which begin at byte `at` of the content. Of what is not compressed there must be enough
-    /// before anything is allocated.
+    /// Reads what is kept of the voxels of a grid, which begin at byte `at` of the content. Of what is not compressed there
+    /// must be enough before anything is allocated.
     ///
     /// # Errors
     /// `BadInput` for data that are too short, too long or broken, with `help`; `Limit` where the memory is not there.
@@ -73,7 +75,7 @@ impl Source<'_> {
         (stored, extent): (&Stored, Extent),
         after: After,
         help: &str,
-    ) -> Result<Samples, LoadError> {
+    ) -> Result<Voxels, LoadError> {
         let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
         let needed = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
         let control = self.control;
@@ -90,19 +92,27 @@ impl Source<'_> {
                 return Err(attempt.bad_input("data", why, help));
             }
             self.input.seek(at).map_err(|error| attempt.io(error))?;
+            let read = stored.read_meant(
+                &mut self.input.reader,
+                Some(leap_in_file),
+                extent,
+                &Meant::as_stored(None),
+                control,
+            );
+            return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
         }
-        let skip = if self.start.is_gzip() { at } else { 0 };
+        let skip = at;
         // One byte more than needed tells "too much" from "enough", and no bomb gets further.
         let mut content = self.content().take(skip.saturating_add(needed).saturating_add(1));
         let mut read = || {
             if skip_bytes(&mut content, skip, control)? < skip {
                 return Err(Fault::Short { got: 0 });
             }
-            let samples = stored.read(&mut content, extent, control)?;
+            let voxels = stored.read(&mut content, extent, control)?;
             if after == After::End && fill(&mut content, &mut [0], control)? > 0 {
                 return Err(Fault::Long);
             }
-            Ok(samples)
+            Ok(voxels)
         };
         read().map_err(|fault| {
             let fault = match fault {

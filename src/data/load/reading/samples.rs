@@ -41,6 +41,12 @@ pub(crate) enum Fault {
     Stopped(LoadError),
 }
 
+impl From<LoadError> for Fault {
+    fn from(stopped: LoadError) -> Self {
+        Self::Stopped(stopped)
+    }
+}
+
 impl Fault {
     /// The fault, of which it is known that a decoder lies between the file and what was read.
     pub(in crate::data::load) fn of_stream(self) -> Self {
@@ -140,13 +146,12 @@ macro_rules! read_as {
     };
 }
 
-/// Reads binary voxels; what follows them is left alone.
+/// Reads binary voxels of a grid, all of them; what follows them is left alone.
 pub(crate) fn read_binary(
     reader: &mut impl Read,
     layout: &Layout,
     control: &LoadControl,
 ) -> Result<Samples, Fault> {
-    control.start(layout.extent.bytes);
     read_as!(layout.voxel_type, read_blocks(reader, layout, control))
 }
 

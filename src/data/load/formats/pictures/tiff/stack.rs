@@ -1,6 +1,5 @@
 //! Which pages of which files are the slices of a volume, and their voxels.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -13,6 +12,8 @@ use crate::data::load::formats::pictures::pile::read_pile;
 use crate::data::load::reading::input::{Input, Witness};
 use crate::data::load::reading::number::{Part, Stored};
 use crate::data::load::reading::placement::{Parts, Placement};
+use crate::data::load::reading::rescale::rescaled;
+use crate::data::load::reading::voxels::Meant;
 use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume};
 
@@ -154,8 +155,7 @@ impl Stack {
         let sample = sample.or_else(|| chosen_sample(&model, options));
         let stored = stored(attempt, &model, sample, options)?;
         let dims = [model.width, model.height, slices.len() as u64];
-        let extent =
-            Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.memory_budget_bytes)?;
+        let extent = Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.room(control))?;
         check_page_bytes(attempt, &model, options)?;
         placement.remarks.extend(stored.part.remark().map(str::to_owned));
         if model.is_inverted {
@@ -165,9 +165,11 @@ impl Stack {
                 "the lowest values stand for white: values are shown as they are".to_owned()
             });
         }
-        let samples = read_pile(attempt, &stored, extent, control, |range: Range<usize>| {
+        let values = |samples| rescaled(samples, slope, intercept);
+        let meant = Meant { padding: hints.padding, values: &values };
+        let voxels = read_pile(attempt, &stored, extent, &meant, control, |some| {
             let mut packed = Vec::new();
-            for &Slice { file, page } in &slices[range.clone()] {
+            for &Slice { file, page } in some.iter().map(|&slice| &slices[slice]) {
                 packed.push(files.with(file, |attempt, tiff| {
                     let found = page_of(attempt, tiff, page)?;
                     if !found.is_like(&model) {
@@ -177,14 +179,13 @@ impl Stack {
                     tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
                 })?);
             }
-            let slices = slices[range].par_iter().zip(packed.par_iter());
-            slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect()
+            let both = some.par_iter().zip(packed.par_iter());
+            both.map(|(&slice, packed)| packed.unpack(attempt, slices[slice].page, control)).collect()
         })?;
-        let samples = crate::data::load::reading::number::rescaled(samples, slope, intercept);
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }
-        Parts { name, dims: extent.dims, placement, samples, hints }.volume(attempt)
+        Parts { name, extent, placement, voxels, hints }.volume(attempt)
     }
 }
 

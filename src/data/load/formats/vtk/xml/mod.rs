@@ -17,13 +17,14 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::super::number::Number;
 use super::super::reader::{Source, Start};
 use super::super::text_numbers::TextNumbers;
+use super::super::voxels::Voxels;
 use super::super::{Endian, LoadControl, LoadError};
 use super::RESAMPLE;
 use super::image::{
     Array, Chosen, Grid, MOST_ARRAYS, MOST_COMPONENTS, broken, check_room, choose, content_from,
 };
 use crate::data::attempt::{Attempt, quoted};
-use crate::data::{Samples, Volume, plain};
+use crate::data::{Volume, plain};
 use base64::{Base64, most_bytes};
 use blocks::{Blocks, Compressor, Words, check_length};
 use skeleton::Skeleton;
@@ -75,9 +76,9 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let grid = grid(attempt, piece)?;
     let style = style(attempt, root)?;
     let arrays = arrays(attempt, piece, &grid)?;
-    let chosen = choose(attempt, &grid, arrays, source.options)?;
-    let samples = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
-    chosen.volume(attempt, &grid, samples, "")
+    let chosen = choose(attempt, &grid, arrays, source.options, source.control)?;
+    let voxels = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
+    chosen.volume(attempt, &grid, voxels, "")
 }
 
 /// The piece of the image.
@@ -279,7 +280,7 @@ fn read(
     chosen: &Chosen<Place>,
     style: Style,
     appended: Option<u64>,
-) -> Result<Samples, LoadError> {
+) -> Result<Voxels, LoadError> {
     let control = source.control;
     let name = chosen.array.name.as_str();
     match chosen.array.place {
@@ -319,7 +320,7 @@ fn read_binary(
     style: Style,
     room: Option<u64>,
     control: &LoadControl,
-) -> Result<Samples, LoadError> {
+) -> Result<Voxels, LoadError> {
     let Style { words, compressor, .. } = style;
     let expected = chosen.stored_bytes();
     let Some(compressor) = compressor else {
