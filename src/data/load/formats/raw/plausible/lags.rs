@@ -30,11 +30,8 @@ const GROUP: usize = 128;
 /// Bytes that are read in one piece for slices whose size nothing says: two of 1024 × 1024 voxels of two bytes.
 const LONG_BYTES: u64 = 4 << 20;
 
-/// Comparisons of voxels in it with rows behind them: a few milliseconds.
-const LONG_PAIRS: usize = 1 << 21;
-
-/// Every third voxel of a run is enough.
-const LONG_STEP: usize = 3;
+/// Comparisons of voxels in it with rows behind them: a millisecond or two, as they lie together.
+const LONG_PAIRS: usize = 1 << 22;
 
 /// Numbers of rows that are proposed because voxels agree.
 const FOUND: usize = 6;
@@ -44,6 +41,37 @@ const AS_DEEP: f64 = 3.0;
 
 /// Shares of the voxels that are below black and above white: no single value decides.
 const CLIPPED: [f64; 2] = [0.005, 0.995];
+
+/// Does something with the numbers of bytes, in order, in a loop of its own for each type.
+macro_rules! with_numbers {
+    ($bytes:expr, $voxel_type:expr, $endian:expr, $numbers:ident => $body:expr) => {{
+        macro_rules! in_order {
+            ($number:ty, $from:ident) => {{
+                let raw = $bytes.as_chunks::<{ size_of::<$number>() }>().0.iter();
+                let $numbers = raw.map(|&raw| f64::from(<$number>::$from(raw)));
+                $body
+            }};
+        }
+        macro_rules! of_type {
+            ($number:ty) => {
+                match $endian {
+                    Endian::Little => in_order!($number, from_le_bytes),
+                    Endian::Big => in_order!($number, from_be_bytes),
+                }
+            };
+        }
+        match $voxel_type {
+            VoxelType::U8 => of_type!(u8),
+            VoxelType::I8 => of_type!(i8),
+            VoxelType::U16 => of_type!(u16),
+            VoxelType::I16 => of_type!(i16),
+            VoxelType::U32 => of_type!(u32),
+            VoxelType::I32 => of_type!(i32),
+            VoxelType::F32 => of_type!(f32),
+            VoxelType::F64 => of_type!(f64),
+        }
+    }};
+}
 
 /// How grey levels are made of numbers: from 0 to 1.
 #[derive(Debug, Clone, Copy)]
@@ -62,8 +90,8 @@ impl Greys {
     }
 
     fn of(&self, bytes: &[u8]) -> Vec<f32> {
-        let mut greys = Vec::with_capacity(bytes.len() / self.voxel_type.bytes());
-        each_value(bytes, self.voxel_type, self.endian, |value| greys.push(self.grey(value)));
+        let mut greys = Vec::new();
+        with_numbers!(bytes, self.voxel_type, self.endian, numbers => greys.extend(numbers.map(|n| self.grey(n))));
         greys
     }
 }
@@ -75,28 +103,7 @@ pub(in crate::data::load::formats::raw) fn each_value(
     endian: Endian,
     mut give: impl FnMut(f64),
 ) {
-    macro_rules! values {
-        ($number:ty) => {
-            for chunk in bytes.chunks_exact(size_of::<$number>()) {
-                let raw = chunk.try_into().unwrap_or_default();
-                let value = match endian {
-                    Endian::Little => <$number>::from_le_bytes(raw),
-                    Endian::Big => <$number>::from_be_bytes(raw),
-                };
-                give(value.into());
-            }
-        };
-    }
-    match voxel_type {
-        VoxelType::U8 => values!(u8),
-        VoxelType::I8 => values!(i8),
-        VoxelType::U16 => values!(u16),
-        VoxelType::I16 => values!(i16),
-        VoxelType::U32 => values!(u32),
-        VoxelType::I32 => values!(i32),
-        VoxelType::F32 => values!(f32),
-        VoxelType::F64 => values!(f64),
-    }
+    with_numbers!(bytes, voxel_type, endian, numbers => numbers.for_each(&mut give));
 }
 
 /// How much less voxels differ from those at a distance than from those around that place.
@@ -297,11 +304,15 @@ impl Lags {
             return Vec::new();
         }
         let mut sums = vec![0.0f64; most];
-        let lively = runs(&long[..long.len() / 2]).into_iter().flatten();
-        for start in lively.step_by(LONG_STEP).take((LONG_PAIRS / most).max(256)) {
-            let grey = long[start];
-            for (sum, other) in sums.iter_mut().zip(long[start..].iter().step_by(row)) {
-                *sum += f64::from((other - grey).abs());
+        let mut left = (LONG_PAIRS / most).max(256);
+        for run in runs(&long[..long.len() / 2]) {
+            if left == 0 {
+                break;
+            }
+            left = left.saturating_sub(run.len());
+            for (rows, sum) in sums.iter_mut().enumerate() {
+                let ahead = rows * row;
+                *sum += distance(&long[run.clone()], &long[run.start + ahead..run.end + ahead]);
             }
         }
         let depth =
@@ -362,6 +373,20 @@ impl Lags {
         }
         Ok(Groups(groups).dip())
     }
+}
+
+/// How much voxels differ from others, all together; eight sums at a time do not wait for each other.
+fn distance(here: &[f32], there: &[f32]) -> f64 {
+    let (here, rest) = here.as_chunks::<8>();
+    let (there, others) = there.as_chunks::<8>();
+    let mut sums = [0.0f32; 8];
+    for (here, there) in here.iter().zip(there) {
+        for lane in 0..8 {
+            sums[lane] += (there[lane] - here[lane]).abs();
+        }
+    }
+    let rest = rest.iter().zip(others).map(|(here, there)| f64::from((there - here).abs()));
+    sums.into_iter().map(f64::from).sum::<f64>() + rest.sum::<f64>()
 }
 
 /// Mean differences at each distance.
