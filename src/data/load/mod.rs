@@ -11,7 +11,8 @@ mod reading;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 
@@ -23,6 +24,7 @@ pub use super::attempt::{
     Several, Watch, Whole,
 };
 pub use neighbour::neighbour;
+pub use reading::read_files::ReadFiles;
 
 use formats::{READERS, folder, reader_of};
 use reading::input::{Input, Witness};
@@ -44,6 +46,8 @@ pub struct LoadOptions {
     pub raw: RawFormat,
     /// Which volume is meant where there are several.
     pub choice: Choice,
+    /// Of a folder, the files that are meant; all of them where nothing is said.
+    pub among: Option<Arc<[PathBuf]>>,
     /// Blocks of so many voxels along each axis are averaged into one.
     pub reduce: usize,
     /// The largest volume that is loaded, in bytes of its voxels.
@@ -55,7 +59,7 @@ impl Default for LoadOptions {
     /// (what the machine, its container and the user's limits leave), or 4 GiB where that is not known.
     fn default() -> Self {
         let (raw, choice) = (RawFormat::default(), Choice::default());
-        Self { raw, choice, reduce: 1, memory_budget_bytes: memory_budget_bytes() }
+        Self { raw, choice, among: None, reduce: 1, memory_budget_bytes: memory_budget_bytes() }
     }
 }
 

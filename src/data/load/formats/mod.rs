@@ -18,7 +18,10 @@ use std::path::Path;
 pub use raw::{RawFormat, RawGuess, RawLayout};
 
 use super::reading::reader::{Reader, Start};
-use super::reading::{beside, content, input, label_files, number, placement, reader, samples, text_numbers};
+use super::reading::{
+    beside, content, input, label_files, number, placement, read_files, reader, rescaled, samples,
+    text_numbers,
+};
 use super::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use pictures::{slices, tiff};
 

@@ -5,6 +5,7 @@ use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
 
+use super::read_files::note;
 use super::{LoadControl, LoadError};
 use crate::data::attempt::Attempt;
 use crate::data::plain;
@@ -101,6 +102,7 @@ fn state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
 impl Witness {
     /// Looks at an input that nothing has been read from.
     pub(crate) fn of(attempt: Attempt<'_>, input: &Input) -> Result<Self, LoadError> {
+        note(attempt.path);
         let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((state(&file)?, file)));
         seen.map(|(before, file)| Self { file, before }).map_err(|error| attempt.io(error))
     }

@@ -6,7 +6,9 @@ pub(super) mod input;
 pub(super) mod label_files;
 pub(super) mod number;
 pub(super) mod placement;
+pub(super) mod read_files;
 pub(super) mod reader;
+pub(super) mod rescaled;
 pub(super) mod samples;
 pub(super) mod text_numbers;
 

@@ -272,40 +272,6 @@ fn narrowed(samples: Samples) -> Samples {
     }
 }
 
-/// Values as a file means them: times a slope, and an intercept added. They stay whole numbers where that is exact.
-pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f64) -> Samples {
-    let is_said = slope.is_finite() && intercept.is_finite() && slope != 0.0;
-    if !is_said || (slope, intercept) == (1.0, 0.0) {
-        return samples;
-    }
-    let is_integer = !matches!(samples, Samples::F32(_) | Samples::F64(_));
-    let is_wide = matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
-    let values = (0..samples.len()).map(|voxel| samples.value(voxel).mul_add(slope, intercept));
-    let ends =
-        samples.finite_range().map(|(range, _)| [range.low, range.high].map(|v| v.mul_add(slope, intercept)));
-    if let Some(ends) = ends
-        && is_integer
-        && slope.fract() == 0.0
-        && intercept.fract() == 0.0
-    {
-        let within = |low: f64, high: f64| ends.iter().all(|end| (low..=high).contains(end));
-        if within(0.0, 255.0) {
-            return Samples::U8(values.map(|value| value as u8).collect());
-        } else if within(f64::from(i16::MIN), f64::from(i16::MAX)) {
-            return Samples::I16(values.map(|value| value as i16).collect());
-        } else if within(0.0, f64::from(u16::MAX)) {
-            return Samples::U16(values.map(|value| value as u16).collect());
-        } else if within(f64::from(i32::MIN), f64::from(i32::MAX)) {
-            return Samples::I32(values.map(|value| value as i32).collect());
-        }
-    }
-    if is_wide {
-        Samples::F64(values.collect())
-    } else {
-        Samples::F32(values.map(|value| value as f32).collect())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -349,17 +315,5 @@ mod tests {
         assert_eq!(read(vector, &vectors, 1), Samples::F32(vec![5.0]));
         assert_eq!(Part::chosen(Some(3), 3, true), None);
         assert_eq!(Part::chosen(None, 2, true), Some(Part::Component(0)), "grey and its opacity");
-    }
-
-    #[test]
-    fn values_are_rescaled_and_stay_whole_where_they_can() {
-        let bytes = Samples::U8(vec![0, 200]);
-        assert_eq!(rescaled(bytes.clone(), 1.0, -1024.0), Samples::I16(vec![-1024, -824]));
-        assert_eq!(rescaled(bytes.clone(), 0.5, 0.0), Samples::F32(vec![0.0, 100.0]));
-        for (slope, intercept) in [(1.0, 0.0), (0.0, 5.0), (f64::NAN, 0.0), (2.0, f64::INFINITY)] {
-            assert_eq!(rescaled(bytes.clone(), slope, intercept), bytes, "{slope} {intercept}");
-        }
-        let words = Samples::U16(vec![0, 65535]);
-        assert_eq!(rescaled(words, 1.0, -32768.0), Samples::I16(vec![-32768, 32767]));
     }
 }

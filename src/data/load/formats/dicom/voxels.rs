@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::super::number::{Part, rescaled};
+use super::super::number::Part;
 use super::super::placement::{Parts, Placement};
+use super::super::rescaled::rescaled;
 use super::super::samples::reserve;
 use super::super::{Endian, LoadControl, LoadError, LoadOptions};
 use super::groups::Slice;
@@ -63,8 +64,11 @@ pub(super) fn load(
     let raster = Raster { shape, endian: Endian::Little, part, scale: None };
     let slices_of = Slices { headers, stores: &stores, order: slices, raster, is_scaled, extent, control };
     let samples = slices_of.read(attempt, voxel_type)?;
-    let samples =
-        if is_scaled || shape.samples > 1 { samples } else { rescaled(samples, scale[0], scale[1]) };
+    let samples = if is_scaled || shape.samples > 1 {
+        samples
+    } else {
+        rescaled(attempt, samples, scale, options.memory_budget_bytes)?
+    };
     let found = &headers[first.file].found;
     let hints = hints::hints(found, &shape, first, (!is_scaled).then_some(scale));
     placement.remarks.extend(hints::remarks(found, &shape, options.choice.component.is_some()));

@@ -13,9 +13,9 @@ mod pieces;
 mod tests;
 
 use super::input::bare_name;
-use super::number::rescaled;
 use super::placement::Parts;
 use super::reader::{Reader, Source};
+use super::rescaled::rescaled;
 use super::samples::{Fault, Layout};
 use super::{LoadError, label_files};
 use crate::data::attempt::{Attempt, Dimension, Extent, Offer};
@@ -79,7 +79,8 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     })?;
     let samples = if stored.components == 1 {
         let scale = |name, default| header.number(name).unwrap_or(default);
-        rescaled(samples, scale(layout::SLOPE, 1.0), scale(layout::INTERCEPT, 0.0))
+        let scale = [scale(layout::SLOPE, 1.0), scale(layout::INTERCEPT, 0.0)];
+        rescaled(attempt, samples, scale, options.memory_budget_bytes)?
     } else {
         samples
     };
