@@ -13,8 +13,13 @@ use crate::data::load::formats::pictures::pile::read_pile;
 use crate::data::load::reading::input::{Input, Witness};
 use crate::data::load::reading::number::{Part, Stored};
 use crate::data::load::reading::placement::{Parts, Placement};
+use crate::data::load::reading::rescaled::rescaled;
 use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume};
+
+/// Bytes of pages that are fetched before they are unpacked: pages are longer than what is in them only by mistake, or
+/// where many of them are the same bytes.
+const PACKED_BYTES: u64 = 32 << 20;
 
 /// A page of one of several files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -166,21 +171,29 @@ impl Stack {
             });
         }
         let samples = read_pile(attempt, &stored, extent, control, |range: Range<usize>| {
-            let mut packed = Vec::new();
-            for &Slice { file, page } in &slices[range.clone()] {
-                packed.push(files.with(file, |attempt, tiff| {
-                    let found = page_of(attempt, tiff, page)?;
-                    if !found.is_like(&model) {
-                        return Err(unlike(attempt, page, &found, &model));
-                    }
-                    // Where samples lie beside each other all are fetched, and one is taken later.
-                    tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
-                })?);
+            let mut unpacked = Vec::new();
+            let mut slices = slices[range].iter().peekable();
+            while slices.peek().is_some() {
+                let (mut packed, mut bytes) = (Vec::new(), 0);
+                while let Some(&Slice { file, page }) = slices.next_if(|_| bytes < PACKED_BYTES) {
+                    let of_page = files.with(file, |attempt, tiff| {
+                        let found = page_of(attempt, tiff, page)?;
+                        if !found.is_like(&model) {
+                            return Err(unlike(attempt, page, &found, &model));
+                        }
+                        // Where samples lie beside each other all are fetched, and one is taken later.
+                        tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
+                    })?;
+                    bytes += of_page.len();
+                    packed.push((page, of_page));
+                }
+                let of_slices =
+                    packed.par_iter().map(|(page, packed)| packed.unpack(attempt, *page, control));
+                unpacked.extend(of_slices.collect::<Result<Vec<_>, _>>()?);
             }
-            let slices = slices[range].par_iter().zip(packed.par_iter());
-            slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect()
+            Ok(unpacked)
         })?;
-        let samples = crate::data::load::reading::number::rescaled(samples, slope, intercept);
+        let samples = rescaled(attempt, samples, [slope, intercept], options.memory_budget_bytes)?;
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }

@@ -115,6 +115,7 @@ pub(in super::super) fn stack(
 fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
     use std::io::Read as _;
     let input = crate::data::load::reading::input::Input::open(attempt)?;
+    crate::data::load::reading::read_files::note(attempt.path);
     let mut text = String::new();
     input.reader.take(MOST_XML_BYTES).read_to_string(&mut text).map_err(|error| attempt.io(error))?;
     Ok(text)
