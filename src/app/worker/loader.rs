@@ -25,6 +25,8 @@ pub(crate) struct Reading {
     pub raw: Option<RawFormat>,
     /// Which of several volumes is opened.
     pub choice: Option<Choice>,
+    /// Of a folder, the files that are opened.
+    pub among: Option<Arc<[PathBuf]>>,
     /// Blocks of so many voxels along each axis are averaged into one.
     pub reduce: Option<usize>,
 }
@@ -161,6 +163,7 @@ impl Loader {
             let reduce = reading.reduce.unwrap_or(options.reduce);
             options.reduce = reduce;
             options.choice = reading.choice.clone().unwrap_or(options.choice);
+            options.among.clone_from(&reading.among);
             let reading = Reading { reduce: Some(reduce), ..reading.clone() };
             let opening = Opening {
                 source: source.to_owned(),
