@@ -37,7 +37,7 @@ fn each<T, R>(values: &[T], budget_bytes: u64, value: impl Fn(&T) -> R) -> Resul
     if bytes > budget_bytes {
         return Err(VolumeError::NoMemory { bytes });
     }
-    scaled.try_reserve_exact(values.len()).map_err(|_| VolumeError::NoMemory { bytes })?;
+    scaled.try_reserve_exact(values.len()).map_err(|_full| VolumeError::NoMemory { bytes })?;
     scaled.extend(values.iter().map(value));
     Ok(scaled)
 }

@@ -381,8 +381,8 @@ fn distance(here: &[f32], there: &[f32]) -> f64 {
     let (there, others) = there.as_chunks::<8>();
     let mut sums = [0.0f32; 8];
     for (here, there) in here.iter().zip(there) {
-        for lane in 0..8 {
-            sums[lane] += (there[lane] - here[lane]).abs();
+        for (sum, (here, there)) in sums.iter_mut().zip(here.iter().zip(there)) {
+            *sum += (there - here).abs();
         }
     }
     let rest = rest.iter().zip(others).map(|(here, there)| f64::from((there - here).abs()));

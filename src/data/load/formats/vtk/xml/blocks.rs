@@ -147,7 +147,7 @@ impl<R: Read> Blocks<R> {
         let no_memory = || io::Error::from(io::ErrorKind::OutOfMemory);
         let unpacked = match self.compressor {
             Compressor::Zlib => {
-                ready.try_reserve_exact(wanted + 1).map_err(|_| no_memory())?;
+                ready.try_reserve_exact(wanted + 1).map_err(|_full| no_memory())?;
                 // A byte more than wanted tells too much from enough.
                 let mut decoder = ZlibDecoder::new(&self.packed[..]).take(wanted as u64 + 1);
                 decoder.read_to_end(ready).map_err(|error| error.to_string())
