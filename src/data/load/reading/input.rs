@@ -130,6 +130,12 @@ pub(crate) fn is_gzip(magic: &[u8]) -> bool {
     magic.starts_with(&[0x1f, 0x8b, 8])
 }
 
+/// The most bytes that so many compressed ones can stand for: deflate makes no more than 1032 of one
+/// (<https://zlib.net/zlib_tech.html>).
+pub(in crate::data::load) fn most_inflated(bytes: u64) -> u64 {
+    bytes.saturating_mul(1032)
+}
+
 /// The file name without that of the endings (lower case, longest first) which it has, in any case.
 pub(in crate::data::load) fn bare_name(path: &Path, endings: &[&str]) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();

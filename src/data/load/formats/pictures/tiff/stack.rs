@@ -170,6 +170,10 @@ impl Stack {
                 "the lowest values stand for white: values are shown as they are".to_owned()
             });
         }
+        // The first page, before there is room for all: one that has not what it announces asks for none.
+        files.with(first.file, |attempt, tiff| {
+            tiff.check_room(attempt, first.page, sample.filter(|_| model.is_planar), control)
+        })?;
         let samples = read_pile(attempt, &stored, extent, control, |range: Range<usize>| {
             let mut unpacked = Vec::new();
             let mut slices = slices[range].iter().peekable();

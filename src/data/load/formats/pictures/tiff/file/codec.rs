@@ -38,7 +38,7 @@ impl Codec {
     }
 
     /// The most bytes that so many compressed ones can stand for.
-    pub(super) fn most(self, packed: usize) -> u64 {
+    pub(super) fn most(self, packed: u64) -> u64 {
         let times = match self {
             Self::None => 1,
             // A code of at least 9 bits stands for one of 4096 strings, each a byte longer than another.
@@ -53,7 +53,7 @@ impl Codec {
             // which it is one of six.
             Self::Jpeg => 1024,
         };
-        (packed as u64).saturating_mul(times)
+        packed.saturating_mul(times)
     }
 
     /// Fills `out` as far as the compressed bytes go; how far that is. What would come after is not looked at. What the
@@ -164,7 +164,7 @@ mod tests {
     fn what_cannot_be_in_so_few_bytes_is_known() {
         let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
         std::io::Write::write_all(&mut encoder, &vec![0; 1 << 22]).unwrap();
-        let packed = encoder.finish().unwrap().len();
+        let packed = encoder.finish().unwrap().len() as u64;
         assert!(Codec::Deflate.most(packed) >= 1 << 22 && Codec::Deflate.most(packed) < 5 << 20);
         assert_eq!(Codec::None.most(20), 20);
     }

@@ -86,7 +86,7 @@ impl Tiff {
     /// Fetches the parts of a page: all, or those of one sample where each sample has its own.
     ///
     /// # Errors
-    /// `BadInput` where they are not in the file, or not of a kind that is read.
+    /// As [`Self::check_room`]; `Limit` where the memory is not there.
     pub(super) fn fetch(
         &mut self,
         attempt: Attempt<'_>,
@@ -96,11 +96,48 @@ impl Tiff {
     ) -> Result<Packed, LoadError> {
         let field = format!("page {number}");
         let fault = |error| unreadable(attempt, &field, error);
+        let (page, places) = self.places(attempt, number, sample, control)?;
+        let mut parts = Vec::new();
+        for Place { offset, count } in places {
+            control.check()?;
+            let mut part = zeroed(attempt, &field, count)?;
+            self.bytes.read(offset, &mut part).map_err(fault)?;
+            parts.push(part);
+        }
+        let tables = page.jpeg_tables.map(|entry| entry.raw(&mut self.bytes, MOST_TABLES_BYTES));
+        let tables = tables.transpose().map_err(fault)?.unwrap_or_default();
+        let samples = if page.is_planar { 1 } else { page.samples };
+        Ok(Packed { page, endian: self.bytes.endian, parts, samples, tables })
+    }
+
+    /// Checks that the file has room for the parts of a page, and they for its pixels.
+    ///
+    /// # Errors
+    /// `BadInput` where they are not in the file, too short, or not of a kind that is read.
+    pub(super) fn check_room(
+        &mut self,
+        attempt: Attempt<'_>,
+        number: usize,
+        sample: Option<usize>,
+        control: &LoadControl,
+    ) -> Result<(), LoadError> {
+        self.places(attempt, number, sample, control).map(drop)
+    }
+
+    /// A page, and where the parts lie that [`Self::fetch`] fetches.
+    fn places(
+        &mut self,
+        attempt: Attempt<'_>,
+        number: usize,
+        sample: Option<usize>,
+        control: &LoadControl,
+    ) -> Result<(Page, Vec<Place>), LoadError> {
+        let field = format!("page {number}");
+        let fault = |error| unreadable(attempt, &field, error);
         let page = *self.pages.get(number).ok_or_else(|| {
             attempt.bad_input(&field, format!("the file has only {} pages", self.pages.len()), HELP)
         })?;
         page.check(attempt, &field)?;
-        let endian = self.bytes.endian;
         let [across, down] = page.grid();
         let per_sample = across.checked_mul(down).ok_or_else(|| fault(io::ErrorKind::InvalidData.into()))?;
         let samples = if page.is_planar { 1 } else { page.samples };
@@ -131,10 +168,15 @@ impl Tiff {
             Some(entry) => entry.numbers(&mut self.bytes, needed).map_err(fault)?,
             None => Vec::new(),
         };
-        let (mut parts, mut sum) = (Vec::new(), 0u64);
+        let (mut places, mut sum) = (Vec::new(), 0u64);
         let [start, end] = [wanted.start, wanted.end].map(|sample| sample * per_sample as usize);
         for (at, &offset) in offsets.iter().enumerate().take(end).skip(start) {
             control.check()?;
+            // Never written: all 0, as other readers have it.
+            if offset == 0 {
+                places.push(Place { offset, count: 0 });
+                continue;
+            }
             let row = at as u64 % per_sample / across;
             let whole = page.part_bytes(samples, row);
             let count = match counts.get(at).copied() {
@@ -144,10 +186,6 @@ impl Tiff {
                 Some(count) => count.min(whole.saturating_mul(2).saturating_add(1 << 16)),
                 None => return Err(fault(io::ErrorKind::InvalidData.into())),
             };
-            if offset == 0 {
-                parts.push(Vec::new());
-                continue;
-            }
             if offset.checked_add(count).is_none_or(|end| end > self.bytes.len()) {
                 return Err(fault(io::ErrorKind::UnexpectedEof.into()));
             }
@@ -156,14 +194,22 @@ impl Tiff {
                 let why = "its strips or tiles are the same bytes over and over";
                 return Err(attempt.bad_input(&field, why, HELP));
             }
-            let mut part = zeroed(attempt, &field, count)?;
-            self.bytes.read(offset, &mut part).map_err(fault)?;
-            parts.push(part);
+            let room = Codec::of(page.compression).map_or(0, |codec| codec.most(count));
+            if room < whole && count > 0 {
+                let why =
+                    format!("a strip or tile ends too early: {whole} bytes expected, room for {room} found");
+                return Err(attempt.bad_input(&field, why, HELP));
+            }
+            places.push(Place { offset, count });
         }
-        let tables = page.jpeg_tables.map(|entry| entry.raw(&mut self.bytes, MOST_TABLES_BYTES));
-        let tables = tables.transpose().map_err(fault)?.unwrap_or_default();
-        Ok(Packed { page, endian, parts, samples, tables })
+        Ok((page, places))
     }
+}
+
+/// Where a part lies in the file; of no bytes where it was never written.
+struct Place {
+    offset: u64,
+    count: u64,
 }
 
 /// So many bytes of zero, which take memory only as they are written: a page that holds less than it announces takes no
@@ -199,7 +245,6 @@ impl Packed {
         let planes = (self.parts.len() / (across * down).max(1)).max(1);
         let row_bytes = page.width as usize * self.samples * size;
         let bytes = (row_bytes as u64).saturating_mul(page.height).saturating_mul(planes as u64);
-        self.check_room(attempt, &field)?;
         let mut all = zeroed(attempt, &field, bytes)?;
         let plane_bytes = all.len() / planes;
         for (plane, parts) in all.chunks_exact_mut(plane_bytes).zip(self.parts.chunks(across * down)) {
@@ -217,24 +262,6 @@ impl Packed {
             invert(&mut all, page.bits);
         }
         Ok(if planes > 1 { woven(&all, planes, size) } else { all })
-    }
-
-    /// Refuses parts that cannot hold as much as they should, before memory is taken for that.
-    fn check_room(&self, attempt: Attempt<'_>, field: &str) -> Result<(), LoadError> {
-        let [across, down] = self.page.grid().map(|count| (count as usize).max(1));
-        let Some(codec) = Codec::of(self.page.compression) else { return Ok(()) };
-        for (at, packed) in self.parts.iter().enumerate().filter(|(_, packed)| !packed.is_empty()) {
-            let wanted = self.page.part_bytes(self.samples, (at / across % down) as u64);
-            let room = codec.most(packed.len());
-            if room < wanted {
-                return Err(attempt.bad_input(
-                    field,
-                    format!("a strip or tile ends too early: {wanted} bytes expected, room for {room} found"),
-                    HELP,
-                ));
-            }
-        }
-        Ok(())
     }
 
     /// Puts what a part holds where it belongs among some rows.
