@@ -70,7 +70,7 @@ impl Codec {
             Self::Lzw => expand_lzw(packed, out, control),
             Self::Deflate => fill(&mut ZlibDecoder::new(packed), out, control),
             Self::PackBits => fill(&mut PackBits { packed, left: 0, repeated: None }, out, control),
-            Self::Zstd => zstd::expand(packed, out, control),
+            Self::Zstd => zstd::expand(packed, picture.whole, out, control),
             Self::Jpeg => jpeg::expand(picture, packed, out),
         }
     }

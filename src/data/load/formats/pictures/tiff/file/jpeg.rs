@@ -19,6 +19,8 @@ pub(super) struct Picture<'a> {
     pub(super) tables: &'a [u8],
     /// Pixels across, and down; a last strip may have fewer rows.
     pub(super) size: [u64; 2],
+    /// Bytes of it where no rows are missing.
+    pub(super) whole: usize,
     /// Numbers of each pixel.
     pub(super) samples: usize,
     /// Brightness and two differences of colour: they become red, green and blue.
@@ -40,7 +42,7 @@ pub(super) fn expand(picture: Picture<'_>, packed: &[u8], out: &mut [u8]) -> Res
 }
 
 fn decode(picture: Picture<'_>, packed: &[u8], wanted: usize) -> Result<Vec<u8>, String> {
-    let Picture { tables, size: [across, down], samples, is_ybr } = picture;
+    let Picture { tables, size: [across, down], whole: _, samples, is_ybr } = picture;
     let Some(rest) = packed.strip_prefix(&START) else {
         return Err("no picture of JPEG begins there".to_owned());
     };

@@ -330,6 +330,7 @@ impl Packed {
         let picture = jpeg::Picture {
             tables: &self.tables,
             size: self.page.part,
+            whole: self.page.row_bytes(self.samples).saturating_mul(self.page.part[1]) as usize,
             samples: self.samples,
             is_ybr: self.page.is_ybr && self.samples == 3,
         };
