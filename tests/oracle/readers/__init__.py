@@ -174,8 +174,11 @@ def read_tiff(path, choice):
         elif "component" in choice:
             raise ValueError("there are no components")
         data = data.reshape((-1,) + data.shape[-2:])
-        # Decoders of JPEG may round as they like.
-        tolerance = 1.0 if file.pages[0].compression == tifffile.COMPRESSION.JPEG else 0.0
+        # Decoders of JPEG may round as they like, and so where colours are spread over several pixels.
+        tags = file.pages[0].tags
+        is_halved = "YCbCrSubSampling" in tags and tags["YCbCrSubSampling"].value != (1, 1)
+        is_jpeg = file.pages[0].compression == tifffile.COMPRESSION.JPEG
+        tolerance = (2.0 if is_halved else 1.0) if is_jpeg else 0.0
         return Reading(data, *place_of_tiff(file), tolerance)
 
 
