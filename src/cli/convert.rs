@@ -7,7 +7,7 @@ use clap::Args;
 use super::CliError;
 use super::outputs::{destination, finish, keep_apart, warn_line};
 use super::scene::{LoadArgs, parse_voxel_type};
-use crate::data::load::LoadControl;
+use crate::data::load::{Explanation, LoadControl, LoadError, ReadFiles};
 use crate::data::{Headings, ValueRange, VoxelType, open};
 use crate::export::{ConvertError, NumberWish, Outgoing, VolumeFormat, check_writable, write_volume};
 
@@ -110,6 +110,25 @@ impl ConvertArgs {
     }
 }
 
+/// What is wrong with a volume, in the words of this command: what readers know as `--type` has another name here.
+fn in_own_words(error: LoadError) -> LoadError {
+    let own = |mut explanation: Box<Explanation>| {
+        for text in [&mut explanation.why, &mut explanation.help] {
+            *text = text.replace("--type", "--input-type");
+        }
+        // Before it stands the name of the file, which may be anything.
+        if let Some(file) = explanation.place.strip_suffix(", --type") {
+            explanation.place = format!("{file}, --input-type");
+        }
+        explanation
+    };
+    match error {
+        LoadError::BadInput(explanation) => LoadError::BadInput(own(explanation)),
+        LoadError::Limit(explanation) => LoadError::Limit(own(explanation)),
+        other => other,
+    }
+}
+
 /// Writes a volume in another format.
 pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let format = args.output_format()?;
@@ -117,7 +136,11 @@ pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let output = destination(&args.output, format.endings()[0])?;
     // Before anything is read that may take its time.
     check_writable(output.path())?;
-    let volume = open(&args.input, &args.load.load_options()?, &LoadControl::new())?;
+    let read = ReadFiles::watch();
+    let volume = open(&args.input, &args.load.load_options()?, &LoadControl::new()).map_err(in_own_words)?;
+    // A header has named others, a slice or a folder has brought its series.
+    let read = read.paths();
+    keep_apart(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;
     let wish = NumberWish { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
     let refused = |err: ConvertError| args.usage(&err);
     let mut outgoing = Outgoing::of(&volume).in_numbers(&wish).map_err(refused)?;

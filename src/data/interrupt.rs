@@ -78,22 +78,22 @@ impl Signal {
     }
 }
 
-/// Values made one by one, up to where they are not wanted any more.
-pub(in crate::data) fn made<T>(count: usize, value: impl Fn(usize) -> T) -> Vec<T> {
-    let interrupt = Interrupt::here();
-    let mut made = Vec::with_capacity(count);
-    for first in (0..count).step_by(PIECE) {
-        if interrupt.is_due() {
-            break;
-        }
-        made.extend((first..count.min(first + PIECE)).map(&value));
-    }
-    made
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Values made one by one, up to where they are not wanted any more.
+    fn made<T>(count: usize, value: impl Fn(usize) -> T) -> Vec<T> {
+        let interrupt = Interrupt::here();
+        let mut made = Vec::with_capacity(count);
+        for first in (0..count).step_by(PIECE) {
+            if interrupt.is_due() {
+                break;
+            }
+            made.extend((first..count.min(first + PIECE)).map(&value));
+        }
+        made
+    }
 
     #[test]
     fn only_work_within_is_given_up() {

@@ -29,6 +29,8 @@ pub(crate) struct Reading {
     pub choice: Option<Choice>,
     /// It may take all memory that is free.
     pub takes_all_memory: bool,
+    /// Of a folder, the files that are opened.
+    pub among: Option<Arc<[PathBuf]>>,
 }
 
 /// What is known of a file from earlier times.
@@ -174,6 +176,7 @@ impl Loader {
             }
             options.raw = reading.raw.unwrap_or(options.raw);
             options.choice = reading.choice.clone().unwrap_or(options.choice);
+            options.among.clone_from(&reading.among);
             let opening = Opening {
                 source: source.to_owned(),
                 reading: reading.clone(),

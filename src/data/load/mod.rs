@@ -11,7 +11,8 @@ mod reading;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 
@@ -25,6 +26,7 @@ pub use super::attempt::{
 };
 use super::attempt::{Attempt, Room};
 pub use neighbour::neighbour;
+pub use reading::read_files::ReadFiles;
 
 use formats::{READERS, folder, reader_of};
 use reading::input::{Input, Witness};
@@ -46,6 +48,8 @@ pub struct LoadOptions {
     pub raw: RawFormat,
     /// Which volume is meant where there are several, and how much of it is read.
     pub choice: Choice,
+    /// Of a folder, the files that are meant; all of them where nothing is said.
+    pub among: Option<Arc<[PathBuf]>>,
     /// The largest volume that is loaded, in bytes of its voxels.
     pub memory_budget_bytes: u64,
 }
@@ -55,7 +59,7 @@ impl Default for LoadOptions {
     /// (what the machine, its container and the user's limits leave), or 4 GiB where that is not known.
     fn default() -> Self {
         let (raw, choice) = (RawFormat::default(), Choice::default());
-        Self { raw, choice, memory_budget_bytes: memory_budget_bytes() }
+        Self { raw, choice, among: None, memory_budget_bytes: memory_budget_bytes() }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::app::text::common::LengthUnit;
 use crate::app::text::{Named, named};
 use crate::data::load::{Portion, Region, Thinning};
-use crate::data::{DataKind, KindName};
+use crate::data::{DataKind, KindName, SpacingUnit};
 
 /// In place of the section while no volume is open.
 pub(crate) const NOTHING_OPEN: &str = "No volume is open";
@@ -141,10 +141,10 @@ pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {
 
 /// The unit in which distances between voxels are written.
 pub(crate) fn unit_of_spacing(spacing_mm: [f64; 3], is_unknown: bool) -> LengthUnit {
-    let longest = spacing_mm.into_iter().fold(0.0, f64::max);
-    // Down to a hundredth of a millimetre there are digits enough behind the point.
-    let unit = LengthUnit::showing(100.0 * longest, is_unknown);
-    if is_unknown { LengthUnit { suffix: " (unit unknown)", ..unit } } else { unit }
+    if is_unknown {
+        return LengthUnit { mm: 1.0, suffix: " (unit unknown)" };
+    }
+    LengthUnit::of(SpacingUnit::of_spacing(spacing_mm))
 }
 
 /// Distances between voxels along x, y and z, in digits.

@@ -5,7 +5,7 @@ use std::io::{self, BufReader, Read};
 
 use flate2::bufread::MultiGzDecoder;
 
-use super::input::Input;
+use super::input::{Input, most_inflated};
 use super::number::Stored;
 use super::samples::{Fault, fill, skip_bytes};
 use super::sieve::{Leap, leap_in_file};
@@ -18,6 +18,8 @@ pub(in crate::data::load) struct Content {
     form: Form,
     /// Bytes before the next one.
     at: u64,
+    /// Bytes of the content, or what it cannot be longer than.
+    most_bytes: u64,
 }
 
 enum Form {
@@ -28,12 +30,13 @@ enum Form {
 impl Content {
     /// The content of a file that is open at its beginning.
     pub(in crate::data::load) fn of(input: Input, is_gzip: bool) -> Self {
+        let most_bytes = if is_gzip { most_inflated(input.len) } else { input.len };
         let form = if is_gzip {
             Form::Inflated(Box::new(MultiGzDecoder::new(input.reader)))
         } else {
             Form::Stored(input)
         };
-        Self { form, at: 0 }
+        Self { form, at: 0, most_bytes }
     }
 
     /// Checks that so many bytes follow a place, as far as this shows without inflating them all.
@@ -44,14 +47,20 @@ impl Content {
         start: u64,
         bytes: u128,
     ) -> Result<(), LoadError> {
-        let Form::Stored(input) = &self.form else { return Ok(()) };
-        let found = input.len.saturating_sub(start);
+        let found = self.most_bytes.saturating_sub(start);
         if u128::from(found) >= bytes {
             return Ok(());
         }
         Err(attempt.bad_input(
             field,
-            format!("the data are truncated: {bytes} bytes expected from byte {start} on, {found} found"),
+            match self.form {
+                Form::Stored(_) => {
+                    format!("the data are truncated: {bytes} bytes expected from byte {start} on, {found} found")
+                }
+                Form::Inflated(_) => format!(
+                    "the data are truncated: {bytes} bytes expected from byte {start} on, room for {found} found"
+                ),
+            },
             "check the header, or copy the file again",
         ))
     }

@@ -158,7 +158,7 @@ impl Stored {
         let voxel_type = self.voxel_type();
         if kept.is_all() {
             control.start(extent.bytes);
-            return Ok((meant.values)(self.read_all(reader, extent, control)?).into());
+            return Ok((meant.values)(self.read_all(reader, extent, control)?)?.into());
         }
         let mut sieve =
             Sieve::new(reader, leap, kept.boxed_if_averaged(), self.bytes_of_voxel() as usize, control);
@@ -176,7 +176,7 @@ impl Stored {
         } else {
             let part = Extent::sized(kept.dims(), voxel_type);
             control.start(part.bytes);
-            self.read_all(&mut sieve, part, control).map(|samples| (meant.values)(samples).into())
+            self.read_all(&mut sieve, part, control).and_then(|samples| Ok((meant.values)(samples)?.into()))
         };
         // To where the grid ends: what is left out must be there, too.
         let ended = read.and_then(|voxels| fill(&mut sieve, &mut [0], control).map(|_none| voxels));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 
-use super::input::{Input, is_gzip};
+use super::input::{Input, is_gzip, most_inflated};
 use super::number::{Part, Stored};
 use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
 use super::sieve::leap_in_file;
@@ -63,8 +63,8 @@ impl Source<'_> {
         }
     }
 
-    /// Reads what is kept of the voxels of a grid, which begin at byte `at` of the content. Of what is not compressed there
-    /// must be enough before anything is allocated.
+    /// Reads what is kept of the voxels of a grid, which begin at byte `at` of the content. There must be enough, as far as
+    /// this shows in a compressed file, before anything is allocated.
     ///
     /// # Errors
     /// `BadInput` for data that are too short, too long or broken, with `help`; `Limit` where the memory is not there.
@@ -79,10 +79,17 @@ impl Source<'_> {
         let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
         let needed = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
         let control = self.control;
-        if !self.start.is_gzip() {
+        let [x, y, z] = extent.dims;
+        let grid = format!("for {x} x {y} x {z} voxels of {}", layout.voxel_type.name());
+        if self.start.is_gzip() {
+            let most = most_inflated(self.input.len).saturating_sub(at);
+            if most < needed {
+                let why =
+                    format!("the data are truncated: {needed} bytes expected {grid}, room for {most} found");
+                return Err(attempt.bad_input("data", why, help));
+            }
+        } else {
             let found = self.input.len.saturating_sub(at);
-            let [x, y, z] = extent.dims;
-            let grid = format!("for {x} x {y} x {z} voxels of {}", layout.voxel_type.name());
             if found < needed {
                 let why = format!("the data are truncated: {needed} bytes expected {grid}, {found} found");
                 return Err(attempt.bad_input("data", why, help));

@@ -1,7 +1,7 @@
 //! The voxels that were read of a grid: all, those that are kept, or the means of blocks, made slab by slab.
 
-use super::LoadControl;
 use super::samples::{BLOCK_BYTES, Fault};
+use super::{LoadControl, LoadError};
 use crate::data::attempt::Kept;
 use crate::data::{Blocks, Samples};
 
@@ -36,13 +36,13 @@ pub(in crate::data::load) struct Meant<'a> {
     /// The value that is left out of means, as the file declares it.
     pub(in crate::data::load) padding: Option<f64>,
     /// Numbers to values, each for itself.
-    pub(in crate::data::load) values: &'a dyn Fn(Samples) -> Samples,
+    pub(in crate::data::load) values: &'a dyn Fn(Samples) -> Result<Samples, LoadError>,
 }
 
 impl Meant<'_> {
     /// Numbers are values.
     pub(in crate::data::load) fn as_stored(padding: Option<f64>) -> Self {
-        Self { padding, values: &|samples| samples }
+        Self { padding, values: &Ok }
     }
 }
 
@@ -66,7 +66,7 @@ pub(in crate::data::load) fn averaged<E>(
     mut read: impl FnMut(std::ops::Range<usize>) -> Result<Samples, E>,
 ) -> Result<Voxels, NoMeans<E>>
 where
-    E: From<crate::data::load::LoadError>,
+    E: From<LoadError>,
 {
     let [width, height, depth] = kept.edges();
     let step = kept.step[2];
@@ -77,7 +77,8 @@ where
     for first in (0..depth).step_by(at_once) {
         control.check().map_err(|stopped| NoMeans::Unread(stopped.into()))?;
         let end = depth.min(first + at_once);
-        let samples = (meant.values)(read(first..end).map_err(NoMeans::Unread)?);
+        let samples = (meant.values)(read(first..end).map_err(NoMeans::Unread)?)
+            .map_err(|error| NoMeans::Unread(error.into()))?;
         let blocks = Blocks { dims: [width, height, end - first], block: kept.step, padding: meant.padding };
         means.add(&blocks.averaged(&samples, kept.are_labels)).map_err(|_full| NoMeans::NoMemory)?;
         if let Some(picked) = &mut picked {

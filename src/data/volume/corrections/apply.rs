@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::scaled::{scaled, scaled_hints};
 use super::{Corrections, Orientation, PaddingValue, SpacingUnit};
-use crate::data::attempt::is_usable_affine;
+use crate::data::attempt::{is_usable_affine, memory_budget_bytes};
 use crate::data::volume::{Volume, VolumeError};
 use crate::math::SceneSpace;
 
@@ -103,8 +103,11 @@ impl Volume {
     /// The same volume with other values.
     fn with_values(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let scale = by.value_scale;
-        let samples =
-            if scale.is_none() { Arc::clone(&self.samples) } else { Arc::new(scaled(&self.samples, scale)?) };
+        let samples = if scale.is_none() {
+            Arc::clone(&self.samples)
+        } else {
+            Arc::new(scaled(&self.samples, scale, memory_budget_bytes())?)
+        };
         let volume = Self::sharing(self.name.clone(), self.dims, self.world_from_index, samples)?;
         let padding = match by.padding_value {
             PaddingValue::InFile => self.padding_value.map(|number| scale.value(number)),

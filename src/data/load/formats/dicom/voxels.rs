@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::super::number::Part;
 use super::super::placement::{Parts, Placement};
-use super::super::rescale::rescaled;
+use super::super::rescaled::rescaled;
 use super::super::samples::reserve;
 use super::super::voxels::{Meant, NoMeans, Voxels, averaged};
 use super::super::{Endian, LoadControl, LoadError, LoadOptions};
@@ -66,7 +66,11 @@ pub(super) fn load(
     let found = &headers[first.file].found;
     let hints = hints::hints(found, &shape, first, (!is_scaled).then_some(scale));
     let values = |samples| {
-        if is_scaled || shape.samples > 1 { samples } else { rescaled(samples, scale[0], scale[1]) }
+        if is_scaled || shape.samples > 1 {
+            Ok(samples)
+        } else {
+            rescaled(attempt, samples, scale, options.memory_budget_bytes)
+        }
     };
     let meant = Meant { padding: hints.padding, values: &values };
     let voxels = slices_of.read(attempt, &extent.read, voxel_type, &meant)?;
@@ -109,7 +113,7 @@ impl Slices<'_> {
         self.stretch(attempt, &one, voxel_type)?;
         self.control.start(Extent::sized(boxed.dims(), voxel_type).bytes);
         if !kept.is_averaged {
-            return Ok((meant.values)(self.stretch(attempt, &boxed, voxel_type)?).into());
+            return Ok((meant.values)(self.stretch(attempt, &boxed, voxel_type)?)?.into());
         }
         averaged(kept, voxel_type.bytes(), meant, self.control, |slices| {
             let (mut low, mut high) = (boxed.low, boxed.high);

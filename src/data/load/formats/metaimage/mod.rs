@@ -15,7 +15,7 @@ mod tests;
 use super::input::bare_name;
 use super::placement::Parts;
 use super::reader::{Reader, Source};
-use super::rescale::rescaled;
+use super::rescaled::rescaled;
 use super::samples::{Fault, Layout};
 use super::voxels::Meant;
 use super::{LoadError, label_files};
@@ -56,9 +56,11 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
 
     let mut hints = hints::of(&header);
     let scale = |name, default| header.number(name).unwrap_or(default);
-    let (slope, intercept) = (scale(layout::SLOPE, 1.0), scale(layout::INTERCEPT, 0.0));
+    let scale = [scale(layout::SLOPE, 1.0), scale(layout::INTERCEPT, 0.0)];
     let is_single = stored.components == 1;
-    let values = |samples| if is_single { rescaled(samples, slope, intercept) } else { samples };
+    let values = |samples| {
+        if is_single { rescaled(attempt, samples, scale, options.memory_budget_bytes) } else { Ok(samples) }
+    };
     let meant = Meant { padding: hints.padding, values: &values };
     let voxels = stored.read_meant(&mut pieces, None, extent, &meant, control).map_err(Fault::of_stream);
     let voxels = voxels.and_then(|voxels| pieces.finish(control).map(|()| voxels));

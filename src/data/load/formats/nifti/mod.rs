@@ -18,12 +18,12 @@ use super::input::{Input, Witness, bare_name};
 use super::number::{Part, Stored};
 use super::placement::Parts;
 use super::reader::{Reader, Source};
-use super::rescale::rescaled;
+use super::rescaled::rescaled;
 use super::samples::{Fault, Layout};
 use super::voxels::{Meant, Voxels};
 use super::{LoadControl, LoadError, LoadOptions, label_files};
 use crate::data::attempt::{Attempt, Dimension, Extent};
-use crate::data::{Samples, Volume, plain};
+use crate::data::{Volume, plain};
 use grid::Grid;
 use header::{Form, Header};
 use number_type::NumberType;
@@ -97,17 +97,23 @@ fn read(
         let volumes = component as u128 * grid.frames as u128 + frame as u128;
         u64::try_from(u128::from(header.data_start) + volumes * bytes).unwrap_or(u64::MAX)
     };
+    let is_planar = grid.components > 1;
+    // Of components, each of which is scaled.
+    let are_lengths = is_planar && part == Part::Magnitude;
     let (first, last) = match part {
         Part::Component(at) if is_planar => (place(at), place(at)),
         _ => (place(0), place(grid.components - 1)),
     };
     content.check_room(attempt, "dim", last, bytes)?;
-    let voxels = if is_planar && part == Part::Magnitude {
+    let voxels = if are_lengths {
         let places = (0..grid.components).map(place);
         vectors::lengths(&mut content, &stored, places, header.scale(), extent, control).map(Voxels::from)
     } else {
         let stored = if is_planar { Stored::scalar(stored.number, stored.endian) } else { stored };
-        let values = |samples| scaled(samples, header, &number_type, part);
+        let values = |samples| match scale_of(header, &number_type, part) {
+            Some(scale) => rescaled(attempt, samples, scale, options.memory_budget_bytes),
+            None => Ok(samples),
+        };
         let meant = Meant { padding: None, values: &values };
         content.go_to(first, control).and_then(|()| content.voxels(&stored, extent, &meant, control))
     };
@@ -123,15 +129,15 @@ fn read(
     Parts { name, extent, placement, voxels, hints }.volume(attempt)
 }
 
-/// Values as the header means them. Colours are not scaled (`nifti1.h`, "data scaling").
-fn scaled(samples: Samples, header: &Header, number_type: &NumberType, part: Part) -> Samples {
+/// Slope and intercept with which values are what the header means. Colours are not scaled (`nifti1.h`, "data scaling").
+fn scale_of(header: &Header, number_type: &NumberType, part: Part) -> Option<[f64; 2]> {
     let (slope, intercept) = header.scale();
     match part {
-        _ if number_type.is_color => samples,
+        _ if number_type.is_color => None,
         // The length of a complex number: what is added to its real part cannot be told from it.
-        Part::Magnitude => rescaled(samples, slope.abs(), 0.0),
+        Part::Magnitude => Some([slope.abs(), 0.0]),
         // An imaginary part is only stretched.
-        Part::Component(at) if number_type.components > 1 && at > 0 => rescaled(samples, slope, 0.0),
-        _ => rescaled(samples, slope, intercept),
+        Part::Component(at) if number_type.components > 1 && at > 0 => Some([slope, 0.0]),
+        _ => Some([slope, intercept]),
     }
 }

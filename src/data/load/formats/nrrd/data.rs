@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use bzip2::bufread::MultiBzDecoder;
 use flate2::bufread::MultiGzDecoder;
 
-use super::super::input::{Input, Witness};
+use super::super::input::{Input, Witness, most_inflated};
 use super::super::sieve::leap_in_file;
 use super::super::text_numbers::TextNumbers;
 use super::super::{LoadControl, LoadError};
@@ -235,6 +235,9 @@ fn decoded(
         Encoding::Raw if found > bytes => {
             // Legal: several headers can point into one file.
             attempt.warn(format_args!("{} bytes after the voxels are ignored", found - bytes));
+        }
+        Encoding::Gzip if most_inflated(available) < bytes => {
+            return Err(truncated(bytes, most_inflated(available), "bytes"));
         }
         Encoding::Hex if found / 2 < bytes => return Err(truncated(bytes, found / 2, "bytes")),
         // A digit each and a space between: less cannot hold the numbers.

@@ -124,6 +124,9 @@ impl<P> Chosen<P> {
             Fault::Io(error) if is_of_content(&error) => {
                 attempt.bad_input(&self.array.name, error.to_string(), HELP)
             }
+            Fault::Io(error) if error.kind() == io::ErrorKind::OutOfMemory => {
+                Fault::NoMemory.into_error(attempt, &layout, "bytes", HELP)
+            }
             fault => fault.into_error(attempt, &layout, "bytes", HELP),
         })
     }

@@ -12,10 +12,14 @@ use crate::data::load::formats::pictures::pile::read_pile;
 use crate::data::load::reading::input::{Input, Witness};
 use crate::data::load::reading::number::{Part, Stored};
 use crate::data::load::reading::placement::{Parts, Placement};
-use crate::data::load::reading::rescale::rescaled;
+use crate::data::load::reading::rescaled::rescaled;
 use crate::data::load::reading::voxels::Meant;
 use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume};
+
+/// Bytes of pages that are fetched before they are unpacked: pages are longer than what is in them only by mistake, or
+/// where many of them are the same bytes.
+const PACKED_BYTES: u64 = 32 << 20;
 
 /// A page of one of several files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -165,22 +169,34 @@ impl Stack {
                 "the lowest values stand for white: values are shown as they are".to_owned()
             });
         }
-        let values = |samples| rescaled(samples, slope, intercept);
+        // The first page, before there is room for all: one that has not what it announces asks for none.
+        files.with(first.file, |attempt, tiff| {
+            tiff.check_room(attempt, first.page, sample.filter(|_| model.is_planar), control)
+        })?;
+        let values = |samples| rescaled(attempt, samples, [slope, intercept], options.memory_budget_bytes);
         let meant = Meant { padding: hints.padding, values: &values };
         let voxels = read_pile(attempt, &stored, extent, &meant, control, |some| {
-            let mut packed = Vec::new();
-            for &Slice { file, page } in some.iter().map(|&slice| &slices[slice]) {
-                packed.push(files.with(file, |attempt, tiff| {
-                    let found = page_of(attempt, tiff, page)?;
-                    if !found.is_like(&model) {
-                        return Err(unlike(attempt, page, &found, &model));
-                    }
-                    // Where samples lie beside each other all are fetched, and one is taken later.
-                    tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
-                })?);
+            let mut unpacked = Vec::new();
+            let mut slices = some.iter().map(|&slice| &slices[slice]).peekable();
+            while slices.peek().is_some() {
+                let (mut packed, mut bytes) = (Vec::new(), 0);
+                while let Some(&Slice { file, page }) = slices.next_if(|_| bytes < PACKED_BYTES) {
+                    let of_page = files.with(file, |attempt, tiff| {
+                        let found = page_of(attempt, tiff, page)?;
+                        if !found.is_like(&model) {
+                            return Err(unlike(attempt, page, &found, &model));
+                        }
+                        // Where samples lie beside each other all are fetched, and one is taken later.
+                        tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
+                    })?;
+                    bytes += of_page.len();
+                    packed.push((page, of_page));
+                }
+                let of_slices =
+                    packed.par_iter().map(|(page, packed)| packed.unpack(attempt, *page, control));
+                unpacked.extend(of_slices.collect::<Result<Vec<_>, _>>()?);
             }
-            let both = some.par_iter().zip(packed.par_iter());
-            both.map(|(&slice, packed)| packed.unpack(attempt, slices[slice].page, control)).collect()
+            Ok(unpacked)
         })?;
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
