@@ -96,7 +96,7 @@ impl Cast for f64 {
 }
 
 /// Values in another type.
-#[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
+#[expect(trivial_numeric_casts, reason = "one of the eight types is f64 already")]
 fn converted(samples: Samples, voxel_type: VoxelType, value: impl Fn(f64) -> f64) -> Result<Samples, Fault> {
     macro_rules! in_type {
         ($($variant:ident),+) => {

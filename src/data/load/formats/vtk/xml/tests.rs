@@ -324,7 +324,7 @@ fn lying_headers_are_refused() {
 fn blocks_are_counted_with_the_volume() {
     let appended = points("type=\"UInt8\" format=\"appended\" offset=\"0\"", "");
     let read = |size: usize| {
-        let (header, data) = blocks(false, Endian::Little, &[7; 600_000], size, zlib);
+        let (header, data) = blocks(false, Endian::Little, &vec![7; 600_000], size, zlib);
         let data = [b"<AppendedData encoding=\"raw\">_", header.as_slice(), &data].concat();
         let whole = file("compressor=\"vtkZLibDataCompressor\"", &appended, &data);
         // Bytes of blocks may be no text.
