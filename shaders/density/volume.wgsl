@@ -26,6 +26,7 @@ struct Grid {
 @group(1) @binding(0) var<uniform> bound_grid: Grid;
 var<private> grid: Grid;
 @group(1) @binding(1) var density_texture: texture_3d<f32>;
+// In r the density; where voxels are missing, in g the share of kernels that lies on those that are there.
 @group(1) @binding(2) var pyramid_texture: texture_3d<f32>;
 @group(1) @binding(3) var clamped: sampler;
 // Takes the nearest texel.
@@ -107,7 +108,13 @@ fn presence_in_grid(p: vec3f, level: f32) -> f32 {
 // The share of it that lies on voxels that are there.
 fn presence_at(p: vec3f, level: f32) -> f32 {
 #if MISSING
+#if PRECLASSIFY
+    // Its pyramid holds what voxels mean.
     return share_stored(textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level));
+#else
+    // Beside a density of the pyramid at the same point this costs no fetch of its own.
+    return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).g;
+#endif
 #else
     return presence_in_grid(p, level);
 #endif

@@ -67,6 +67,7 @@ use self::windows::palette::Palette;
 use self::windows::quit::Quit;
 use self::windows::raw_dialog::RawDialog;
 use self::windows::recovery::Recovery;
+use self::windows::roomy::Roomy;
 use self::windows::slices::Slices;
 use self::worker::loader::Loader;
 use self::worker::task::{self, Work};
@@ -131,6 +132,7 @@ pub struct App {
     light_slice: LightSlice,
     slices: Slices,
     raw_dialog: RawDialog,
+    roomy: Roomy,
     foreign_path: ForeignPath,
     /// Whether what looks from outside say of their volumes is opened without a question.
     trusts_paths: bool,

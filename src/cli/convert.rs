@@ -1,6 +1,5 @@
 //! `chiaroscuro convert`.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,8 +7,8 @@ use clap::Args;
 use super::CliError;
 use super::outputs::{destination, finish, keep_apart, warn_line};
 use super::scene::{LoadArgs, parse_voxel_type};
-use crate::data::load::{LoadControl, LoadOptions};
-use crate::data::{Headings, ValueRange, Volume, VolumeError, VoxelType, open};
+use crate::data::load::{Explanation, LoadControl, LoadError, ReadFiles};
+use crate::data::{Headings, ValueRange, VoxelType, open};
 use crate::export::{ConvertError, NumberWish, Outgoing, VolumeFormat, check_writable, write_volume};
 
 /// What standard output is for.
@@ -36,9 +35,6 @@ pub(super) struct ConvertArgs {
     /// Number for voxels that hold nothing: not finite, or what the file declares as padding
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     padding: Option<f64>,
-    /// Voxels to write, along each axis from the first to before the last, counted from 0; an end may be left out
-    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = parse_region)]
-    region: Option<Region>,
     /// Sides of the body towards which the axes are to go, fastest first: RAS, LPS or another of the 48
     #[arg(long, value_name = "LETTERS")]
     orient: Option<Headings>,
@@ -50,39 +46,6 @@ pub(super) struct ConvertArgs {
     force: bool,
     #[command(flatten)]
     load: LoadArgs,
-}
-
-/// A box of voxels, whose ends may be left to the volume.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Region([Part; 3]);
-
-/// Voxels along an axis.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Part {
-    first: usize,
-    /// The first that is not among them any more.
-    end: Option<usize>,
-}
-
-impl Region {
-    /// The box in a grid.
-    fn of(&self, dims: [usize; 3]) -> [Range<usize>; 3] {
-        std::array::from_fn(|axis| self.0[axis].first..self.0[axis].end.unwrap_or(dims[axis]))
-    }
-}
-
-/// `0:10,5:,:`
-fn parse_region(text: &str) -> Result<Region, String> {
-    let expected =
-        || format!("expected first and end along x, y and z, as in 0:64,0:64,10:20, found {text:?}");
-    let part = |text: &str| {
-        let (first, end) = text.split_once(':')?;
-        let number =
-            |text: &str, default| if text.is_empty() { Some(default) } else { text.parse().ok().map(Some) };
-        Some(Part { first: number(first.trim(), Some(0))??, end: number(end.trim(), None)? })
-    };
-    let parts: Option<Vec<Part>> = text.split(',').map(part).collect();
-    parts.and_then(|parts| parts.try_into().ok()).map(Region).ok_or_else(expected)
 }
 
 /// `-1000:3000`
@@ -145,26 +108,24 @@ impl ConvertArgs {
         }
         Ok(format)
     }
+}
 
-    /// The volume that is written, before its axes and numbers are others: first what is asked of it, and then that with
-    /// blocks averaged.
-    fn volume(&self) -> Result<Volume, CliError> {
-        let options = self.load.load_options()?;
-        let block = options.reduce;
-        let whole = open(&self.input, &LoadOptions { reduce: 1, ..options }, &LoadControl::new())?;
-        let dims = whole.dims();
-        let refused = |err: VolumeError| match err {
-            VolumeError::Outside { dims: [x, y, z] } => CliError::Usage(format!(
-                "--region: there are {x} x {y} x {z} voxels; a region of at least one of them helps (command line, \
-                 --region)"
-            )),
-            other => self.usage(&other),
-        };
-        let volume = match &self.region {
-            None => whole,
-            Some(region) => whole.cropped(&region.of(dims)).map_err(refused)?,
-        };
-        volume.reduced([block; 3]).map_err(|err| self.usage(&err))
+/// What is wrong with a volume, in the words of this command: what readers know as `--type` has another name here.
+fn in_own_words(error: LoadError) -> LoadError {
+    let own = |mut explanation: Box<Explanation>| {
+        for text in [&mut explanation.why, &mut explanation.help] {
+            *text = text.replace("--type", "--input-type");
+        }
+        // Before it stands the name of the file, which may be anything.
+        if let Some(file) = explanation.place.strip_suffix(", --type") {
+            explanation.place = format!("{file}, --input-type");
+        }
+        explanation
+    };
+    match error {
+        LoadError::BadInput(explanation) => LoadError::BadInput(own(explanation)),
+        LoadError::Limit(explanation) => LoadError::Limit(own(explanation)),
+        other => other,
     }
 }
 
@@ -175,7 +136,11 @@ pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let output = destination(&args.output, format.endings()[0])?;
     // Before anything is read that may take its time.
     check_writable(output.path())?;
-    let volume = args.volume()?;
+    let read = ReadFiles::watch();
+    let volume = open(&args.input, &args.load.load_options()?, &LoadControl::new()).map_err(in_own_words)?;
+    // A header has named others, a slice or a folder has brought its series.
+    let read = read.paths();
+    keep_apart(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;
     let wish = NumberWish { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
     let refused = |err: ConvertError| args.usage(&err);
     let mut outgoing = Outgoing::of(&volume).in_numbers(&wish).map_err(refused)?;
@@ -199,12 +164,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn regions_and_ranges_are_understood() {
-        let region = parse_region("1:4,:,2:").unwrap();
-        assert_eq!(region.of([5, 6, 7]), [1..4, 0..6, 2..7]);
-        for text in ["", "1:2", "1:2,3:4", "1:2,3:4,5", "a:2,3:4,5:6", "-1:2,3:4,5:6", "1:2,3:4,5:6,7:8"] {
-            assert!(parse_region(text).is_err(), "{text}");
-        }
+    fn ranges_and_formats_are_understood() {
         assert_eq!(parse_values("-1000:3e3"), Ok(ValueRange::new(-1000.0, 3000.0)));
         for text in ["", "1", "2:1", "1:1", "nan:1", "0:inf", "0:1:2"] {
             assert!(parse_values(text).is_err(), "{text}");

@@ -101,6 +101,8 @@ impl CliError {
             | Self::Replay { .. }
             | Self::VolumeElsewhere { .. }
             | Self::Uncorrectable { .. } => 3,
+            // A region is said by nobody but the command line.
+            Self::Load(err) if err.is_about("--region") => 2,
             Self::Load(err) => match err.kind() {
                 LoadErrorKind::BadInput => 3,
                 LoadErrorKind::Limit => 5,

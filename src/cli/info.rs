@@ -9,8 +9,8 @@ use super::CliError;
 use super::outputs::print_line;
 use super::scene::{LoadArgs, corrected_by};
 use crate::data::load::LoadControl;
-use crate::data::{CountedLabel, DataKind, Dataset, Hints, ValueRange, Volume, open};
-use crate::gpu::small_volume;
+use crate::data::{CountedLabel, DataKind, Dataset, Hints, SpacingUnit, ValueRange, Volume, open};
+use crate::gpu::{bytes_with_one_light, small_volume};
 use crate::model::auto;
 
 /// Percentiles that are listed.
@@ -45,11 +45,13 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         PERCENTILES.iter().map(|&p| (format!("p{p}"), json!(percentile(p)))).collect();
     let spacing = volume.spacing_mm();
     let voxels = volume.voxel_count() as u64;
-    // Density 2 bytes, pyramid 2 and a seventh, one attenuation volume 2.
-    let gpu_bytes = voxels * 44 / 7;
+    let gpu_bytes = bytes_with_one_light(volume.dims());
+    let portion = volume.held().portion;
     let facts = json!({
         "name": volume.name(),
         "dims": volume.dims(),
+        "file_dims": volume.held().grid.unwrap_or_else(|| volume.file_dims()),
+        "portion": portion,
         "type": volume.samples().voxel_type().name(),
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
         "range": [low, high],
@@ -77,8 +79,10 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let [nx, ny, nz] = volume.dims();
     print_line(volume.name())?;
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
-    let unit = if volume.has_unknown_scale() { "(nobody knows of what)" } else { "mm" };
-    print_line(&format!("  spacing      {} × {} × {} {unit}", spacing.x, spacing.y, spacing.z))?;
+    if let Some([x, y, z]) = volume.held().grid.filter(|_| !portion.is_whole()) {
+        print_line(&format!("  read         {} {x} × {y} × {z}", portion.in_words()))?;
+    }
+    print_line(&spacing_line(&volume))?;
     print_line(&format!("  values       {low} … {high}"))?;
     print_line(&format!("  robust       {} … {}", shown.low, shown.high))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
@@ -101,6 +105,29 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     }
     print_line(&format!("  memory       {} MiB on the GPU with one light", gpu_bytes >> 20))?;
     Ok(())
+}
+
+/// Distances between voxels in the unit that suits them, for people.
+fn spacing_line(volume: &Volume) -> String {
+    let spacing: [f64; 3] = volume.spacing_mm().into();
+    let (unit, symbol) = if volume.has_unknown_scale() {
+        (SpacingUnit::Voxels, "(nobody knows of what)")
+    } else {
+        let unit = SpacingUnit::of_spacing(spacing);
+        (unit, unit.symbol())
+    };
+    let [x, y, z] = spacing.map(|length| in_unit(length, unit));
+    format!("  spacing      {x} × {y} × {z} {symbol}")
+}
+
+/// A length with the digits that it has in millimetres: another unit adds none but those of rounding.
+fn in_unit(length_mm: f64, unit: SpacingUnit) -> f64 {
+    if unit.mm() == 1.0 {
+        return length_mm;
+    }
+    let length = length_mm / unit.mm();
+    // Numbers of 64 bits are right to 15 digits.
+    format!("{length:.14e}").parse().unwrap_or(length)
 }
 
 /// A kind of data, for machines.
@@ -199,4 +226,23 @@ fn looks(loaded: &Dataset) -> Result<Value, CliError> {
     let listed =
         looks.map(|(at, look)| json!({"number": at + 1, "name": look.name, "differs": look.differs}));
     Ok(listed.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::data::Samples;
+
+    #[test]
+    fn lengths_are_said_in_units_that_suit_them() {
+        let line = |spacing: [f64; 3]| {
+            let samples = Samples::U8(vec![1, 2, 3, 4, 5, 6, 7, 8]);
+            spacing_line(&Volume::with_spacing("t", [2, 2, 2], DVec3::from(spacing), samples).unwrap())
+        };
+        assert_eq!(line([0.661468, 0.661468, 5.0]), "  spacing      0.661468 × 0.661468 × 5 mm");
+        assert_eq!(line([0.0003, 0.0003, 0.0011]), "  spacing      0.3 × 0.3 × 1.1 µm");
+        assert_eq!(line([3.25e-6; 3]), "  spacing      3.25 × 3.25 × 3.25 nm");
+    }
 }

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::Volume;
 use super::cells::{self, BRICK_EDGE, CellBounds};
+use super::interrupt::Interrupt;
 
 /// How far a brick's range looks beyond its voxels: the kernel's radius of 2 and one for the
 /// quadrature offset, at most 2 · 0.289 voxel with the thickest slab.
@@ -83,7 +84,11 @@ fn reach(b: usize, n: usize) -> RangeInclusive<usize> {
 /// The range of every brick: slices reduced in x and y, then layers of slices in z.
 fn ranges(volume: &Volume, dims: [usize; 3]) -> Vec<[f32; 2]> {
     let [nx, ny, nz] = volume.dims();
+    let interrupt = Interrupt::here();
     let reduce_slice = |z: usize| -> Vec<[f32; 2]> {
+        if interrupt.is_due() {
+            return vec![EMPTY; dims[0] * dims[1]];
+        }
         let densities = volume.slice_densities(z);
         let rows: Vec<[f32; 2]> = (0..ny * dims[0])
             .map(|at| {

@@ -11,6 +11,7 @@
 use rayon::prelude::*;
 
 use super::Volume;
+use super::interrupt::Interrupt;
 
 /// Voxels along the edge of a brick, for which the bounds of its cells are kept together.
 pub const BRICK_EDGE: usize = 8;
@@ -44,11 +45,18 @@ pub type CellBounds = [[u8; 2]; CELLS];
 pub(super) fn bounds(volume: &Volume, dims: [usize; 3], ranges: &[[f32; 2]]) -> Vec<CellBounds> {
     let layer = dims[0] * dims[1];
     let chunks = ranges.par_chunks(LAYERS * layer).enumerate();
-    chunks.flat_map_iter(|(at, ranges)| chunk(volume, dims, at * LAYERS, ranges)).collect()
+    let interrupt = Interrupt::here();
+    chunks.flat_map_iter(|(at, ranges)| chunk(volume, dims, at * LAYERS, ranges, &interrupt)).collect()
 }
 
 /// Bounds of the cells of some layers of bricks.
-fn chunk(volume: &Volume, dims: [usize; 3], first: usize, ranges: &[[f32; 2]]) -> Vec<CellBounds> {
+fn chunk(
+    volume: &Volume,
+    dims: [usize; 3],
+    first: usize,
+    ranges: &[[f32; 2]],
+    interrupt: &Interrupt,
+) -> Vec<CellBounds> {
     let groups = dims.map(|n| n * PER_EDGE);
     let wide = [groups[0], groups[1]];
     let layers = ranges.len() / (dims[0] * dims[1]);
@@ -57,9 +65,18 @@ fn chunk(volume: &Volume, dims: [usize; 3], first: usize, ranges: &[[f32; 2]]) -
     let end = first + layers;
     let low = if first == 0 { -2 } else { (first * BRICK_EDGE) as isize };
     let high = if end == dims[2] { last_cell(voxels[2], groups[2]) } else { (end * BRICK_EDGE) as isize - 1 };
-    let planes: Vec<Plane> = (low - 1..=high + 2).map(|z| Plane::of_slice(volume, z, wide)).collect();
+    let mut planes = Vec::new();
+    for z in low - 1..=high + 2 {
+        if interrupt.is_due() {
+            return Vec::new();
+        }
+        planes.push(Plane::of_slice(volume, z, wide));
+    }
     let mut bounds = vec![Plane::empty(wide[0] * wide[1]); layers * PER_EDGE];
     for z in low..=high {
+        if interrupt.is_due() {
+            return Vec::new();
+        }
         let taps = &planes[(z - low) as usize..][..4];
         let group = group_of(z, groups[2]) - first * PER_EDGE;
         bounds[group].include([&taps[0], &taps[1], &taps[2], &taps[3]]);

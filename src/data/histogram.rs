@@ -1,5 +1,6 @@
 //! How often each value occurs.
 
+use super::interrupt::Interrupt;
 use super::{Missing, Volume};
 
 /// Bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
@@ -24,9 +25,13 @@ impl Histogram {
         use rayon::prelude::*;
         let missing = volume.missing();
         let empty = || vec![0u64; bins];
+        let interrupt = Interrupt::here();
         let counts = (0..volume.dims()[2])
             .into_par_iter()
             .fold(empty, |mut counts, z| {
+                if interrupt.is_due() {
+                    return counts;
+                }
                 let densities = volume.slice_densities(z);
                 let first = z * densities.len();
                 let is_there = |at: usize| missing.is_none_or(|missing| !missing.contains(first + at));

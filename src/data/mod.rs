@@ -9,6 +9,7 @@ mod dataset;
 mod foreign_text;
 mod hints;
 mod histogram;
+mod interrupt;
 pub mod load;
 mod open;
 mod small_file;
@@ -23,11 +24,13 @@ pub use dataset::Dataset;
 pub use foreign_text::{fingerprint, plain, single_line, without_controls};
 pub use hints::{Hints, Label, Labels, MAX_LABEL_NAME, MAX_LABELS, Meaning, Modality};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
+pub(crate) use interrupt::Interrupt;
 pub use open::open;
 pub use small_file::read_small;
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{Samples, VoxelType};
+use volume::Blocks;
 pub use volume::{
     AxisOrder, Corrections, CountedLabel, DataKind, Flips, Headings, KindFound, KindName, LabelSet,
     MAX_CLASSES, Missing, Orientation, PaddingValue, Shown, SpacingUnit, ValueScale, Volume, VolumeError,

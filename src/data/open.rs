@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::attempt::{Attempt, quoted};
+use super::attempt::{Attempt, Held, Kept, quoted};
 use super::load::{LoadControl, LoadError, LoadOptions, load};
 use super::{Volume, synthetic};
 
@@ -20,25 +20,17 @@ pub fn open(
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let source = source.as_ref();
-    let volume = open_whole(source, options, control)?;
-    let attempt = Attempt { what: "average the voxels", path: source };
-    // What was a volume stays one: nothing else can go wrong.
-    volume
-        .reduced([options.reduce; 3])
-        .map_err(|err| attempt.bad_input("voxels", err.to_string(), "load them all"))
-}
-
-fn open_whole(source: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     // A name that is no text is a file's.
     let Some(builtin) = source.to_str().and_then(|name| name.strip_prefix(BUILTIN)) else {
         return load(source, options, control);
     };
+    let attempt = Attempt { what: "make the built-in volume", path: source };
     let (name, n) = match builtin.split_once(':') {
         None => (builtin, None),
         Some((name, digits)) => match digits.parse() {
             Ok(n) => (name, Some(n)),
             Err(_) => {
-                return Err(Attempt { what: "make the built-in volume", path: source }.bad_input(
+                return Err(attempt.bad_input(
                     "N",
                     format!("a number of voxels was expected after {name}:, {} was found", quoted(digits)),
                     "write it like builtin:chair:128",
@@ -46,5 +38,14 @@ fn open_whole(source: &Path, options: &LoadOptions, control: &LoadControl) -> Re
             }
         },
     };
-    synthetic::builtin_within(name, n, options.memory_budget_bytes, control)
+    let volume = synthetic::builtin_within(name, n, options.memory_budget_bytes, &options.choice, control)?;
+    // It is made whole.
+    let (portion, dims) = (options.choice.portion.unwrap_or_default(), volume.dims());
+    let Some(wanted) = Kept::of(&portion, dims, false) else { return Err(attempt.outside(dims)) };
+    let held = Held { portion, grid: Some(dims), ..Held::default() };
+    // What was a volume stays one: nothing else can go wrong.
+    volume
+        .portion(&Kept::all(dims), &wanted)
+        .map(|volume| volume.with_held(held))
+        .map_err(|err| attempt.bad_input("voxels", err.to_string(), "load them all"))
 }

@@ -28,7 +28,7 @@ pub use first_look::{
     exposure_for, finish_look, first_look, first_look_upright, mean_luminance, seen_share, shadowed_share,
     small_volume,
 };
-pub use frame::fit::fitted;
+pub use frame::fit::{bytes_with_one_light, fitted, held_of};
 pub use frame::job::Job;
 pub use frame::renderer::Renderer;
 pub use frame::report::{Picture, Report, Runs};

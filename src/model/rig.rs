@@ -7,6 +7,10 @@ use super::{Camera, Light, LightLock, LightPlace};
 /// Distance of the lights from the middle of the volume: outside its half diagonal of at most √3.
 const DISTANCE: f64 = 3.0;
 
+/// How bright the fill is beside the key: a stop weaker than photographers fill for portraits (1 : 4, ambient light
+/// included), for shadows are what shows shape. With 0.18 shadows darkened a sixth less of what is seen.
+const FILL: f64 = 0.10;
+
 /// A set of lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rig {
@@ -102,7 +106,7 @@ pub fn key_and_fill(camera: &Camera, place: LightPlace) -> [Light; 2] {
         name: "Fill".to_owned(),
         position: at(DVec3::new(0.8 * across, 0.1, 0.6)),
         color: [0.74, 0.85, 1.0],
-        intensity: 0.18,
+        intensity: FILL,
         casts_shadows: false,
         ..Light::default()
     };

@@ -94,6 +94,8 @@ fn parts_turns_and_numbers() {
     // A region counts voxels of the file, and blocks are averaged in it.
     folder.succeed("convert builtin:sphere:16 half.nrrd --region 0:8,0:6,0:4 --reduce 2");
     assert_eq!(facts(&folder, "half.nrrd")["dims"], serde_json::json!([4, 3, 2]));
+    folder.succeed("convert ct.nrrd thin.nrrd --every 2");
+    assert_eq!(facts(&folder, "thin.nrrd")["dims"], serde_json::json!([2, 2, 1]));
     folder.succeed("convert ct.nrrd float.mha --type float32");
     assert_eq!(facts(&folder, "float.mha")["type"], "float32");
     folder.succeed("convert ct.nrrd small.tif --type uint8 --rescale -1000:1000");
@@ -147,6 +149,49 @@ fn what_cannot_be_written_is_refused() {
             folder.succeed(&format!("convert ct.nrrd o.{ending}"));
         }
     }
+}
+
+/// Besides the input itself: data that a header names, and what comes along with a folder or a slice.
+#[test]
+fn what_is_read_is_never_replaced() {
+    let folder = Folder::new();
+    let header = header("sizes: 4 4 2\ndata file: voxels.nii");
+    folder.write("volume.nhdr", header);
+    folder.write("voxels.nii", [7; 32]);
+    folder.write("beside.nii", [7; 32]);
+    std::fs::create_dir(folder.path("slices")).expect("room");
+    for at in 0..2 {
+        folder.succeed(&format!("convert builtin:sphere:8 slices/{at}.tif --region :,:,{at}:{}", at + 1));
+    }
+    for args in
+        ["volume.nhdr voxels.nii", "slices slices/1.tif", "slices slices/../slices/0.tif --type float32"]
+    {
+        let said = folder.fail(&format!("convert {args} --force"), 2);
+        assert!(said.contains("would replace") && said.contains("which is read"), "{args}: {said}");
+    }
+    assert_eq!(folder.read("voxels.nii"), [7; 32]);
+    // What lies beside them is none of that.
+    folder.succeed("convert volume.nhdr beside.nii --force");
+    folder.succeed("convert slices slices/all.npy");
+    folder.succeed("convert slices slices/all.npy --force");
+}
+
+#[test]
+fn options_are_called_as_this_command_calls_them() {
+    let folder = Folder::new();
+    folder.write("a--type.bin", [0; 30]);
+    for (command, own, other) in [
+        ("info a--type.bin", " --type", "--input-type"),
+        ("convert a--type.bin o.npy", "--input-type", " --type"),
+    ] {
+        for dims in ["", " --dims 2x3x4"] {
+            let said = folder.fail(&format!("{command}{dims}"), 3);
+            assert!(said.contains(own) && !said.contains(other) && said.contains("a--type.bin"), "{said}");
+        }
+    }
+    folder.write("b.bin", [0; 48]);
+    let said = folder.fail("convert b.bin o.npy --dims 2x3x4 --input-type uint8", 3);
+    assert!(said.contains("try --input-type uint16"), "{said}");
 }
 
 #[cfg(unix)]

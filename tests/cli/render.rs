@@ -53,10 +53,30 @@ fn blocks_of_voxels_are_averaged_when_that_is_asked_for() {
     let report = folder.json("r.json");
     assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
     assert_eq!(report["volume_file_dims"], serde_json::json!([48, 48, 48]));
-    let replayed = folder.run("replay out.png --check");
+    let replayed = folder.run("replay out.png --check --reduce 1");
     assert_eq!(replayed.code, Some(3), "it is of other voxels: {replayed:?}");
-    folder.succeed("replay out.png --check --reduce 2");
+    // The picture says how much of the volume it shows.
+    folder.succeed("replay out.png --check");
     folder.fail("render builtin:sphere:48 --reduce 0 -o none.png", 2);
+}
+
+#[test]
+fn a_part_of_a_file_is_shown_and_found_again() {
+    let folder = Folder::new();
+    let values = (0..24 * 20 * 16).map(|at| (at % 24 * 5 + at / 480 * 8) as u8);
+    folder.write("ramp_24x20x16_uint8.raw", values.collect::<Vec<u8>>());
+    let part =
+        "render ramp_24x20x16_uint8.raw --region 4:,:,0:10 --every 2 -o out.png --size 32x24 --report r.json";
+    folder.succeed(part);
+    let report = folder.json("r.json");
+    assert_eq!(report["volume_dims"], serde_json::json!([10, 10, 5]));
+    assert_eq!(report["volume_file_dims"], serde_json::json!([20, 20, 10]), "the region's");
+    folder.succeed("replay out.png --check");
+    let said = folder.succeed("info ramp_24x20x16_uint8.raw --region 4:,:,0:10 --every 2");
+    assert!(said.contains("every second voxel of the region 4:,0:,0:10 of 24 × 20 × 16"), "{said}");
+    folder.fail("info ramp_24x20x16_uint8.raw --every 2 --reduce 2", 2);
+    let outside = folder.fail("render ramp_24x20x16_uint8.raw --region 0:25,:,: -o none.png", 2);
+    assert!(outside.contains("24 x 20 x 16"), "{outside}");
 }
 
 #[test]

@@ -61,7 +61,7 @@ macro_rules! kept {
 }
 
 /// Files of other programs, which take a program to write, each one that is valid.
-const KEPT: [(&str, &[u8]); 36] = kept![
+const KEPT: [(&str, &[u8]); 37] = kept![
     "packed.nrrd",
     "digits.nrrd",
     "appended.vti",
@@ -84,6 +84,7 @@ const KEPT: [(&str, &[u8]); 36] = kept![
     "lzw.tif",
     "zstd.tif",
     "colors.tif",
+    "jpeg.tif",
     "imagej.tif",
     "ome.tif",
     "grey.jpg",

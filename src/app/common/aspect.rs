@@ -99,7 +99,8 @@ mod tests {
     fn held(whole: Whole, shown: Option<usize>) -> Held {
         let offers = [Offer::numbered(0, "", [4; 3]), Offer::numbered(1, "GFP", [4; 3])].to_vec();
         let several = vec![Several { dimension: Dimension::Channel, offers, at: 1, missed: None }];
-        Held { several, components: Some(Components { count: 3, is_color: false, whole, shown }) }
+        let components = Some(Components { count: 3, is_color: false, whole, shown });
+        Held { several, components, ..Held::default() }
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl Command {
             Self::StepChoice(aspect, is_forward) => return text::chooser::step(*aspect, *is_forward).into(),
             Self::TakeChoice(..) => text::commands::TAKE_CHOICE,
             Self::OpenAgain(..) => text::menu::OPEN_RECENT,
-            Self::Average(block) => return text::commands::average(*block).into(),
+            Self::Thin(thinning) => return text::commands::thin(*thinning).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
             Self::InvertTransfer => text::commands::INVERT_TRANSFER,

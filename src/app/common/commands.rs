@@ -3,8 +3,12 @@
 use std::path::PathBuf;
 
 use crate::data::KindName;
-use crate::data::load::{Aspect, Choice};
+use crate::data::load::{Aspect, Choice, Thinning};
 use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView};
+
+/// How many voxels are offered to be kept.
+pub(crate) const THINNINGS: [Thinning; 5] =
+    [Thinning::None, Thinning::Every(2), Thinning::Average(2), Thinning::Every(4), Thinning::Average(4)];
 
 /// Something the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,8 +35,8 @@ pub(crate) enum Command {
     StepChoice(Aspect, bool),
     /// Open another volume of the open file, with the look as it is or with one of its own.
     TakeChoice(Box<Choice>, bool),
-    /// Read the open volume again, so many voxels along each axis averaged into one.
-    Average(usize),
+    /// Read the open volume again, with more or fewer of its voxels.
+    Thin(Thinning),
     /// Stop opening.
     CancelOpening,
     /// The volume and the look with which the run before ended.
@@ -204,7 +208,7 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::ShowAbout,
         Command::Quit,
     ];
-    all.extend([1, 2, 4].map(Command::Average));
+    all.extend(THINNINGS.map(Command::Thin));
     all.extend(Aspect::ALL.map(Command::Choose));
     all.extend(
         Aspect::ALL.into_iter().flat_map(|aspect| [true, false].map(|on| Command::StepChoice(aspect, on))),

@@ -3,9 +3,9 @@
 use eframe::egui::{self, Ui};
 
 use super::super::text::{self, Named};
-use super::controls::{choice, row, short, spacing};
+use super::controls::{row, short, spacing};
 use super::{Panels, corrections, range, several};
-use crate::app::common::commands::Command;
+use crate::app::common::commands::{Command, THINNINGS};
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::data::{KindName, ValueRange, plain};
 use crate::model::{Length, Settings};
@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     several::show(ui, volume, panels.commands);
     treatment(ui, panels.treated_as, panels.commands);
     range::show(ui, panels.settings, volume);
-    averaging(ui, volume, panels.commands);
+    thinning(ui, volume, panels.commands);
     opacity_unit(ui, panels.settings, panels.defaults, volume);
     corrections::show(ui, panels.settings, volume);
 }
@@ -41,7 +41,10 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
         (text::data::MEMORY, text::data::memory(volume.bytes as f64 / f64::from(1 << 20))),
     ];
     if volume.file_dims != volume.dims {
-        rows.insert(3, (text::data::AVERAGED, text::data::dimensions(volume.file_dims)));
+        rows.insert(3, (text::data::SHOWN_OF, text::data::shown_of(&volume.held.portion, volume.file_dims)));
+    }
+    if let (Some(region), Some(grid)) = (volume.held.portion.region, volume.held.grid) {
+        rows.insert(3, (text::data::REGION, text::data::region(&region, grid)));
     }
     if volume.non_finite_voxels > 0 {
         rows.push((text::data::NOT_FINITE, text::data::not_finite(volume.non_finite_voxels)));
@@ -71,13 +74,28 @@ fn treatment(ui: &mut Ui, treated_as: Option<KindName>, commands: &mut Vec<Comma
     });
 }
 
-/// Fewer voxels, for quicker pictures: the volume is read again.
-fn averaging(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
-    let options = [(1, text::data::ALL_VOXELS), (2, text::data::EIGHTHS), (4, text::data::SIXTY_FOURTHS)];
-    let mut reduce = volume.reading.reduce.unwrap_or(1);
-    if choice(ui, text::data::AVERAGING, &mut reduce, &options) {
-        commands.push(Command::Average(reduce));
+/// Fewer voxels, for quicker pictures and less memory: the volume is read again.
+fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
+    let current = volume.held.portion.thinning;
+    let mut options: Vec<_> = THINNINGS.map(|thinning| (thinning, text::data::thinning(thinning))).into();
+    if !THINNINGS.contains(&current) {
+        options.push((current, text::data::thinning(current)));
     }
+    let named = text::data::THINNING;
+    row(ui, named, |ui| {
+        let shown = text::data::thinning(current).name;
+        let combo = egui::ComboBox::from_id_salt("fewer voxels").selected_text(shown).width(120.0);
+        ui.name_inputs(named.name, |ui| {
+            combo.show_ui(ui, |ui| {
+                for &(thinning, option) in &options {
+                    let label = ui.selectable_label(thinning == current, option.name);
+                    if label.on_hover_text(option.tip).clicked() && thinning != current {
+                        commands.push(Command::Thin(thinning));
+                    }
+                }
+            })
+        });
+    });
 }
 
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {

@@ -11,7 +11,7 @@ use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;
 use crate::app::windows::files::{self, Purpose};
-use crate::app::windows::{export, light_slice, recovery};
+use crate::app::windows::{export, light_slice, recovery, roomy};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
@@ -33,7 +33,7 @@ impl App {
             Command::Choose(aspect) => self.choose(aspect),
             Command::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
             Command::TakeChoice(choice, keeps_look) => self.take_choice(&choice, keeps_look, ctx),
-            Command::Average(reduce) => self.average(reduce, ctx),
+            Command::Thin(thinning) => self.thin(thinning, ctx),
             Command::GoOn => match self.memory.before() {
                 Some(path) => self.open_record(&path, ctx),
                 None => self.messages.note(text::messages::NOTHING_TO_GO_ON_WITH),
@@ -171,6 +171,8 @@ impl App {
             Some(Outcome::NotDescribed { path, why, guess }) => {
                 self.raw_dialog.ask(&path, why, guess, ctx);
             }
+            // A look that waits for this volume goes on waiting.
+            Some(Outcome::Weighed { source, reading, weighed }) => self.roomy.ask(source, *reading, weighed),
             Some(Outcome::Failed { short, details }) => {
                 self.pending = None;
                 self.messages.error(short, details);
@@ -245,6 +247,13 @@ impl App {
         }
         if let Some(described) = self.raw_dialog.ui(ctx) {
             self.open_described(&described, ctx);
+        }
+        match self.roomy.ui(ctx) {
+            None => {}
+            Some(roomy::Answer::Cancel) => self.pending = None,
+            Some(roomy::Answer::Read { source, reading }) => {
+                self.start_loading(&source, *reading, ctx);
+            }
         }
         if let Some((purpose, path)) = self.files.ui(ctx) {
             self.chosen(purpose, &path, ctx);

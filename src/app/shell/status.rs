@@ -23,10 +23,14 @@ pub(crate) fn show(
 ) {
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            if let Some(LoadProgress { source, reading: _, phase, fraction }) = opening {
+            if let Some(LoadProgress { source, reading: _, phase, fraction, bytes }) = opening {
                 let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);
                 ui.add(bar.animate(fraction.is_none()));
-                ui.label(text::status::opening(phase, &plain(&source.to_string_lossy(), LONGEST_PATH)));
+                ui.label(text::status::opening(
+                    phase,
+                    bytes,
+                    &plain(&source.to_string_lossy(), LONGEST_PATH),
+                ));
                 if ui.small_button(&*Command::CancelOpening.label()).clicked() {
                     commands.push(Command::CancelOpening);
                 }

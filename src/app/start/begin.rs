@@ -36,6 +36,7 @@ use crate::app::windows::palette::Palette;
 use crate::app::windows::quit::Quit;
 use crate::app::windows::raw_dialog::RawDialog;
 use crate::app::windows::recovery::Recovery;
+use crate::app::windows::roomy::Roomy;
 use crate::app::windows::slices::Slices;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
@@ -149,6 +150,7 @@ impl App {
             light_slice: LightSlice::default(),
             slices: Slices::default(),
             raw_dialog: RawDialog::default(),
+            roomy: Roomy::default(),
             foreign_path: ForeignPath::default(),
             trusts_paths: false,
             contact_sheet: ContactSheet::default(),

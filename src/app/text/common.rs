@@ -1,5 +1,7 @@
 //! What many parts of the window say.
 
+use crate::data::SpacingUnit;
+
 /// What is rarely needed, folded away.
 pub(crate) const ADVANCED: &str = "Advanced";
 
@@ -25,13 +27,20 @@ impl LengthUnit {
     /// The one in which a length has digits in front of the point: millimetres where they do, and shorter ones where not.
     /// Where nobody knows how large voxels are, these.
     pub(crate) fn showing(length_mm: f64, has_unknown_scale: bool) -> Self {
-        let (mm, suffix) = match length_mm {
-            _ if has_unknown_scale => (1.0, VOX),
-            length if length >= 1.0 => (1.0, " mm"),
-            length if length >= 1e-3 => (1e-3, " µm"),
-            _ => (1e-6, " nm"),
+        Self::of(if has_unknown_scale { SpacingUnit::Voxels } else { SpacingUnit::showing(length_mm) })
+    }
+
+    /// That of distances between voxels.
+    pub(crate) fn of(unit: SpacingUnit) -> Self {
+        let suffix = match unit {
+            SpacingUnit::Voxels => VOX,
+            SpacingUnit::Nm => " nm",
+            SpacingUnit::Um => " µm",
+            SpacingUnit::Mm => " mm",
+            SpacingUnit::Cm => " cm",
+            SpacingUnit::M => " m",
         };
-        Self { mm, suffix }
+        Self { mm: unit.mm(), suffix }
     }
 
     /// How it is written by itself.

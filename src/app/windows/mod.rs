@@ -12,4 +12,5 @@ pub(super) mod palette;
 pub(super) mod quit;
 pub(super) mod raw_dialog;
 pub(super) mod recovery;
+pub(super) mod roomy;
 pub(super) mod slices;

@@ -8,10 +8,12 @@ use eframe::egui;
 
 use super::task::Work;
 use super::warm_up::WarmUp;
+use super::weighing::{Question, Weighed, weighing};
 use crate::app::memory::{FileStamp, Remembered};
 use crate::app::text;
 use crate::data::load::{
     self, Choice, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, Several,
+    memory_budget_bytes,
 };
 use crate::data::{self, Dataset, Volume};
 use crate::fault::{Place, may_panic};
@@ -23,10 +25,12 @@ use crate::model::{SceneAxis, Settings};
 pub(crate) struct Reading {
     /// How a file of bare voxels is stored.
     pub raw: Option<RawFormat>,
-    /// Which of several volumes is opened.
+    /// Which of several volumes is opened, and how much of it.
     pub choice: Option<Choice>,
-    /// Blocks of so many voxels along each axis are averaged into one.
-    pub reduce: Option<usize>,
+    /// It may take all memory that is free.
+    pub takes_all_memory: bool,
+    /// Of a folder, the files that are opened.
+    pub among: Option<Arc<[PathBuf]>>,
 }
 
 /// What is known of a file from earlier times.
@@ -66,6 +70,8 @@ pub(crate) enum Outcome {
     Cancelled,
     /// It is a file of bare voxels, and how these are stored is not known, or not right.
     NotDescribed { path: PathBuf, why: String, guess: RawGuess },
+    /// It has hardly room, or none, and nobody has said how much of it is to be read.
+    Weighed { source: PathBuf, reading: Box<Reading>, weighed: Weighed },
     /// A volume that was open in an earlier window is on the device of this one.
     Shown { renderer: Box<Renderer>, dataset: Dataset },
     /// With a message: what, and all that is known.
@@ -84,14 +90,15 @@ struct Running {
 /// How far a volume is that is being opened.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoadProgress<'a> {
-    /// What is being opened.
+    /// What is being opened, and how it is read.
     pub source: &'a Path,
-    /// How it is read.
     pub reading: &'a Reading,
     /// What is being done, in words.
     pub phase: &'static str,
     /// The share of the phase that is done, where it is known.
     pub fraction: Option<f32>,
+    /// Bytes of voxels that have been read, and of all that are, where that is the phase.
+    pub bytes: Option<[u64; 2]>,
 }
 
 /// Opens one volume at a time; a new request replaces the one before.
@@ -153,26 +160,38 @@ impl Loader {
         ctx: &egui::Context,
     ) -> Result<(), String> {
         self.cancel();
-        let control = Arc::new(LoadControl::new());
         let phase = Arc::new(AtomicU8::new(0));
+        let mut options = self.options.clone();
+        // As much as is free now.
+        options.memory_budget_bytes = options.memory_budget_bytes.min(memory_budget_bytes());
+        let question = Question::default();
+        let control = Arc::new(if reading.takes_all_memory {
+            LoadControl::new()
+        } else {
+            weighing(self.context.clone(), options.memory_budget_bytes, question.clone())
+        });
         let task = {
-            let mut options = self.options.clone();
+            if reading.takes_all_memory {
+                options.memory_budget_bytes = options.memory_budget_bytes / 3 * 4;
+            }
             options.raw = reading.raw.unwrap_or(options.raw);
-            let reduce = reading.reduce.unwrap_or(options.reduce);
-            options.reduce = reduce;
             options.choice = reading.choice.clone().unwrap_or(options.choice);
-            let reading = Reading { reduce: Some(reduce), ..reading.clone() };
+            options.among.clone_from(&reading.among);
             let opening = Opening {
                 source: source.to_owned(),
-                reading,
+                reading: reading.clone(),
                 known,
                 options,
                 context: self.context.clone(),
                 shaders: self.shaders.clone(),
                 control: Arc::clone(&control),
+                question,
                 phase: Arc::clone(&phase),
             };
-            move || open(opening)
+            move || {
+                let control = Arc::clone(&opening.control);
+                control.during(|| open(opening))
+            }
         };
         let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
         self.running = Some(Running { source: source.to_owned(), reading, control, phase, work });
@@ -211,6 +230,11 @@ impl Loader {
     /// What became of it, once.
     pub(crate) fn take(&mut self) -> Option<Outcome> {
         let running = self.running.as_ref()?;
+        if running.control.is_cancelled() {
+            // Its thread ends by itself, with the next piece of its work.
+            self.running = None;
+            return Some(Outcome::Cancelled);
+        }
         let outcome = running.work.take()?.unwrap_or_else(|panic| Outcome::Failed {
             short: text::opening::failed(&running.source),
             details: text::opening::stopped(&panic),
@@ -223,12 +247,16 @@ impl Loader {
     pub(crate) fn progress(&self) -> Option<LoadProgress<'_>> {
         let running = self.running.as_ref()?;
         let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
-        let fraction = (phase == 0).then(|| running.control.fraction()).flatten();
+        let read = running.control.bytes().filter(|_| phase == 0);
+        // When the last byte is there, the values are looked at.
+        let bytes = read.filter(|[done, total]| done < total);
+        let phase = if read.is_some() && bytes.is_none() { 2 } else { phase };
         Some(LoadProgress {
             source: &running.source,
             reading: &running.reading,
             phase: PHASES[phase],
-            fraction: fraction.map(|fraction| fraction as f32),
+            fraction: bytes.map(|[done, total]| done as f32 / total as f32),
+            bytes,
         })
     }
 }
@@ -259,6 +287,8 @@ struct Opening {
     context: Context,
     shaders: ShaderLibrary,
     control: Arc<LoadControl>,
+    /// Why it is not read before somebody has said how much of it.
+    question: Question,
     /// Index of what is being done, in [`PHASES`].
     phase: Arc<AtomicU8>,
 }
@@ -288,12 +318,18 @@ fn corrected(volume: Volume, known: Option<&Remembered>, stamp: FileStamp) -> Vo
 }
 
 fn open(opening: Opening) -> Outcome {
-    let Opening { source, reading, known, options, context, shaders, control, phase } = opening;
+    let Opening { source, reading, known, options, context, shaders, control, question, phase } = opening;
     may_panic(Place::Loader);
     let stamp = FileStamp::of(&source);
     let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
-        Err(load::LoadError::Cancelled) => return Outcome::Cancelled,
+        Err(load::LoadError::Cancelled) => {
+            let asked = question.take();
+            return asked.map_or(Outcome::Cancelled, |weighed| {
+                let reading = Box::new(reading);
+                Outcome::Weighed { source, reading, weighed }
+            });
+        }
         Err(err) => {
             if let Some(asked) = not_described(&source, &err) {
                 return asked;
@@ -309,16 +345,17 @@ fn open(opening: Opening) -> Outcome {
         details: err.to_string(),
     };
     let dims = volume.dims();
-    let volume = match fitted(&context, volume) {
+    let fit = fitted(&context, volume);
+    if control.is_cancelled() {
+        return Outcome::Cancelled;
+    }
+    let volume = match fit {
         Ok(volume) => volume,
         Err(err) => return not_shown(&err),
     };
     let too_many = (volume.dims() != dims).then_some(dims);
     // It is read in the same way again.
     let reading = Reading { choice: Some(volume.held().choice()), ..reading };
-    if control.is_cancelled() {
-        return Outcome::Cancelled;
-    }
     phase.store(2, Ordering::Relaxed);
     let dataset = Dataset::new(corrected(volume, known.corrected.as_ref(), stamp));
     if control.is_cancelled() {

@@ -13,3 +13,4 @@ pub(super) mod request;
 pub(super) mod response;
 pub(super) mod task;
 mod warm_up;
+pub(super) mod weighing;

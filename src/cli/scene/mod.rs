@@ -18,7 +18,7 @@ use self::look::{Named, Proposed, proposal};
 use self::overlay::Overlay;
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
-use crate::data::load::{Choice, Endian, LoadControl, LoadOptions, RawFormat};
+use crate::data::load::{Choice, Endian, LoadControl, LoadOptions, Portion, RawFormat, Region, Thinning};
 use crate::data::{Dataset, KindName, ValueRanges, Volume, VoxelType, open};
 use crate::gpu::{Context, fitted, small_volume};
 use crate::model::auto::Wishes;
@@ -30,9 +30,15 @@ const FLOOR_HEIGHT: &str = "floor.height";
 /// How a volume is read.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LoadArgs {
-    /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=64))]
-    reduce: u16,
+    /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures; 1 is all of them
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
+    reduce: Option<u16>,
+    /// Read along each axis every Nth voxel alone, for less memory
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64), conflicts_with = "reduce")]
+    every: Option<u16>,
+    /// Voxels to read, along each axis from the first to before the last, counted from 0; an end may be left out
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1")]
+    region: Option<Region>,
     /// RAW input: voxels along x, y, z
     #[arg(long, value_name = "WxHxD", global = false)]
     dims: Option<String>,
@@ -102,9 +108,21 @@ impl LoadArgs {
             channel: self.channel,
             series: self.series.clone(),
             array: self.array.clone(),
+            portion: self.portion(),
             ..Choice::default()
         };
-        Ok(LoadOptions { raw, choice, reduce: usize::from(self.reduce), ..LoadOptions::default() })
+        Ok(LoadOptions { raw, choice, ..LoadOptions::default() })
+    }
+
+    /// How much of the volume is read, where that is said.
+    fn portion(&self) -> Option<Portion> {
+        let thinning = match (self.every, self.reduce) {
+            (Some(step), _) => Thinning::Every(step.into()),
+            (None, Some(block)) => Thinning::Average(block.into()),
+            (None, None) => Thinning::None,
+        };
+        let is_said = self.every.is_some() || self.reduce.is_some() || self.region.is_some();
+        is_said.then_some(Portion { region: self.region, thinning })
     }
 
     /// Loads a volume, and opens the adapter.
@@ -112,15 +130,16 @@ impl LoadArgs {
         self.open_chosen(source, None)
     }
 
-    /// As [`Self::open`]. Of several volumes it is that one, unless the command line says another.
+    /// As [`Self::open`]. Of several volumes it is that one, and as much of it as was read then, unless the command line
+    /// says something else.
     pub(super) fn open_chosen(
         &self,
         source: &Path,
         choice: Option<&Choice>,
     ) -> Result<(Volume, Context), CliError> {
         let mut options = self.load_options()?;
-        if let Some(choice) = choice.filter(|_| options.choice.is_empty()) {
-            options.choice = choice.clone();
+        if let Some(choice) = choice {
+            options.choice = options.choice.or(choice);
         }
         // What is wrong with a file is said first.
         let whole = open(source, &options, &LoadControl::new())?;

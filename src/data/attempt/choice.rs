@@ -1,11 +1,13 @@
-//! What is opened of a file, or of a folder, that holds several volumes.
+//! What is opened of a file, or of a folder: which of several volumes, and how much of it.
 
 use serde::{Deserialize, Serialize};
 
 use super::held::{Components, Held, Several, Watch, Whole};
 use super::offer::{Dimension, Offer};
+use super::portion::Portion;
 
-/// What the user has said about which of several volumes is meant; nothing where there is but one.
+/// What the user has said about which of several volumes is meant, nothing where there is but one; and about how much of
+/// it is read.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Choice {
@@ -24,6 +26,12 @@ pub struct Choice {
     /// The array of an archive, by its [`Offer::key`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub array: Option<String>,
+    /// How much of the volume is read; where nothing is said, all of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub portion: Option<Portion>,
+    /// What is averaged turned out to be labels: blocks have the most frequent of them.
+    #[serde(skip)]
+    pub are_labels: bool,
     /// Where nothing is said, or what is said is not there, the first is meant: somebody can choose again.
     #[serde(skip)]
     pub otherwise_first: bool,
@@ -107,9 +115,23 @@ impl Choice {
 
     /// Whether nothing is said.
     pub fn is_empty(&self) -> bool {
-        let Self { component, frame, channel, series, array, otherwise_first: _, watch: _ } = self;
+        self.names_none() && self.portion.is_none()
+    }
+
+    /// Whether nothing is said of which of several volumes is meant.
+    fn names_none(&self) -> bool {
+        let Self { component, frame, channel, series, array, portion: _, .. } = self;
         let numbers = [component, frame, channel];
         numbers.iter().all(|said| said.is_none()) && series.is_none() && array.is_none()
+    }
+
+    /// The same choice, with what another says of what this one says nothing of: which volume, or how much of it.
+    #[must_use]
+    pub fn or(self, other: &Self) -> Self {
+        let portion = self.portion.or(other.portion);
+        let which = if self.names_none() { other.clone() } else { self.clone() };
+        let Self { are_labels, otherwise_first, watch, .. } = self;
+        Self { portion, are_labels, otherwise_first, watch, ..which }
     }
 
     /// The same choice, with the first for what is not said or not there.
@@ -136,10 +158,11 @@ pub(super) enum Unclear {
 }
 
 impl Held {
-    /// The choice that opens the same volume again; nothing where the file holds but one.
+    /// The choice that opens the same volume again; nothing where the file holds but one, and all of it was read.
     pub fn choice(&self) -> Choice {
         let component = self.components.and_then(|components| components.shown);
-        self.several.iter().fold(Choice { component, ..Choice::default() }, |choice, several| {
+        let portion = Some(self.portion).filter(|portion| !portion.is_whole());
+        self.several.iter().fold(Choice { component, portion, ..Choice::default() }, |choice, several| {
             match several.offers.get(several.at) {
                 Some(offer) => choice.with(several.dimension, &offer.key),
                 None => choice,
@@ -186,6 +209,21 @@ mod tests {
         assert_eq!(late.of(Dimension::Channel, &offers), Ok(0), "it is not there");
         assert_eq!(watch.held().of(Dimension::Channel).unwrap().missed.as_deref(), Some("7"));
         assert_eq!(late.of(Dimension::Channel, &[]), Err(Unclear::Unknown("7".to_owned())));
+    }
+
+    #[test]
+    fn what_is_said_anew_counts_more_than_what_was_remembered() {
+        let third = Choice { frame: Some(2), ..Choice::default() };
+        let half = Choice { portion: Some(Portion::every(2)), ..Choice::default() };
+        let both = Choice { portion: Some(Portion::every(2)), ..third.clone() };
+        assert_eq!(third.clone().or(&half), both);
+        assert_eq!(half.clone().or(&third), both);
+        let whole = Choice { portion: Some(Portion::default()), ..Choice::default() };
+        assert_eq!(whole.or(&both).portion, Some(Portion::default()), "all of it was asked for");
+        let first = Choice { channel: Some(0), ..Choice::default() };
+        assert_eq!(first.clone().or(&third), first, "a channel and a time step of it go together");
+        let held = Held { portion: Portion::every(2), ..Held::default() };
+        assert_eq!((held.choice(), Held::default().choice().portion), (half, None));
     }
 
     #[test]

@@ -84,6 +84,12 @@ impl LoadError {
         }
     }
 
+    /// Whether it is about a field or an option of that name.
+    pub fn is_about(&self, field: &str) -> bool {
+        let of = |place: &str| place.strip_suffix(field).is_some_and(|rest| rest.ends_with(", "));
+        self.explanation().is_some_and(|explanation| of(&explanation.place))
+    }
+
     /// The parts of the message, except when cancelled.
     pub fn explanation(&self) -> Option<&Explanation> {
         match self {
@@ -151,6 +157,12 @@ impl Attempt<'_> {
         };
         let help = format!("choose one with {option}: {}", list.join(", "));
         Err(LoadError::Several { explanation: Box::new(self.explain(option, why, help)), dimension, offers })
+    }
+
+    /// The region that is asked for is empty, or reaches beyond the grid.
+    pub(in crate::data) fn outside(&self, [x, y, z]: [usize; 3]) -> LoadError {
+        let why = format!("there are {x} x {y} x {z} voxels");
+        self.bad_input("--region", why, "a region of at least one of them helps")
     }
 
     /// Something the file system is asked for is of the wrong kind.

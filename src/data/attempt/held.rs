@@ -1,8 +1,9 @@
 //! What a file holds beside the one volume that is opened of it, for a window in which another can be chosen.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::offer::{Dimension, Offer};
+use super::portion::Portion;
 
 /// In what volumes of a file differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,6 +80,10 @@ pub struct Held {
     pub several: Vec<Several>,
     /// Of voxels of several numbers.
     pub components: Option<Components>,
+    /// Voxels along x, y, z of the grid, where it is known.
+    pub grid: Option<[usize; 3]>,
+    /// What of that was read.
+    pub portion: Portion,
 }
 
 impl Held {
@@ -90,7 +95,13 @@ impl Held {
 
 /// Where readers write down what they have found, while they open the first volume of several.
 #[derive(Debug, Clone, Default)]
-pub struct Watch(Arc<Mutex<Held>>);
+pub struct Watch(Arc<Mutex<Seen>>);
+
+#[derive(Debug, Default)]
+struct Seen {
+    held: Held,
+    is_averaged: bool,
+}
 
 /// Only a watch itself is the same.
 impl PartialEq for Watch {
@@ -104,17 +115,34 @@ impl Eq for Watch {}
 impl Watch {
     /// What was found until now.
     pub fn held(&self) -> Held {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.seen().held.clone()
+    }
+
+    /// Whether blocks were averaged while they were read.
+    pub(in crate::data) fn has_averaged(&self) -> bool {
+        self.seen().is_averaged
+    }
+
+    fn seen(&self) -> MutexGuard<'_, Seen> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub(super) fn saw_several(&self, several: Several) {
-        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let held = &mut self.seen().held;
         // A header beside its data is read twice.
         held.several.retain(|known| known.dimension != several.dimension);
         held.several.push(several);
     }
 
+    pub(super) fn saw_grid(&self, dims: [usize; 3]) {
+        self.seen().held.grid = Some(dims);
+    }
+
+    pub(super) fn saw_averaging(&self) {
+        self.seen().is_averaged = true;
+    }
+
     pub(super) fn saw_components(&self, components: Components) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).components = Some(components);
+        self.seen().held.components = Some(components);
     }
 }

@@ -1,10 +1,8 @@
-//! Sizes checked before anything is allocated.
+//! How much memory volumes may take, and which distances between voxels can be used.
 
 use glam::DAffine3;
 
-use super::error::{Attempt, LoadError};
 use super::free_memory::free_bytes;
-use crate::data::VoxelType;
 
 /// The budget where the system does not say how much memory it has.
 const FALLBACK_BUDGET_BYTES: u64 = 4 << 30;
@@ -15,63 +13,6 @@ const SPACING_RANGE_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// How much longer one distance between voxels may be than another: that of slices a millimetre apart to pixels of 0.1 µm.
 /// Steps through the volume are as short as the shortest, so that their number grows with this.
 const MAX_SPACING_RATIO: f64 = 1e4;
-
-/// The size of a grid that fits into the memory budget.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::data) struct Extent {
-    /// Voxels along x, y, z, none of them 0.
-    pub(in crate::data) dims: [usize; 3],
-    /// Their product.
-    pub(in crate::data) voxels: usize,
-    /// Bytes of all voxels.
-    pub(in crate::data) bytes: u64,
-}
-
-impl Extent {
-    /// Checks `dims`, which `field` gave, against zero, overflow and the budget.
-    pub(in crate::data) fn checked(
-        attempt: Attempt<'_>,
-        field: &str,
-        dims: [u64; 3],
-        voxel_type: VoxelType,
-        budget_bytes: u64,
-    ) -> Result<Self, LoadError> {
-        let [x, y, z] = dims;
-        if dims.contains(&0) {
-            return Err(attempt.bad_input(
-                field,
-                format!("{x} x {y} x {z} voxels are an empty volume"),
-                "every dimension must be at least 1",
-            ));
-        }
-        // Three 64-bit factors can leave even 128 bits; saturated they still are over any budget.
-        let voxels = dims.iter().fold(1u128, |product, &n| product.saturating_mul(u128::from(n)));
-        let bytes = voxels.saturating_mul(voxel_type.bytes() as u128);
-        let too_large = || {
-            attempt.limit(
-                field,
-                format!(
-                    "{x} x {y} x {z} voxels of {} need {}, {} are allowed",
-                    voxel_type.name(),
-                    human_bytes(bytes),
-                    human_bytes(u128::from(budget_bytes))
-                ),
-                "check the dimensions, close other programs, or load a smaller or cropped volume",
-            )
-        };
-        if bytes > u128::from(budget_bytes) {
-            return Err(too_large());
-        }
-        // On a 32-bit system the budget may be larger than what can be addressed.
-        let narrow = |n: u64| usize::try_from(n).ok();
-        match (narrow(x), narrow(y), narrow(z), usize::try_from(voxels).ok(), u64::try_from(bytes).ok()) {
-            (Some(x), Some(y), Some(z), Some(voxels), Some(bytes)) => {
-                Ok(Self { dims: [x, y, z], voxels, bytes })
-            }
-            _ => Err(too_large()),
-        }
-    }
-}
 
 /// Whether a distance between voxels can be used.
 pub(in crate::data) fn is_usable_spacing(spacing_mm: f64) -> bool {
@@ -101,7 +42,7 @@ pub(crate) fn default_budget_bytes() -> u64 {
 }
 
 /// A number of bytes for a message: exact when small, else in the largest unit that fits.
-pub(in crate::data) fn human_bytes(bytes: u128) -> String {
+pub(crate) fn human_bytes(bytes: u128) -> String {
     const UNITS: [&str; 6] = ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     if bytes < 10 * 1024 {
         return format!("{bytes} bytes");
@@ -121,26 +62,7 @@ pub(in crate::data) fn human_bytes(bytes: u128) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
-    use super::super::error::LoadErrorKind;
     use super::*;
-
-    fn kind_of(dims: [u64; 3], budget: u64) -> Result<Extent, LoadErrorKind> {
-        let attempt = Attempt { what: "test", path: Path::new("t") };
-        Extent::checked(attempt, "sizes", dims, VoxelType::U16, budget).map_err(|error| error.kind())
-    }
-
-    #[test]
-    fn sizes_are_checked_without_overflow() {
-        let ok = Extent { dims: [2, 3, 4], voxels: 24, bytes: 48 };
-        assert_eq!(kind_of([2, 3, 4], 48), Ok(ok));
-        assert_eq!(kind_of([2, 3, 4], 47), Err(LoadErrorKind::Limit));
-        assert_eq!(kind_of([2, 0, 4], 48), Err(LoadErrorKind::BadInput));
-        assert_eq!(kind_of([u64::MAX; 3], u64::MAX), Err(LoadErrorKind::Limit));
-        assert_eq!(kind_of([1 << 32, 1 << 32, 1], u64::MAX), Err(LoadErrorKind::Limit));
-        assert_eq!(kind_of([1_000_000; 3], u64::MAX / 16), Err(LoadErrorKind::Limit));
-    }
 
     #[test]
     fn the_budget_follows_the_free_memory() {

@@ -11,18 +11,22 @@ mod reading;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 
 use super::Volume;
-use super::attempt::Attempt;
+#[cfg(feature = "window")]
+pub(crate) use super::attempt::human_bytes;
 pub(crate) use super::attempt::memory_budget_bytes;
 pub use super::attempt::{
     Aspect, Choice, Components, Dimension, Explanation, Held, LoadControl, LoadError, LoadErrorKind, Offer,
-    Several, Watch, Whole,
+    Portion, Region, Several, Size, Stretch, Thinning, Watch, Whole,
 };
+use super::attempt::{Attempt, Room};
 pub use neighbour::neighbour;
+pub use reading::read_files::ReadFiles;
 
 use formats::{READERS, folder, reader_of};
 use reading::input::{Input, Witness};
@@ -42,10 +46,10 @@ pub enum Endian {
 pub struct LoadOptions {
     /// How RAW files are stored; other formats say it themselves.
     pub raw: RawFormat,
-    /// Which volume is meant where there are several.
+    /// Which volume is meant where there are several, and how much of it is read.
     pub choice: Choice,
-    /// Blocks of so many voxels along each axis are averaged into one.
-    pub reduce: usize,
+    /// Of a folder, the files that are meant; all of them where nothing is said.
+    pub among: Option<Arc<[PathBuf]>>,
     /// The largest volume that is loaded, in bytes of its voxels.
     pub memory_budget_bytes: u64,
 }
@@ -55,11 +59,18 @@ impl Default for LoadOptions {
     /// (what the machine, its container and the user's limits leave), or 4 GiB where that is not known.
     fn default() -> Self {
         let (raw, choice) = (RawFormat::default(), Choice::default());
-        Self { raw, choice, reduce: 1, memory_budget_bytes: memory_budget_bytes() }
+        Self { raw, choice, among: None, memory_budget_bytes: memory_budget_bytes() }
     }
 }
 
-/// Loads a volume from a file, or from a folder of slices.
+impl LoadOptions {
+    /// What there is for a volume, and how much of it is wanted.
+    fn room<'a>(&'a self, control: &'a LoadControl) -> Room<'a> {
+        Room { budget_bytes: self.memory_budget_bytes, choice: &self.choice, control }
+    }
+}
+
+/// Loads a volume from a file, or from a folder of slices: all of it, or as much as `options` want.
 ///
 /// A format is recognised by a file's first bytes, or else by its ending; when `options` give dimensions, a file that is
 /// not recognised is read as RAW.
@@ -68,9 +79,22 @@ impl Default for LoadOptions {
 /// [`LoadErrorKind::BadInput`] for a file or options that make no volume, or several ([`LoadError::Several`]), `Limit` for
 /// a volume over the budget, `Io` for what is not readable, or neither a file nor a folder, `Cancelled` when asked to stop.
 pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let (choice, watch) = options.choice.clone().watched();
-    let options = LoadOptions { choice, ..options.clone() };
-    Ok(load_watched(path, &options, control)?.with_held(watch.held()))
+    let portion = options.choice.portion.unwrap_or_default();
+    let read = |are_labels: bool| {
+        let (choice, watch) = Choice { are_labels, ..options.choice.clone() }.watched();
+        let options = LoadOptions { choice, ..options.clone() };
+        let volume = control.during(|| load_watched(path, &options, control));
+        // Whatever became of it.
+        control.check()?;
+        let volume = volume?;
+        let volume = volume.with_held(Held { portion, ..watch.held() });
+        Ok::<_, LoadError>((watch.has_averaged() && volume.is_of_labels(), volume))
+    };
+    match read(false)? {
+        // What its file does not call labels is known for labels when it has been read: then of each block one voxel.
+        (true, _) => read(true).map(|(_, volume)| volume),
+        (false, volume) => Ok(volume),
+    }
 }
 
 fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {

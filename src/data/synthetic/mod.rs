@@ -18,7 +18,7 @@ use std::path::Path;
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::attempt::{Attempt, Extent, LoadControl, LoadError, memory_budget_bytes};
+use super::attempt::{Attempt, Choice, Extent, LoadControl, LoadError, Room, memory_budget_bytes};
 use super::{Samples, Volume, VoxelType};
 
 /// The built-in volumes.
@@ -92,10 +92,10 @@ impl Grid {
 /// `BadInput` for a name that is not in [`NAMES`] or an `n` outside 8 … 1024; `Limit` when it would
 /// need more than three quarters of the free memory.
 pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
-    builtin_within(name, n, memory_budget_bytes(), &LoadControl::new())
+    builtin_within(name, n, memory_budget_bytes(), &Choice::default(), &LoadControl::new())
 }
 
-/// As [`builtin`], with a memory budget in bytes, and with a control to watch and to cancel it.
+/// As [`builtin`], with a memory budget in bytes that also holds what is chosen of it, and with a control to watch and to cancel it.
 ///
 /// # Errors
 /// As [`builtin`]; also `Cancelled`.
@@ -103,6 +103,7 @@ pub(crate) fn builtin_within(
     name: &str,
     n: Option<usize>,
     budget_bytes: u64,
+    choice: &Choice,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let source = format!("builtin:{name}");
@@ -125,7 +126,9 @@ pub(crate) fn builtin_within(
     }
     control.check()?;
     let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
-    Extent::checked(attempt, "N", [n as u64; 3], voxel_type, budget_bytes)?;
+    // All of it is made, whatever is wanted of it.
+    let room = Room { budget_bytes, choice, control };
+    Extent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
     let grid = Grid { n };
     let samples = match name {
         "chair" => Samples::U8(parts::voxelise(grid, &chair::parts(), attempt, control)?),
@@ -216,7 +219,9 @@ mod tests {
     #[test]
     fn unknown_names_and_sizes_are_refused() {
         let kind = |name, n, budget| {
-            builtin_within(name, n, budget, &LoadControl::new()).map_err(|error| error.kind()).map(drop)
+            builtin_within(name, n, budget, &Choice::default(), &LoadControl::new())
+                .map_err(|error| error.kind())
+                .map(drop)
         };
         assert_eq!(kind("table", None, 1 << 30), Err(LoadErrorKind::BadInput));
         assert_eq!(kind("box", Some(7), 1 << 30), Err(LoadErrorKind::BadInput));

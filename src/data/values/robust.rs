@@ -6,6 +6,7 @@
 use rayon::prelude::*;
 
 use super::samples::with_samples;
+use crate::data::interrupt::Interrupt;
 use crate::data::{Samples, ValueRange, VoxelType};
 
 /// Voxels that are looked at: the 0.01 % at either end are 26 of them, whose rank is uncertain by a fifth.
@@ -156,9 +157,13 @@ impl Extremes {
 /// The range of the finite values between two others that are not `left_out` but for `few` voxels at either end; `None` if it has no length.
 #[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
 fn trimmed(samples: &Samples, left_out: f64, few: usize, above: f64, below: f64) -> Option<ValueRange> {
+    let interrupt = Interrupt::here();
     let found = with_samples!(samples, values => values
         .par_chunks(CHUNK)
         .map(|chunk| {
+            if interrupt.is_due() {
+                return Extremes::none(few + 1);
+            }
             let values = chunk.iter().map(|&value| value as f64);
             // Comparisons with NaN are false.
             let counts = |value: &f64| above < *value && *value < below && *value != left_out;

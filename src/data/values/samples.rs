@@ -1,14 +1,7 @@
 //! The values of voxels as files have them, in any number type.
 
-use rayon::prelude::*;
-
 use crate::data::ValueRange;
-
-/// Voxels that a task looks at: enough for starting it to cost nothing.
-const CHUNK: usize = 1 << 16;
-
-/// Ends and voxels without a value, before any is known.
-const NOTHING: (f64, f64, usize) = (f64::INFINITY, f64::NEG_INFINITY, 0);
+use crate::data::interrupt::{Interrupt, PIECE};
 
 /// The number types that a voxel can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,6 +30,34 @@ impl VoxelType {
             Self::U32 | Self::I32 | Self::F32 => 4,
             Self::F64 => 8,
         }
+    }
+
+    /// The smallest and the largest whole number that it holds; nothing for fractions.
+    const fn whole(self) -> Option<(i64, i64)> {
+        match self {
+            Self::U8 => Some((0, u8::MAX as i64)),
+            Self::I8 => Some((i8::MIN as i64, i8::MAX as i64)),
+            Self::U16 => Some((0, u16::MAX as i64)),
+            Self::I16 => Some((i16::MIN as i64, i16::MAX as i64)),
+            Self::U32 => Some((0, u32::MAX as i64)),
+            Self::I32 => Some((i32::MIN as i64, i32::MAX as i64)),
+            Self::F32 | Self::F64 => None,
+        }
+    }
+
+    /// The smallest type that holds the values of both.
+    pub(in crate::data) fn with(self, other: Self) -> Self {
+        if self == other {
+            return self;
+        }
+        let (Some(one), Some(another)) = (self.whole(), other.whole()) else {
+            // Whole numbers of 16 bits and fewer are exact as F32.
+            let is_exact = |of: Self| of == Self::F32 || (of != Self::F64 && of.bytes() <= 2);
+            return if is_exact(self) && is_exact(other) { Self::F32 } else { Self::F64 };
+        };
+        let (low, high) = (one.0.min(another.0), one.1.max(another.1));
+        let holds = |of: &Self| of.whole().is_some_and(|(first, last)| first <= low && high <= last);
+        Self::ALL.into_iter().find(holds).unwrap_or(Self::F64)
     }
 
     /// The name used in file names and on the command line: `uint8` … `float64`.
@@ -86,6 +107,12 @@ macro_rules! with_samples {
 
 pub(in crate::data) use with_samples;
 
+/// Values in pieces, as long as they are wanted.
+fn wanted<T>(values: &[T]) -> impl Iterator<Item = &[T]> {
+    let interrupt = Interrupt::here();
+    values.chunks(PIECE).take_while(move |_| !interrupt.is_due())
+}
+
 impl Samples {
     /// Number of voxels.
     pub fn len(&self) -> usize {
@@ -133,6 +160,34 @@ impl Samples {
         picked!(U8, I8, U16, I16, U32, I32, F32, F64)
     }
 
+    /// The same values in a type that holds them, with room for so many; nothing without memory.
+    pub(in crate::data) fn in_type(&self, voxel_type: VoxelType, count: usize) -> Option<Self> {
+        macro_rules! in_type {
+            ($($variant:ident),+) => {
+                match voxel_type {
+                    $(VoxelType::$variant => {
+                        let mut values = Vec::new();
+                        values.try_reserve_exact(count).ok()?;
+                        Self::$variant(values)
+                    })+
+                }
+            };
+        }
+        let mut found = in_type!(U8, I8, U16, I16, U32, I32, F32, F64);
+        found.append(self);
+        Some(found)
+    }
+
+    /// Adds values that are in its type's range.
+    #[expect(trivial_numeric_casts, reason = "one of the types is the same")]
+    pub(in crate::data) fn append(&mut self, more: &Self) {
+        with_samples!(self, values => {
+            with_samples!(more, more => for &value in more {
+                values.push(value as _);
+            });
+        });
+    }
+
     /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
     pub(in crate::data) fn finite_range(&self) -> Option<(ValueRange, usize)> {
         self.range_without(f64::NAN)
@@ -140,50 +195,25 @@ impl Samples {
 
     /// What the finite values span that are not `left_out`, and how many voxels are not finite; `None` where there are
     /// none.
-    #[expect(
-        trivial_numeric_casts,
-        clippy::unnecessary_cast,
-        reason = "one of the eight types is f64 already"
-    )]
     pub(in crate::data) fn range_without(&self, left_out: f64) -> Option<(ValueRange, usize)> {
-        macro_rules! of_whole {
-            ($values:expr, $type:ty) => {
-                $values
-                    .par_chunks(CHUNK)
-                    .map(|chunk| {
-                        let ends = (<$type>::MAX, <$type>::MIN);
-                        let (low, high) =
-                            chunk.iter().fold(ends, |(low, high), &value| (low.min(value), high.max(value)));
-                        (f64::from(low), f64::from(high), 0)
-                    })
-                    .collect()
-            };
-        }
-        let parts: Vec<(f64, f64, usize)> = match self {
-            // The most usual ones; what is whole is finite.
-            Self::U8(values) if left_out.is_nan() => of_whole!(values, u8),
-            Self::U16(values) if left_out.is_nan() => of_whole!(values, u16),
-            Self::I16(values) if left_out.is_nan() => of_whole!(values, i16),
-            _ => with_samples!(self, values => values
-                .par_chunks(CHUNK)
-                .map(|chunk| chunk.iter().fold(NOTHING, |(low, high, non_finite), &value| {
-                    let value = value as f64;
-                    if !value.is_finite() {
-                        (low, high, non_finite + 1)
-                    } else if value == left_out {
-                        (low, high, non_finite)
-                    } else {
-                        (low.min(value), high.max(value), non_finite)
-                    }
-                }))
-                .collect()),
-        };
-        let (low, high, non_finite) = parts.into_iter().fold(
-            NOTHING,
-            |(low, high, non_finite), (part_low, part_high, part_non_finite)| {
-                (low.min(part_low), high.max(part_high), non_finite + part_non_finite)
+        #[expect(
+            trivial_numeric_casts,
+            clippy::unnecessary_cast,
+            reason = "one of the eight types is f64 already"
+        )]
+        let (low, high, non_finite) = with_samples!(self, values => wanted(values).flatten().fold(
+            (f64::INFINITY, f64::NEG_INFINITY, 0),
+            |(low, high, non_finite), &value| {
+                let value = value as f64;
+                if !value.is_finite() {
+                    (low, high, non_finite + 1)
+                } else if value == left_out {
+                    (low, high, non_finite)
+                } else {
+                    (low.min(value), high.max(value), non_finite)
+                }
             },
-        );
+        ));
         (low <= high).then_some((ValueRange::new(low, high), non_finite))
     }
 
@@ -195,9 +225,34 @@ impl Samples {
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let hash = with_samples!(self, values => values.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
+        let hash = with_samples!(self, values => wanted(values).flatten().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
             (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
         }));
         hash
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_of_two_types_are_held_by_a_third() {
+        use VoxelType::{F32, F64, I8, I16, I32, U8, U16, U32};
+        for (one, other, both) in [
+            (U8, U8, U8),
+            (U8, I16, I16),
+            (I16, U16, I32),
+            (U32, I8, F64),
+            (I32, U32, F64),
+            (U16, F32, F32),
+            (I32, F32, F64),
+            (F32, F64, F64),
+        ] {
+            assert_eq!((one.with(other), other.with(one)), (both, both), "{one:?} {other:?}");
+        }
+        let mut samples = Samples::U8(vec![1, 255]).in_type(I16, 4).unwrap();
+        samples.append(&Samples::I16(vec![-3, 7]));
+        assert_eq!(samples, Samples::I16(vec![1, 255, -3, 7]));
     }
 }

@@ -7,6 +7,10 @@ use rayon::prelude::*;
 
 use super::{Samples, Shown, Volume, VolumeError};
 use crate::data::ValueRanges;
+use crate::data::interrupt::{Interrupt, PIECE};
+
+/// Words of 64 voxels between two looks at whether they are still wanted.
+const WORDS: usize = PIECE / 64;
 
 /// Which voxels of a grid hold nothing, and what stands in for them.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,9 +29,13 @@ impl Missing {
     /// holds nothing. `None` where every voxel holds something.
     pub(super) fn find(dims: [usize; 3], value: impl Fn(usize) -> Option<f64> + Sync) -> Option<Self> {
         let voxels = dims.iter().product::<usize>();
+        let interrupt = Interrupt::here();
         let bits: Vec<u64> = (0..voxels.div_ceil(64))
             .into_par_iter()
             .map(|word| {
+                if word.is_multiple_of(WORDS) && interrupt.is_due() {
+                    return 0;
+                }
                 let places = word * 64..((word + 1) * 64).min(voxels);
                 places.filter(|&voxel| value(voxel).is_none()).fold(0, |bits, voxel| bits | 1 << (voxel % 64))
             })

@@ -2,12 +2,14 @@
 
 mod corrections;
 mod error;
+mod in_file;
 mod kind;
 mod label_set;
 mod missing;
 mod reduce;
 mod region;
 mod shown;
+mod thinned;
 
 pub use corrections::{
     AxisOrder, Corrections, Flips, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale,
@@ -16,6 +18,7 @@ pub use error::VolumeError;
 pub use kind::{DataKind, KindFound, KindName};
 pub use label_set::{CountedLabel, LabelSet, MAX_CLASSES};
 pub use missing::Missing;
+pub(super) use reduce::Blocks;
 pub use reduce::reduced_dims;
 pub use shown::Shown;
 
@@ -25,6 +28,7 @@ use std::time::Duration;
 use glam::{DAffine3, DMat3, DVec3};
 
 use self::corrections::Corrected;
+use self::in_file::InFile;
 use super::attempt::Held;
 use super::values::robust::quantile;
 use super::{Hints, Samples, ValueRange, ValueRanges};
@@ -46,8 +50,8 @@ pub struct Volume {
     name: String,
     dims: [usize; 3],
     file_dims: [usize; 3],
-    /// Voxels of the file along each axis of which one is the mean.
-    block: [usize; 3],
+    /// How voxels lie among those of the file.
+    block: InFile,
     world_from_index: DAffine3,
     samples: Arc<Samples>,
     ranges: ValueRanges,
@@ -107,26 +111,22 @@ impl Volume {
         if !(world_from_index.is_finite() && lengths.min_element() > 0.0 && flatness > 1e-6) {
             return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
         }
-        let ranges = || {
-            let (all, non_finite) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
-            if !all.span().is_finite() {
-                let range = format!("from {:e} to {:e}", all.low, all.high);
-                return Err(VolumeError::TooWide { range });
-            }
-            Ok((ValueRanges::of(&samples, all), non_finite))
-        };
-        // The fingerprint takes one voxel after the other: the other cores need not wait for it.
-        let (fingerprint, found) = rayon::join(|| samples.fingerprint(), ranges);
-        let (ranges, non_finite_voxels) = found?;
+        let (value_range, non_finite_voxels) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+        if !value_range.span().is_finite() {
+            let range = format!("from {:e} to {:e}", value_range.low, value_range.high);
+            return Err(VolumeError::TooWide { range });
+        }
+        let ranges = ValueRanges::of(&samples, value_range);
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
-        let content_id = geometry
-            .fold(fingerprint, |hash, word| hash.rotate_left(17) ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
+            hash.rotate_left(17) ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        });
         let volume = Self {
             name,
             dims,
             file_dims: dims,
-            block: [1; 3],
+            block: InFile::default(),
             world_from_index,
             samples,
             ranges,
@@ -233,6 +233,11 @@ impl Volume {
         self.kind.get_or_init(|| KindFound::of(self))
     }
 
+    /// Whether its values are labels, whose numbers have no mean.
+    pub(in crate::data) fn is_of_labels(&self) -> bool {
+        matches!(self.kind().kind, DataKind::LabelMap { .. })
+    }
+
     /// States what else is known of the volume whose blocks this one's voxels are.
     #[must_use]
     pub(super) fn standing_for(self, whole: &Self) -> Self {
@@ -273,8 +278,8 @@ impl Volume {
         self.dims
     }
 
-    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]); [`Self::dims`] where none
-    /// were.
+    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]), or of which every so manyth was
+    /// kept ([`Self::thinned`]); [`Self::dims`] where that is all of them.
     pub fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }

@@ -3,7 +3,8 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::{DataKind, Samples, Volume, VolumeError};
+use super::{Samples, Volume, VolumeError};
+use crate::data::interrupt::{Interrupt, PIECE};
 
 impl Volume {
     /// The volume with blocks of so many voxels along x, y and z averaged into one each: same place in the world,
@@ -27,19 +28,7 @@ impl Volume {
         let dims = self.dims();
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
         let padding = self.padding_value();
-        let blocks = Blocks { dims, block, padding };
-        let is_labelled = matches!(self.kind().kind, DataKind::LabelMap { .. });
-        let samples = match self.samples() {
-            samples if is_labelled => blocks.most_frequent(samples),
-            Samples::U8(values) => Samples::U8(blocks.whole_means(values, |mean| mean as u8)),
-            Samples::I8(values) => Samples::I8(blocks.whole_means(values, |mean| mean as i8)),
-            Samples::U16(values) => Samples::U16(blocks.whole_means(values, |mean| mean as u16)),
-            Samples::I16(values) => Samples::I16(blocks.whole_means(values, |mean| mean as i16)),
-            Samples::U32(values) => Samples::U32(blocks.whole_means(values, |mean| mean as u32)),
-            Samples::I32(values) => Samples::I32(blocks.whole_means(values, |mean| mean as i32)),
-            Samples::F32(values) => Samples::F32(blocks.means(values, |mean| mean as f32, |mean| mean)),
-            Samples::F64(values) => Samples::F64(blocks.means(values, |mean| mean, |mean| mean)),
-        };
+        let samples = Blocks { dims, block, padding }.averaged(self.samples(), self.is_of_labels());
         // A block's centre is that of its voxels: voxel 0 of two voxels lies at index 0.5.
         let edges = DVec3::from(block.map(|n| n as f64));
         let index_from_block =
@@ -50,8 +39,8 @@ impl Volume {
             Some(padding) => reduced.with_padding(padding)?,
             None => reduced,
         };
-        let blocks = [0, 1, 2].map(|axis| self.block[axis] * block[axis]);
-        Ok(Self { block: blocks, ..reduced.standing_for(self) })
+        let block = self.block.of_blocks(block, 0.5 * (edges - 1.0));
+        Ok(Self { block, ..reduced.standing_for(self) })
     }
 }
 
@@ -61,13 +50,41 @@ pub fn reduced_dims(dims: [usize; 3], block: [usize; 3]) -> [usize; 3] {
 }
 
 /// Blocks of voxels to be averaged.
-struct Blocks {
-    dims: [usize; 3],
-    block: [usize; 3],
-    padding: Option<f64>,
+#[derive(Debug, Clone, Copy)]
+pub(in crate::data) struct Blocks {
+    /// Voxels along x, y, z.
+    pub(in crate::data) dims: [usize; 3],
+    /// Voxels of a block along x, y, z, none of them 0.
+    pub(in crate::data) block: [usize; 3],
+    /// The value that is left out of means.
+    pub(in crate::data) padding: Option<f64>,
 }
 
 impl Blocks {
+    /// For every block the mean of its voxels, of the same number type; of labels the most frequent.
+    pub(in crate::data) fn averaged(&self, samples: &Samples, are_labels: bool) -> Samples {
+        match samples {
+            samples if are_labels => self.most_frequent(samples),
+            Samples::U8(values) => Samples::U8(self.whole_means(values, |mean| mean as u8)),
+            Samples::I8(values) => Samples::I8(self.whole_means(values, |mean| mean as i8)),
+            Samples::U16(values) => Samples::U16(self.whole_means(values, |mean| mean as u16)),
+            Samples::I16(values) => Samples::I16(self.whole_means(values, |mean| mean as i16)),
+            Samples::U32(values) => Samples::U32(self.whole_means(values, |mean| mean as u32)),
+            Samples::I32(values) => Samples::I32(self.whole_means(values, |mean| mean as i32)),
+            Samples::F32(values) => Samples::F32(self.means(values, |mean| mean as f32, |mean| mean)),
+            Samples::F64(values) => Samples::F64(self.means(values, |mean| mean, |mean| mean)),
+        }
+    }
+
+    /// Of every block the first voxel.
+    pub(in crate::data) fn firsts(&self, samples: &Samples) -> Samples {
+        let [nx, ny, nz] = self.dims;
+        let [sx, sy, sz] = self.block;
+        let rows = (0..nz).step_by(sz).flat_map(|z| (0..ny).step_by(sy).map(move |y| (z * ny + y) * nx));
+        let firsts: Vec<usize> = rows.flat_map(|row| (row..row + nx).step_by(sx)).collect();
+        samples.picked(&firsts)
+    }
+
     /// The rounded mean of every block. One that happens to be the padding value becomes the next number: something is
     /// there.
     fn whole_means<T: Copy + Into<f64> + Sync, R: Send>(
@@ -94,7 +111,12 @@ impl Blocks {
         let &Self { dims, block, padding } = self;
         let [nx, ny, _] = dims;
         let [width, height, depth] = reduced_dims(dims, block);
+        let interrupt = Interrupt::here();
         let choose = |at: usize| {
+            // Where nobody wants it any voxel will do.
+            if at.is_multiple_of(PIECE) && interrupt.is_due() {
+                return 0;
+            }
             let low = [at % width, at / width % height, at / (width * height)];
             let [xs, ys, zs] = [0, 1, 2]
                 .map(|axis| low[axis] * block[axis]..((low[axis] + 1) * block[axis]).min(dims[axis]));
@@ -132,9 +154,10 @@ impl Blocks {
         let &Self { dims, block, padding } = self;
         let [nx, ny, nz] = dims;
         let [width, height, depth] = reduced_dims(dims, block);
+        let interrupt = Interrupt::here();
         let slice = |k: usize| {
             let (mut sums, mut counts) = (vec![0.0; width * height], vec![0u32; width * height]);
-            for z in k * block[2]..nz.min((k + 1) * block[2]) {
+            for z in (k * block[2]..nz.min((k + 1) * block[2])).take_while(|_| !interrupt.is_due()) {
                 for y in 0..ny {
                     let row = &values[(z * ny + y) * nx..][..nx];
                     let first = y / block[1] * width;
@@ -160,7 +183,7 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Hints, Meaning, Missing};
+    use crate::data::{DataKind, Hints, Meaning, Missing};
 
     #[test]
     fn blocks_become_their_means_where_they_were() {

@@ -17,6 +17,7 @@ use self::complaints::Complaints;
 use super::GpuError;
 use crate::data::plain;
 use crate::fault::{self, Count, Fault};
+use crate::gpu::pipelines::binding::pair_format;
 
 /// Said when there is no adapter.
 const ADAPTER_HELP: &str =
@@ -125,7 +126,8 @@ impl Context {
         };
         let storage_format = [wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R32Float]
             .into_iter()
-            .find(|&format| usable(format))
+            // Volumes with missing voxels keep a share beside each density.
+            .find(|&format| usable(format) && usable(pair_format(format)))
             .ok_or_else(|| GpuError::NoAdapter {
                 why: format!(
                     "{} can neither store 16-bit nor filter 32-bit float volumes",

@@ -1,7 +1,9 @@
 //! Volumes that an adapter cannot hold, with fewer voxels.
 
+use glam::DVec3;
+
 use crate::data::load::memory_budget_bytes;
-use crate::data::{DataKind, Volume, reduced_dims};
+use crate::data::{DataKind, Samples, Volume, VolumeError, VoxelType, reduced_dims};
 use crate::gpu::light::volume::attenuation_texture;
 use crate::gpu::volume::{self, presence::Presence};
 use crate::gpu::{Context, GpuError};
@@ -24,18 +26,46 @@ const ALIKE: f64 = std::f64::consts::SQRT_2;
 /// # Errors
 /// When not even a small volume can be held, or the device is lost.
 pub fn fitted(context: &Context, volume: Volume) -> Result<Volume, GpuError> {
-    let block = block_that_fits(&volume, |dims| holds(context, &volume, dims))?;
+    let block =
+        block_that_fits(volume.dims(), volume.spacing_mm().into(), |dims| holds(context, &volume, dims))?;
     volume.reduced(block).map_err(|err| GpuError::Refused(err.to_string()))
+}
+
+/// Voxels along x, y and z of what would be shown of a volume of so many: as many as the adapter can hold with one light.
+///
+/// The volume need not have been read. What is missing in it, and labels, which take more, show when it has been.
+///
+/// # Errors
+/// When not even a small volume can be held, or the device is lost.
+pub fn held_of(context: &Context, dims: [usize; 3], voxel_type: VoxelType) -> Result<[usize; 3], GpuError> {
+    let stand_in = stand_in(voxel_type).map_err(|err| GpuError::Refused(err.to_string()))?;
+    let block = block_that_fits(dims, [1.0; 3], |dims| holds(context, &stand_in, dims))?;
+    Ok(reduced_dims(dims, block))
+}
+
+/// One voxel of a type.
+fn stand_in(voxel_type: VoxelType) -> Result<Volume, VolumeError> {
+    let samples = match voxel_type {
+        VoxelType::U8 | VoxelType::I8 => Samples::U8(vec![0]),
+        _ => Samples::F32(vec![0.0]),
+    };
+    Volume::with_spacing("", [1; 3], DVec3::ONE, samples)
+}
+
+/// Bytes on the adapter of a volume of so many voxels, with one light: density 2, pyramid 2 and a seventh, attenuation 2.
+pub fn bytes_with_one_light(dims: [usize; 3]) -> u64 {
+    dims.iter().fold(1u64, |all, &n| all.saturating_mul(n as u64)).saturating_mul(44) / 7
 }
 
 /// The smallest blocks of voxels that must become one each for `holds` to hold what is left.
 fn block_that_fits(
-    volume: &Volume,
+    all: [usize; 3],
+    spacing_mm: [f64; 3],
     holds: impl Fn([usize; 3]) -> Result<(), GpuError>,
 ) -> Result<[usize; 3], GpuError> {
     let mut block = [1; 3];
     loop {
-        let dims = reduced_dims(volume.dims(), block);
+        let dims = reduced_dims(all, block);
         if dims.iter().product::<usize>() <= SMALL && dims.iter().all(|&n| n <= SHORT) {
             return Ok(block);
         }
@@ -46,7 +76,7 @@ fn block_that_fits(
                 block = [0, 1, 2].map(|axis| block[axis] << u32::from(is_long(dims[axis], limit)));
             }
             Err(GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. }) => {
-                block = larger(block, dims, volume.spacing_mm().into());
+                block = larger(block, dims, spacing_mm);
             }
             Err(other) => return Err(other),
         }
@@ -65,10 +95,11 @@ fn larger(block: [usize; 3], dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 
 
 /// Makes the textures of such a volume and of one light, and gives them back.
 fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuError> {
-    // Sevenths of bytes per voxel: of density, pyramid and light 44, of what is there 32, of classified labels 64.
-    let of_missing = if like.missing().is_some() { 32 } else { 0 };
+    // Sevenths of bytes per voxel: of density, pyramid and light 44, of what is there 48, of classified labels 64.
+    let of_missing = if like.missing().is_some() { 48 } else { 0 };
     let of_labels = if matches!(like.kind().kind, DataKind::LabelMap { .. }) { 64 } else { 0 };
-    let bytes = dims.iter().map(|&n| n as u64).product::<u64>() * (44 + of_missing + of_labels) / 7;
+    let voxels = dims.iter().fold(1u64, |all, &n| all.saturating_mul(n as u64));
+    let bytes = voxels.saturating_mul(44 + of_missing + of_labels) / 7;
     // A software driver takes memory when it is written to, and the system then ends the program.
     if context.is_software() && bytes > memory_budget_bytes() {
         return Err(GpuError::OutOfMemory { what: "the volume".to_owned(), mebibytes: bytes >> 20 });
@@ -85,10 +116,7 @@ fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuEr
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use crate::data::Samples;
 
     /// An adapter with so many bytes, and axes of so many voxels.
     fn adapter(bytes: usize, longest: usize) -> impl Fn([usize; 3]) -> Result<(), GpuError> {
@@ -107,9 +135,7 @@ mod tests {
     }
 
     fn block(dims: [usize; 3], spacing_mm: DVec3, bytes: usize, longest: usize) -> [usize; 3] {
-        let voxels = dims.iter().product();
-        let volume = Volume::with_spacing("t", dims, spacing_mm, Samples::U8(vec![0; voxels])).unwrap();
-        block_that_fits(&volume, adapter(bytes, longest)).unwrap()
+        block_that_fits(dims, spacing_mm.into(), adapter(bytes, longest)).unwrap()
     }
 
     #[test]
@@ -133,8 +159,7 @@ mod tests {
 
     #[test]
     fn other_failures_are_passed_on() {
-        let volume = Volume::with_spacing("t", [3000, 1, 1], DVec3::ONE, Samples::U8(vec![0; 3000])).unwrap();
         let lost = |_| Err(GpuError::Lost("gone".to_owned()));
-        assert!(matches!(block_that_fits(&volume, lost), Err(GpuError::Lost(_))));
+        assert!(matches!(block_that_fits([3000, 1, 1], [1.0; 3], lost), Err(GpuError::Lost(_))));
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::loaded::Loaded;
 use super::report::{Picture, Report};
 use super::targets::Targets;
-use crate::data::Dataset;
+use crate::data::{Dataset, Interrupt};
 use crate::gpu::context::clock::Clock;
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::resources::tools::Tools;
@@ -143,11 +143,16 @@ impl Renderer {
         let mut job = self.begin(dataset, request, options)?;
         // A quarter of a megapixel per submission stays below driver watchdogs on slow GPUs.
         job.set_band((1 << 18) / options.window(job.request()).size[0].max(1));
+        let interrupt = Interrupt::here();
+        // Bounds what is queued: little where somebody may want to stop.
+        let most = if interrupt.is_possible() { 4 } else { 64 };
         let mut unfinished = 0;
         while job.step()? {
+            if interrupt.is_due() {
+                return Err(GpuError::Refused("nobody waits for the picture any more".to_owned()));
+            }
             unfinished += 1;
-            // Bounds what is queued.
-            if unfinished % 64 == 0 {
+            if unfinished % most == 0 {
                 context.wait()?;
             }
         }

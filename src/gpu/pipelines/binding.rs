@@ -43,6 +43,14 @@ pub(crate) fn ring_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
     }
 }
 
+/// The format of two channels beside each other where single ones are stored in `storage`.
+pub(crate) fn pair_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
+    match storage {
+        wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rg32Float,
+        _ => wgpu::TextureFormat::Rg16Float,
+    }
+}
+
 /// How the texels of a texture lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Shape {
@@ -60,6 +68,8 @@ pub(crate) enum Format {
     Of(wgpu::TextureFormat),
     /// That of single channels, as the adapter can store them.
     Storage,
+    /// That of two such channels beside each other.
+    Pair,
     /// That of the light volume which the pipeline writes.
     Attenuation,
     /// That of the ring of sheets.
@@ -132,6 +142,7 @@ impl Slot {
                     Format::Of(format) => format,
                     Format::Storage => storage,
                     Format::Attenuation => attenuation,
+                    Format::Pair => pair_format(storage),
                     Format::Ring => ring_format(storage),
                 },
                 view_dimension: shape.dimension(),

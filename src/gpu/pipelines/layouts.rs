@@ -281,6 +281,16 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
         ]],
     ),
     (
+        "volume/downsample_present.wgsl",
+        &[&[
+            Slot::sampled(0, "source", Shape::Volume),
+            Slot::sampler(1, "clamped"),
+            Slot::target(2, "level", Shape::Volume, Format::Pair),
+            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
+            Slot::list(5, "bricks", 4, Access::Read),
+        ]],
+    ),
+    (
         "volume/gradients.wgsl",
         &[&[
             Slot::loaded(0, "source", Shape::Volume),
@@ -301,6 +311,17 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
         ]],
     ),
     ("volume/prefilter.wgsl", &[RESAMPLE]),
+    (
+        "volume/prefilter_present.wgsl",
+        &[&[
+            Slot::sampled(0, "source", Shape::Volume),
+            Slot::sampler(1, "clamped"),
+            Slot::target(2, "level", Shape::Volume, Format::Pair),
+            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
+            Slot::loaded(4, "presence_level", Shape::Volume),
+            Slot::list(5, "bricks", 4, Access::Read),
+        ]],
+    ),
 ];
 
 #[cfg(feature = "testing")]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::binding::{Group, Pipeline, Slot, ring_format};
+use super::binding::{Group, Pipeline, Slot, pair_format, ring_format};
 use super::conditions::{chosen, is_override};
 use super::layouts::LAYOUTS;
 use super::pipeline_cache::PipelineCache;
@@ -98,8 +98,13 @@ impl ShaderLibrary {
             wgpu::TextureFormat::Rgba32Float => "rgba32float",
             _ => "rgba16float",
         };
+        let pair = match pair_format(format) {
+            wgpu::TextureFormat::Rg32Float => "rg32float",
+            _ => "rg16float",
+        };
         Ok(joined
             .replace("STORAGE_FORMAT", wgsl(format))
+            .replace("PAIR_FORMAT", pair)
             .replace("ATTENUATION_FORMAT", wgsl(attenuation))
             .replace("RING_FORMAT", ring))
     }

@@ -59,10 +59,13 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "sheets/tiles.wgsl",
     "volume/downsample.wgsl",
     "volume/downsample_materials.wgsl",
+    "volume/downsample_present.wgsl",
     "volume/gradients.wgsl",
     "volume/halved.wgsl",
     "volume/levels.wgsl",
     "volume/materials.wgsl",
     "volume/prefilter.wgsl",
+    "volume/prefilter_present.wgsl",
+    "volume/prefiltered.wgsl",
     "volume/resample.wgsl",
 ];

@@ -242,7 +242,7 @@ impl GpuVolume {
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
-            filled_levels: prefilter::filled_levels(bricks, &pyramid),
+            filled_levels: prefilter::filled_levels(bricks, &pyramid, presence.is_some()),
             gradients_views: gradients.as_ref().map(LevelViews::new),
             gradients,
             pyramid_views: LevelViews::new(&pyramid),
@@ -324,10 +324,11 @@ impl GpuVolume {
             let size = texture.size();
             u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
         };
-        // The coarser levels of the pyramid add a seventh.
+        // Two channels, where voxels are missing; the coarser levels of the pyramid add a seventh.
+        let channels = if self.presence.is_some() { 2 } else { 1 };
         let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
         let presence = self.presence.as_ref().map_or(0, Presence::bytes);
-        2 * texels(&self.density) + texels(&self.pyramid) * 16 / 7 + presence + gradients
+        2 * texels(&self.density) + channels * texels(&self.pyramid) * 16 / 7 + presence + gradients
     }
 }
 

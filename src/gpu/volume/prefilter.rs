@@ -1,4 +1,5 @@
-//! Fills the pyramid: `volume/prefilter.wgsl` makes level 0 from the density, `volume/downsample.wgsl` the others.
+//! Fills the pyramid: `volume/prefilter.wgsl` makes level 0 from the density, `volume/downsample.wgsl` the others; where
+//! voxels are missing `volume/prefilter_present.wgsl` and `volume/downsample_present.wgsl` do.
 
 use std::ops::Range;
 
@@ -15,8 +16,9 @@ use crate::plan::BrickSet;
 /// Bricks per step: 2^18 texels of eight fetches each, some 40 ms on a software adapter.
 const STEP_BRICKS: usize = 512;
 
-/// The bricks of 8³ texels, packed, in which each level of the pyramid, or its gradients, are not nothing.
-pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture) -> Vec<Vec<u32>> {
+/// The bricks of 8³ texels, packed, in which each level of the pyramid, or its gradients, are not nothing. Where voxels are
+/// missing each is something: what is there is, however low.
+pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture, has_missing: bool) -> Vec<Vec<u32>> {
     let size = pyramid.size();
     let size = [size.width, size.height, size.depth_or_array_layers].map(|n| n as usize);
     let dims = |level: u32| size.map(|n| (n >> level).max(1).div_ceil(8));
@@ -25,7 +27,7 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture) -> Vec<Vec
         // A brick's range looks three voxels beyond it: the blur sees one, a difference two more. Beyond the grid its
         // border is repeated.
         let [x, y, z] = [x.min(nx - 1), y.min(ny - 1), z.min(nz - 1)];
-        bricks.ranges[x + nx * (y + ny * z)] == [0.0, 0.0]
+        !has_missing && bricks.ranges[x + nx * (y + ny * z)] == [0.0, 0.0]
     };
     let finest = dims(0);
     let holds = |at: usize| {
@@ -95,25 +97,31 @@ pub(crate) fn fill(
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let bricks = &volume.filled_levels[level as usize][range.clone()];
-    let (shader, source) = match level {
-        0 => ("volume/prefilter.wgsl", volume.density_view.clone()),
-        _ => ("volume/downsample.wgsl", level_of(&volume.pyramid, level - 1)),
+    let shader = match (level, &volume.presence) {
+        (0, None) => "volume/prefilter.wgsl",
+        (_, None) => "volume/downsample.wgsl",
+        (0, Some(_)) => "volume/prefilter_present.wgsl",
+        (_, Some(_)) => "volume/downsample_present.wgsl",
     };
+    let source = match level {
+        0 => volume.density_view.clone(),
+        _ => level_of(&volume.pyramid, level - 1),
+    };
+    // Coarser levels have it from the finer.
+    let presence =
+        volume.presence.as_ref().filter(|_| level == 0).map(|presence| level_of(&presence.texture, 0));
     let pipeline = shaders.pipeline(&Only(shader))?;
     let (uniform, list) = uniform_and_list(context, level, bricks);
-    let bind_group = pass::bind(
-        context,
-        "Pyramid::bind_group",
-        &pipeline,
-        0,
-        &[
-            view_of("source", &source),
-            sampler("clamped", &volume.clamped),
-            view_of("level", &level_of(&volume.pyramid, level)),
-            buffer("bound_resample", &uniform),
-            buffer("bricks", &list),
-        ],
-    );
+    let target = level_of(&volume.pyramid, level);
+    let mut entries = vec![
+        view_of("source", &source),
+        sampler("clamped", &volume.clamped),
+        view_of("level", &target),
+        buffer("bound_resample", &uniform),
+        buffer("bricks", &list),
+    ];
+    entries.extend(presence.iter().map(|view| view_of("presence_level", view)));
+    let bind_group = pass::bind(context, "Pyramid::bind_group", &pipeline, 0, &entries);
     let groups = listed_bricks::workgroups(bricks.len().max(1) as u32);
     pass::dispatch(encoder, "Pyramid::fill", &pipeline, &[&bind_group], groups);
     Ok(())

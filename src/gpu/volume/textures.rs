@@ -5,6 +5,7 @@ use half::f16;
 
 use super::shapes::{padded, texture_3d};
 use crate::data::{BRICK_EDGE, Volume, VoxelType};
+use crate::gpu::pipelines::binding::pair_format;
 use crate::gpu::{Context, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;
 
@@ -43,7 +44,11 @@ pub(crate) fn textures(context: &Context, volume: &Volume, dims: [usize; 3]) -> 
         ..texture_3d(
             "Volume::pyramid",
             padded(dims),
-            context.storage_format,
+            if volume.missing().is_some() {
+                pair_format(context.storage_format)
+            } else {
+                context.storage_format
+            },
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         )
     })?;

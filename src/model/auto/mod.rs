@@ -164,11 +164,16 @@ fn kind_of(volume: &Volume, treated_as: Option<KindName>) -> DataKind {
     }
 }
 
+/// Light from everywhere in a first look. With this and the fill of its lights shadows darken by 30 % or more what is 0.15
+/// of the objects' pixels, and nothing is nearly black; with the usual 0.15, and a fill of 0.18, it was 0.12.
+const AMBIENT: f64 = 0.10;
+
 /// What surfaces are like: metal shines.
 fn shading(domain: Domain) -> Shading {
+    let usual = Shading { ambient: AMBIENT, ..Shading::default() };
     match domain {
-        Domain::Metal => Shading { specular: 0.5, shininess: 48.0, ..Shading::default() },
-        _ => Shading::default(),
+        Domain::Metal => Shading { specular: 0.5, shininess: 48.0, ..usual },
+        _ => usual,
     }
 }
 

@@ -6,4 +6,5 @@ mod export;
 mod foreign_paths;
 mod opening;
 pub(crate) mod raw_import;
+mod roomy;
 mod sessions;

@@ -64,22 +64,27 @@ fn voxels_are_averaged_and_the_look_stays() {
     harness.key_press(egui::Key::CloseBracket);
     click(&mut harness, "Data");
     let before = harness.state().settings().clone();
-    let choose = |harness: &mut Harness<'_, App>, block: &str, voxels: &'static str| {
-        click(harness, block);
+    let choose = |harness: &mut Harness<'_, App>, thinning: &str, voxels: &'static str| {
+        harness.get_by_role_and_label(Role::ComboBox, "Fewer voxels").click();
+        harness.run_steps(4);
+        // The list is over all else, and shown last.
+        harness.get_all_by_label(thinning).last().expect("it is in the list").click();
+        harness.run_steps(4);
         wait_until(harness, "never read again", App::is_idle);
         harness.run_steps(3);
         assert_eq!(harness.query_all_by_label_contains(voxels).count(), 1, "the title says {voxels}");
         assert_eq!(harness.state().errors(), [""; 0]);
     };
-    choose(&mut harness, "2 × 2 × 2", "16×16×16");
+    choose(&mut harness, "Means of 2 × 2 × 2", "16×16×16");
     let after = harness.state().settings().clone();
     assert_eq!((&after.camera, &after.transfer), (&before.camera, &before.transfer));
     assert_eq!(after.lights, before.lights);
     // The chair has a unit in millimetres already.
     assert_eq!(after.opacity_unit, before.opacity_unit);
-    harness.get_by_label("Averaged from");
-    choose(&mut harness, "None", "32×32×32");
-    assert!(harness.query_by_label("Averaged from").is_none());
+    harness.get_by_label("Read of");
+    choose(&mut harness, "Every second", "16×16×16");
+    choose(&mut harness, "All", "32×32×32");
+    assert!(harness.query_by_label("Read of").is_none());
 }
 
 #[test]

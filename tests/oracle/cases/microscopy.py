@@ -54,6 +54,32 @@ def of_tiff(folder):
     yield (*write(folder, "tiff_colors_planar.tif", planar, "--component 0", colors[..., 0], **options)[:2], None)
     bits = source("uint8", (2, 9, 11)) > 127
     yield write(folder, "tiff_1_bit.tif", bits)
+    yield from of_jpeg(folder)
+    # A table of colours: the numbers are what was measured, or the labels.
+    colors = (np.arange(3 * 256).reshape(3, 256) * 83).astype("uint16")
+    yield write(folder, "tiff_palette.tif", source("uint8", (2, 5, 7)), photometric="palette", colormap=colors)
+
+
+def of_jpeg(folder):
+    """Pictures of JPEG in strips and tiles, with tables of their own by tifffile, and with those of all pages by Pillow."""
+    at = np.arange(2 * 20 * 25).reshape(2, 20, 25)
+    # Smooth, as what is packed with loss.
+    grey = (128 + 90 * np.sin(at / 60)).astype("uint8")
+    options = {"compression": "jpeg", "compressionargs": {"level": 90}}
+    for name, layout in (("strips", {"rowsperstrip": 8}), ("tiles", {"tile": (16, 16)}), ("whole", {})):
+        yield (*write(folder, f"tiff_jpeg_{name}.tif", grey, **options, **layout)[:2], None)
+    across, down = np.meshgrid(np.arange(16), np.arange(13))
+    colors = np.stack([5 * across + 60, 255 - 9 * down, 4 * across + 6 * down], axis=-1)[np.newaxis].astype("uint8")
+    for name, kind, subsampling in (("rgb", "rgb", (1, 1)), ("ycbcr", "ycbcr", (1, 1)), ("halved", "ycbcr", (2, 2))):
+        options["compressionargs"] = {"level": 90, "outcolorspace": kind}
+        more = {"photometric": "rgb", "subsampling": subsampling, **options}
+        yield (*write(folder, f"tiff_jpeg_{name}.tif", colors, **more)[:2], None)
+    for name, pages in (("tables", grey), ("tables_rgb", colors)):
+        first, *others = [Image.fromarray(page) for page in pages]
+        options = {"compression": "jpeg", "quality": 90, "save_all": True, "append_images": others}
+        name = f"tiff_jpeg_{name}.tif"
+        first.save(folder / name, **options)
+        yield name, "", None
 
 
 def of_imagej(folder):

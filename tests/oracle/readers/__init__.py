@@ -169,12 +169,17 @@ def read_tiff(path, choice):
             data, axes = np.stack([page.asarray() for page in file.pages]), "ZYX"
         if "S" in axes:
             data, axes = np.moveaxis(data, axes.index("S"), -1), axes.replace("S", "")
-            is_color = file.pages[0].photometric == tifffile.PHOTOMETRIC.RGB
+            is_color = file.pages[0].photometric in (tifffile.PHOTOMETRIC.RGB, tifffile.PHOTOMETRIC.YCBCR)
             data = components(data, choice, True) if is_color else data[..., channel]
         elif "component" in choice:
             raise ValueError("there are no components")
         data = data.reshape((-1,) + data.shape[-2:])
-        return Reading(data, *place_of_tiff(file))
+        # Decoders of JPEG may round as they like, and so where colours are spread over several pixels.
+        tags = file.pages[0].tags
+        is_halved = "YCbCrSubSampling" in tags and tags["YCbCrSubSampling"].value != (1, 1)
+        is_jpeg = file.pages[0].compression == tifffile.COMPRESSION.JPEG
+        tolerance = (2.0 if is_halved else 1.0) if is_jpeg else 0.0
+        return Reading(data, *place_of_tiff(file), tolerance)
 
 
 def place_of_tiff(file):

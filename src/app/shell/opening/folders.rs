@@ -61,13 +61,23 @@ impl Likeness {
 }
 
 impl App {
-    /// Opens what was dropped on the window: a file or a folder. Of several files those of one folder that are slices are
-    /// opened as what that holds, and else the first.
+    /// Opens what was dropped on the window: a file or a folder. Several files of one kind in one folder are slices of a
+    /// volume, and no others are; of files that cannot be that the first is opened.
     pub(crate) fn open_dropped(&mut self, paths: &[PathBuf], ctx: &egui::Context) {
         let Some(first) = paths.first() else { return };
         if let Some(folder) = slices_of(paths) {
-            self.open(folder, ctx);
-            self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
+            if is_all_of(folder, paths) {
+                self.open(folder, ctx);
+                self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
+                return;
+            }
+            // It was said of another file.
+            self.messages.dismiss();
+            let reading = Reading { among: Some(paths.into()), ..Reading::default() };
+            if self.start_loading(folder, reading, ctx) {
+                self.pending = None;
+                self.messages.note(text::opening::some_of_folder(paths.len(), folder));
+            }
             return;
         }
         self.open(first, ctx);
@@ -112,10 +122,26 @@ impl App {
     }
 }
 
+/// In small letters.
+fn ending(path: &Path) -> Option<String> {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
+}
+
+/// Whether a folder has no other files of the kind of some of its files. Hidden ones are not meant.
+fn is_all_of(folder: &Path, paths: &[PathBuf]) -> bool {
+    let Some(kind) = paths.first().map(|path| ending(path)) else { return false };
+    let is_other = |path: &Path| {
+        let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        !is_hidden && ending(path) == kind && path.is_file()
+    };
+    let found = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    // Many may lie there: one more than these is enough.
+    found.filter(|path| is_other(path)).take(paths.len() + 1).count() <= paths.len()
+}
+
 /// The folder of files that may be slices of one volume: all of one kind, in one folder.
 fn slices_of(paths: &[PathBuf]) -> Option<&Path> {
     let (first, others) = paths.split_first()?;
-    let ending = |path: &Path| path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let is_slice = ending(first).is_none_or(|ending| SLICES.contains(&ending.as_str()));
     let is_like = |other: &PathBuf| ending(other) == ending(first) && other.parent() == first.parent();
     let are_slices = !others.is_empty() && is_slice && others.iter().all(is_like);
@@ -144,6 +170,8 @@ mod tests {
         };
         assert_eq!(slices_of(&files(&["1.dcm", "2.DCM"])), Some(folder.path()));
         assert_eq!(slices_of(&files(&["IM1", "IM2"])), Some(folder.path()));
+        let all = files(&["1.png", "2.png", "3.png"]);
+        assert!(is_all_of(folder.path(), &all) && !is_all_of(folder.path(), &all[..2]));
         for others in [&["1.dcm"][..], &["1.dcm", "2.png"], &["a.nrrd", "b.nrrd"], &["1.dcm", "s/2.dcm"]] {
             assert_eq!(slices_of(&files(others)), None, "{others:?}");
         }

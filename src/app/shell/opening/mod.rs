@@ -20,7 +20,7 @@ use crate::app::windows::files;
 use crate::app::windows::raw_dialog::Described;
 use crate::app::worker::loader::{Known, Opened, Reading};
 use crate::app::{App, text};
-use crate::data::load::Choice;
+use crate::data::load::{Choice, Portion, Thinning};
 use crate::data::{Corrections, Volume};
 use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, made_by};
 
@@ -75,8 +75,8 @@ impl App {
 
     /// How a volume is read that was chosen before.
     fn reading_of(&self, choice: &Choice) -> Reading {
-        let is_said = choice.is_empty() || !self.loader.options().choice.is_empty();
-        Reading { choice: (!is_said).then(|| choice.clone()), ..Reading::default() }
+        let said = self.loader.options().choice.clone();
+        Reading { choice: Some(said.or(choice)), ..Reading::default() }
     }
 
     /// Opens what was named at the start. A look that cannot be used leaves the default volume.
@@ -102,7 +102,7 @@ impl App {
         let Ok(record) = files::load_record(&session) else { return };
         let Some(volume) = record.volume.clone() else { return };
         match self.place_of(&volume, &session) {
-            VolumePlace::Builtin(name) => self.open(name, ctx),
+            VolumePlace::Builtin(name) => self.open_chosen(Path::new(&name), &volume.choice, ctx),
             VolumePlace::Beside(path) => self.open_chosen(&path, &volume.choice, ctx),
             VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
             VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
@@ -131,8 +131,8 @@ impl App {
         self.start_loading(path, reading, ctx);
     }
 
-    /// Reads the open volume again with other blocks of voxels averaged; the look stays.
-    pub(crate) fn average(&mut self, reduce: usize, ctx: &egui::Context) {
+    /// Reads the open volume again with more or fewer of its voxels; the look stays.
+    pub(crate) fn thin(&mut self, thinning: Thinning, ctx: &egui::Context) {
         let Some(volume) = &self.volume else { return };
         let mut settings = self.settings.clone();
         // Opacities refer to the same thickness, however many voxels that has.
@@ -140,8 +140,11 @@ impl App {
             let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
             settings.opacity_unit = Length::Mm(unit);
         }
-        let (source, reading) =
-            (volume.source.clone(), Reading { reduce: Some(reduce), ..volume.reading.clone() });
+        // Whether all of it has room is asked.
+        let portion = Some(Portion { thinning, ..volume.held.portion }).filter(|portion| !portion.is_whole());
+        let choice = Some(Choice { portion, ..volume.held.choice() });
+        let reading = Reading { choice, takes_all_memory: false, ..volume.reading.clone() };
+        let source = volume.source.clone();
         if self.start_loading(&source, reading, ctx) {
             self.pending = Some(PendingLook::Settings(Box::new(settings)));
         }
@@ -150,6 +153,7 @@ impl App {
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
         // What was asked or said of the file before is over.
         self.raw_dialog.close();
+        self.roomy.close();
         let known = Known { up: self.memory.up_of(source), corrected: self.memory.corrections_of(source) };
         let started = self.loader.open(source, reading, known, ctx);
         if let Err(err) = &started {

@@ -2,7 +2,8 @@
 
 use crate::app::text::common::LengthUnit;
 use crate::app::text::{Named, named};
-use crate::data::{DataKind, KindName};
+use crate::data::load::{Portion, Region, Thinning};
+use crate::data::{DataKind, KindName, SpacingUnit};
 
 /// In place of the section while no volume is open.
 pub(crate) const NOTHING_OPEN: &str = "No volume is open";
@@ -10,8 +11,9 @@ pub(crate) const NOTHING_OPEN: &str = "No volume is open";
 pub(crate) const NAME: &str = "Name";
 pub(crate) const SOURCE: &str = "Source";
 pub(crate) const DIMENSIONS: &str = "Voxels";
-/// The voxels of the file, of which blocks were averaged.
-pub(crate) const AVERAGED: &str = "Averaged from";
+/// The voxels of the file of which fewer are shown, and the part of them that was read.
+pub(crate) const SHOWN_OF: &str = "Read of";
+pub(crate) const REGION: &str = "Region";
 pub(crate) const VOXEL_TYPE: &str = "Type";
 pub(crate) const KIND: &str = "Kind";
 pub(crate) const SPACING: &str = "Spacing";
@@ -19,14 +21,48 @@ pub(crate) const VALUES: &str = "Values";
 pub(crate) const MEMORY: &str = "Memory";
 pub(crate) const NOT_FINITE: &str = "Not finite";
 
-pub(crate) const AVERAGING: Named = named(
-    "Averaging",
-    "Shows fewer voxels, each the mean of a block: quicker pictures and less memory, without the finest details. \
-     The volume is read again, the look stays",
+pub(crate) const THINNING: Named = named(
+    "Fewer voxels",
+    "Shows fewer voxels, each one of several or the mean of a block: quicker pictures and less memory, without the \
+     finest details. The volume is read again, the look stays",
 );
-pub(crate) const ALL_VOXELS: Named = named("None", "All voxels of the file");
-pub(crate) const EIGHTHS: Named = named("2 × 2 × 2", "An eighth of the voxels");
-pub(crate) const SIXTY_FOURTHS: Named = named("4 × 4 × 4", "A sixty-fourth of the voxels");
+
+/// How many voxels are kept.
+pub(crate) fn thinning(thinning: Thinning) -> Named {
+    match thinning {
+        Thinning::Every(2) => named("Every second", "An eighth of the voxels, as the file has them"),
+        Thinning::Every(4) => named("Every fourth", "A sixty-fourth of the voxels, as the file has them"),
+        Thinning::Average(2) => named("Means of 2 × 2 × 2", "An eighth of the voxels, each a mean"),
+        Thinning::Average(4) => named("Means of 4 × 4 × 4", "A sixty-fourth of the voxels, each a mean"),
+        Thinning::Every(2..) => named("Every few", "Of several voxels along each axis one"),
+        Thinning::Average(2..) => named("Means of blocks", "Each voxel is the mean of a larger block"),
+        Thinning::None | Thinning::Every(_) | Thinning::Average(_) => named("All", "All voxels of the file"),
+    }
+}
+
+/// What of which voxels is shown: the adapter may have averaged more.
+pub(crate) fn shown_of(portion: &Portion, file_dims: [usize; 3]) -> String {
+    let all = dimensions(file_dims);
+    match portion.thinning {
+        Thinning::Every(n @ 2..) => format!("{all}, every {}", ordinal(n)),
+        Thinning::None | Thinning::Every(_) | Thinning::Average(_) => format!("{all}, averaged"),
+    }
+}
+
+/// `second`
+pub(crate) fn ordinal(n: usize) -> String {
+    match n {
+        2 => "second".to_owned(),
+        3 => "third".to_owned(),
+        4 => "fourth".to_owned(),
+        n => format!("{n}th"),
+    }
+}
+
+/// A region of a file's grid.
+pub(crate) fn region(region: &Region, grid: [usize; 3]) -> String {
+    format!("{region} of {}", dimensions(grid))
+}
 
 pub(crate) const TREAT_AS: Named = named(
     "Treat as",
@@ -105,10 +141,10 @@ pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {
 
 /// The unit in which distances between voxels are written.
 pub(crate) fn unit_of_spacing(spacing_mm: [f64; 3], is_unknown: bool) -> LengthUnit {
-    let longest = spacing_mm.into_iter().fold(0.0, f64::max);
-    // Down to a hundredth of a millimetre there are digits enough behind the point.
-    let unit = LengthUnit::showing(100.0 * longest, is_unknown);
-    if is_unknown { LengthUnit { suffix: " (unit unknown)", ..unit } } else { unit }
+    if is_unknown {
+        return LengthUnit { mm: 1.0, suffix: " (unit unknown)" };
+    }
+    LengthUnit::of(SpacingUnit::of_spacing(spacing_mm))
 }
 
 /// Distances between voxels along x, y and z, in digits.

@@ -2,6 +2,7 @@
 
 use crate::app::text::data;
 use crate::data::KindName;
+use crate::data::load::Thinning;
 
 pub(crate) const OPEN_DIALOG: &str = "Open…";
 pub(crate) const OPEN_FOLDER: &str = "Open folder…";
@@ -72,11 +73,11 @@ pub(crate) const FIND: &str = "Find a command";
 pub(crate) const FIND_HINT: &str = "What do you want to do?";
 pub(crate) const NOTHING_FOUND: &str = "Nothing is called like that";
 
-/// To show all voxels of the file, or means of blocks.
-pub(crate) fn average(block: usize) -> String {
-    match block {
+/// To show all voxels of the file, every so manyth, or means of blocks.
+pub(crate) fn thin(thinning: Thinning) -> String {
+    match thinning.step() {
         1 => "Voxels: all of the file".to_owned(),
-        _ => format!("Voxels: means of {block} × {block} × {block}"),
+        _ => format!("Voxels: {}", data::thinning(thinning).name.to_lowercase()),
     }
 }
 

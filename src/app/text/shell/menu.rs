@@ -43,6 +43,10 @@ pub(crate) fn title(
     [sx, sy, sz]: [f64; 3],
     has_unknown_scale: bool,
 ) -> String {
+    // Voxels that are cubes of a size that nobody knows: there is nothing to say of it.
+    if has_unknown_scale && sx == sy && sy == sz {
+        return format!("{name} · {nx}×{ny}×{nz}");
+    }
     let unit = crate::app::text::panels::data::unit_of_spacing([sx, sy, sz], has_unknown_scale);
     let [sx, sy, sz] = [sx, sy, sz].map(|length| length / unit.mm);
     format!("{name} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3}{}", unit.suffix)

@@ -89,6 +89,12 @@ pub(crate) fn folder_of_dropped(count: usize, folder: &Path) -> String {
     format!("{count} files were dropped: all slices of their folder {} are opened", plain(&name, 60))
 }
 
+/// Slices were dropped that are not all of their folder: they alone are opened.
+pub(crate) fn some_of_folder(count: usize, folder: &Path) -> String {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    format!("{count} slices of the folder {} are opened, those that were dropped", plain(&name, 60))
+}
+
 /// Several files were dropped that do not belong together.
 pub(crate) fn first_of_dropped(count: usize, first: &Path) -> String {
     let name = first.file_name().unwrap_or_default().to_string_lossy();

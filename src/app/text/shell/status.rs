@@ -1,5 +1,6 @@
 //! The status bar.
 
+use crate::data::load::human_bytes;
 use crate::gpu::Stage;
 
 pub(crate) const NO_VOLUME: &str = "no volume";
@@ -8,9 +9,15 @@ pub(crate) const PREVIEW: &str = "preview";
 pub(crate) const NOT_RENDERED: &str = "not rendered";
 pub(crate) const DEVICE_LOST: &str = "graphics device lost";
 
-/// What is done to a file that is being opened.
-pub(crate) fn opening(phase: &str, source: &str) -> String {
-    format!("{phase} {source}")
+/// What is done to a file that is being opened, and how many of its bytes have been read.
+pub(crate) fn opening(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> String {
+    match bytes {
+        Some([done, total]) => {
+            let [done, total] = [done, total].map(|bytes| human_bytes(bytes.into()));
+            format!("{phase} {done} of {total}: {source}")
+        }
+        None => format!("{phase}: {source}"),
+    }
 }
 
 /// What the renderer is doing.

@@ -14,11 +14,8 @@ pub(crate) struct Question {
     pub verb: &'static str,
 }
 
-pub(crate) const OPEN_VOLUME: Question = Question {
-    title: "Open volume",
-    hint: "a .nrrd, .nhdr, .raw or .raw.gz file, or builtin:chair",
-    verb: "Open",
-};
+pub(crate) const OPEN_VOLUME: Question =
+    Question { title: "Open volume", hint: "a volume, a folder of slices, or builtin:chair", verb: "Open" };
 pub(crate) const OPEN_FOLDER: Question =
     Question { title: "Open a folder of slices", hint: "a folder of DICOM files or pictures", verb: "Open" };
 pub(crate) const VOLUME_OF_LOOK: Question = Question { title: "Open the volume of the look", ..OPEN_VOLUME };

@@ -94,7 +94,7 @@ impl Chooser {
             },
         );
         let wanted: Vec<_> = visible.map(|at| all.choice(at)).collect();
-        self.previews.look_at(&volume.source);
+        self.previews.look_at(&volume.source, volume.reading.among.as_ref());
         self.previews.make(&wanted, options, ctx);
         if let Some(at) = chosen {
             self.selected = at;

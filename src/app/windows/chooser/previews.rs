@@ -1,6 +1,6 @@
 //! Small pictures of the volumes of a file: the middle slice of each, made one after the other beside the window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
@@ -27,6 +27,8 @@ const LARGEST_BYTES: u64 = 256 << 20;
 pub(super) struct Previews {
     /// What they are of.
     source: PathBuf,
+    /// Of a folder, the files that are open.
+    among: Option<Arc<[PathBuf]>>,
     /// The latest last; nothing in place of a picture that could not be made.
     made: Vec<(Choice, Option<TextureHandle>)>,
     making: Option<Making>,
@@ -58,9 +60,9 @@ impl Drop for Making {
 
 impl Previews {
     /// Forgets the pictures of another file.
-    pub(super) fn look_at(&mut self, source: &std::path::Path) {
-        if self.source != source {
-            *self = Self { source: source.to_owned(), ..Self::default() };
+    pub(super) fn look_at(&mut self, source: &Path, among: Option<&Arc<[PathBuf]>>) {
+        if self.source != source || self.among.as_ref() != among {
+            *self = Self { source: source.to_owned(), among: among.cloned(), ..Self::default() };
         }
     }
 
@@ -104,7 +106,8 @@ impl Previews {
         }
         let control = Arc::new(LoadControl::new());
         let memory_budget_bytes = options.memory_budget_bytes.min(LARGEST_BYTES);
-        let options = LoadOptions { choice: choice.clone(), memory_budget_bytes, ..options.clone() };
+        let (choice_of, among) = (choice.clone(), self.among.clone());
+        let options = LoadOptions { choice: choice_of, among, memory_budget_bytes, ..options.clone() };
         let (source, watched) = (self.source.clone(), Arc::clone(&control));
         let task = move || open(&source, &options, &watched).ok().and_then(|volume| middle(&volume));
         // Without a thread there is no picture.
@@ -161,7 +164,7 @@ mod tests {
         let ctx = egui::Context::default();
         let steps: Vec<_> = (0..4).map(|step| Choice { frame: Some(step), ..Choice::default() }).collect();
         let mut previews = Previews::default();
-        previews.look_at(&file);
+        previews.look_at(&file, None);
         let start = std::time::Instant::now();
         while !steps.iter().all(|step| previews.is_known(step)) {
             previews.make(&steps, &LoadOptions::default(), &ctx);
@@ -174,7 +177,7 @@ mod tests {
         let control = Arc::clone(&previews.making.as_ref().unwrap().control);
         previews.rest();
         assert!(control.is_cancelled() && previews.is_known(&steps[0]), "what there is stays");
-        previews.look_at(std::path::Path::new("other"));
+        previews.look_at(Path::new("other"), None);
         assert!(!previews.is_known(&steps[0]));
     }
 }

@@ -1,5 +1,7 @@
 //! A folder that is opened as a whole: the slices of one volume, a file each.
 
+use std::collections::HashSet;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::pictures::slices;
@@ -10,14 +12,18 @@ use crate::data::attempt::Attempt;
 /// Most files of a folder that are looked at: eight times the slices of the longest scans.
 const MOST_FILES: usize = 1 << 16;
 
-/// Loads the volume whose slices lie in a folder.
+/// Loads the volume whose slices lie in a folder; of the files in it only those that are meant, where that is said.
 pub(in crate::data::load) fn load(
     path: &Path,
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "open the folder", path };
-    let files = files(attempt, control)?;
+    let mut files = files(attempt, control)?;
+    if let Some(among) = &options.among {
+        let meant: HashSet<&OsStr> = among.iter().filter_map(|path| path.file_name()).collect();
+        files.retain(|path| path.file_name().is_some_and(|name| meant.contains(name)));
+    }
     // Each kind of slices looks for its own, the surest marks first.
     if let Some(volume) = dicom::load_folder(path, &files, options, control)? {
         return Ok(volume);

@@ -19,7 +19,8 @@ pub use raw::{RawFormat, RawGuess, RawLayout};
 
 use super::reading::reader::{Reader, Start};
 use super::reading::{
-    beside, content, input, label_files, number, placement, reader, rescaled, samples, text_numbers,
+    beside, content, input, label_files, number, placement, read_files, reader, rescaled, samples, sieve,
+    text_numbers, voxels,
 };
 use super::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use pictures::{slices, tiff};

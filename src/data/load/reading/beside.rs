@@ -33,7 +33,8 @@ pub(in crate::data::load) fn resolve(
     let parent = attempt.path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let folder = parent.unwrap_or(Path::new(".")).canonicalize().map_err(|error| attempt.io(error))?;
     let beside = folder.join(name);
-    let of_data = Attempt { what: "find the volume's data file", path: &beside };
+    let what = format!("find the volume's data file {}", quoted(name));
+    let of_data = Attempt { what: &what, path: &beside };
     let path = beside.canonicalize().map_err(|error| of_data.io(error))?;
     // By component: as strings, /data would also contain /database.
     if path.starts_with(&folder) {

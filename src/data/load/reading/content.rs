@@ -5,11 +5,12 @@ use std::io::{self, BufReader, Read};
 
 use flate2::bufread::MultiGzDecoder;
 
-use super::input::Input;
+use super::input::{Input, most_inflated};
 use super::number::Stored;
 use super::samples::{Fault, fill, skip_bytes};
+use super::sieve::{Leap, leap_in_file};
+use super::voxels::{Meant, Voxels};
 use super::{LoadControl, LoadError};
-use crate::data::Samples;
 use crate::data::attempt::{Attempt, Extent};
 
 /// The content of a file.
@@ -17,6 +18,8 @@ pub(in crate::data::load) struct Content {
     form: Form,
     /// Bytes before the next one.
     at: u64,
+    /// Bytes of the content, or what it cannot be longer than.
+    most_bytes: u64,
 }
 
 enum Form {
@@ -27,12 +30,13 @@ enum Form {
 impl Content {
     /// The content of a file that is open at its beginning.
     pub(in crate::data::load) fn of(input: Input, is_gzip: bool) -> Self {
+        let most_bytes = if is_gzip { most_inflated(input.len) } else { input.len };
         let form = if is_gzip {
             Form::Inflated(Box::new(MultiGzDecoder::new(input.reader)))
         } else {
             Form::Stored(input)
         };
-        Self { form, at: 0 }
+        Self { form, at: 0, most_bytes }
     }
 
     /// Checks that so many bytes follow a place, as far as this shows without inflating them all.
@@ -43,14 +47,20 @@ impl Content {
         start: u64,
         bytes: u128,
     ) -> Result<(), LoadError> {
-        let Form::Stored(input) = &self.form else { return Ok(()) };
-        let found = input.len.saturating_sub(start);
+        let found = self.most_bytes.saturating_sub(start);
         if u128::from(found) >= bytes {
             return Ok(());
         }
         Err(attempt.bad_input(
             field,
-            format!("the data are truncated: {bytes} bytes expected from byte {start} on, {found} found"),
+            match self.form {
+                Form::Stored(_) => {
+                    format!("the data are truncated: {bytes} bytes expected from byte {start} on, {found} found")
+                }
+                Form::Inflated(_) => format!(
+                    "the data are truncated: {bytes} bytes expected from byte {start} on, room for {found} found"
+                ),
+            },
             "check the header, or copy the file again",
         ))
     }
@@ -68,21 +78,38 @@ impl Content {
         Ok(())
     }
 
-    /// Reads the voxels that come next.
+    /// Goes forward in what is stored as it is.
+    fn leap(&mut self, count: u64) -> io::Result<()> {
+        self.at += count;
+        match &mut self.form {
+            Form::Stored(input) => leap_in_file(&mut input.reader, count),
+            Form::Inflated(_) => Err(io::Error::from(io::ErrorKind::Unsupported)),
+        }
+    }
+
+    /// Reads the voxels that come next: what is kept of them.
     pub(in crate::data::load) fn voxels(
         &mut self,
         stored: &Stored,
         extent: Extent,
+        meant: &Meant<'_>,
         control: &LoadControl,
-    ) -> Result<Samples, Fault> {
-        if let Form::Stored(input) = &mut self.form {
+    ) -> Result<Voxels, Fault> {
+        if let Form::Stored(input) = &mut self.form
+            && extent.read.is_all()
+        {
             let bytes = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
-            let samples = stored.read_file(input, self.at, extent, control).map_err(Fault::of_stream)?;
+            let voxels = stored.read_of_file(input, self.at, extent, meant, control);
+            let voxels = voxels.map_err(Fault::of_stream)?;
             self.at = self.at.saturating_add(bytes);
             input.seek(self.at).map_err(Fault::Io)?;
-            return Ok(samples);
+            return Ok(voxels);
         }
-        stored.read(self, extent, control).map_err(Fault::of_stream)
+        let leap: Option<Leap<Self>> = match self.form {
+            Form::Stored(_) => Some(Self::leap),
+            Form::Inflated(_) => None,
+        };
+        stored.read_meant(self, leap, extent, meant, control).map_err(Fault::of_stream)
     }
 
     /// Makes a decoder look at the checksum, which comes after the last byte. What follows the voxels is nobody's business.

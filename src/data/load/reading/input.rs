@@ -5,6 +5,7 @@ use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
 
+use super::read_files::note;
 use super::{LoadControl, LoadError};
 use crate::data::attempt::Attempt;
 use crate::data::plain;
@@ -101,6 +102,7 @@ fn state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
 impl Witness {
     /// Looks at an input that nothing has been read from.
     pub(crate) fn of(attempt: Attempt<'_>, input: &Input) -> Result<Self, LoadError> {
+        note(attempt.path);
         let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((state(&file)?, file)));
         seen.map(|(before, file)| Self { file, before }).map_err(|error| attempt.io(error))
     }
@@ -126,6 +128,12 @@ impl Witness {
 /// Whether a file that begins like this is a gzip file (RFC 1952: magic, then method 8).
 pub(crate) fn is_gzip(magic: &[u8]) -> bool {
     magic.starts_with(&[0x1f, 0x8b, 8])
+}
+
+/// The most bytes that so many compressed ones can stand for: deflate makes no more than 1032 of one
+/// (<https://zlib.net/zlib_tech.html>).
+pub(in crate::data::load) fn most_inflated(bytes: u64) -> u64 {
+    bytes.saturating_mul(1032)
 }
 
 /// The file name without that of the endings (lower case, longest first) which it has, in any case.

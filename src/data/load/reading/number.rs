@@ -3,9 +3,9 @@
 
 use std::io::Read;
 
-use super::input::Input;
 use super::samples::{BLOCK_BYTES, Fault, Layout, Sample as _, fill, read_binary, reserve};
-use super::stored::read_file;
+use super::sieve::{Leap, Sieve};
+use super::voxels::{Meant, NoMeans, Voxels, averaged};
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, VoxelType};
@@ -134,30 +134,65 @@ impl Stored {
         self.number.bytes() as u64 * self.components as u64
     }
 
-    /// Reads all voxels of a grid from a byte of a file on, in which they are not compressed. Where reading the file goes on
-    /// is not said.
-    pub(in crate::data::load) fn read_file(
+    /// Reads what is kept of a grid's voxels, which are values as they are stored; what follows them is left alone.
+    pub(in crate::data::load) fn read(
         &self,
-        input: &mut Input,
-        at: u64,
+        reader: &mut impl Read,
         extent: Extent,
         control: &LoadControl,
-    ) -> Result<Samples, Fault> {
-        if self.is_as_in_memory() {
-            let layout = Layout { extent, voxel_type: self.voxel_type(), endian: self.endian };
-            return read_file(input.reader.get_ref(), at, &layout, control);
+    ) -> Result<Voxels, Fault> {
+        self.read_meant(reader, None, extent, &Meant::as_stored(None), control)
+    }
+
+    /// Reads what is kept of a grid's voxels as values; what follows them is left alone. What is left out is leapt over
+    /// where the reader can.
+    pub(in crate::data::load) fn read_meant<R: Read>(
+        &self,
+        reader: &mut R,
+        leap: Option<Leap<R>>,
+        extent: Extent,
+        meant: &Meant<'_>,
+        control: &LoadControl,
+    ) -> Result<Voxels, Fault> {
+        let Extent { read: kept, .. } = extent;
+        let voxel_type = self.voxel_type();
+        if kept.is_all() {
+            control.start(extent.bytes);
+            return Ok((meant.values)(self.read_all(reader, extent, control)?)?.into());
         }
-        input.seek(at).map_err(Fault::Io)?;
-        self.read(&mut input.reader, extent, control)
+        let mut sieve =
+            Sieve::new(reader, leap, kept.boxed_if_averaged(), self.bytes_of_voxel() as usize, control);
+        let read = if kept.is_averaged {
+            control.start(Extent::sized(kept.edges(), voxel_type).bytes);
+            let [width, height, _] = kept.edges();
+            let read = averaged(&kept, voxel_type.bytes(), meant, control, |slices| {
+                let slab = Extent::sized([width, height, slices.len()], voxel_type);
+                self.read_all(&mut sieve, slab, control)
+            });
+            read.map_err(|why| match why {
+                NoMeans::Unread(fault) => fault,
+                NoMeans::NoMemory => Fault::NoMemory,
+            })
+        } else {
+            let part = Extent::sized(kept.dims(), voxel_type);
+            control.start(part.bytes);
+            self.read_all(&mut sieve, part, control).and_then(|samples| Ok((meant.values)(samples)?.into()))
+        };
+        // To where the grid ends: what is left out must be there, too.
+        let ended = read.and_then(|voxels| fill(&mut sieve, &mut [0], control).map(|_none| voxels));
+        ended.map_err(|fault| match sieve.fault.take().unwrap_or(fault) {
+            Fault::Short { .. } => Fault::Short { got: sieve.voxels_passed() * voxel_type.bytes() as u64 },
+            fault => fault,
+        })
     }
 
     /// Whether voxels have these numbers as they are, but for the order of their bytes.
-    fn is_as_in_memory(&self) -> bool {
+    pub(super) fn is_as_in_memory(&self) -> bool {
         self.components == 1 && self.number.is_kept()
     }
 
-    /// Reads all voxels of a grid; what follows them is left alone.
-    pub(in crate::data::load) fn read(
+    /// Reads all voxels of a grid.
+    fn read_all(
         &self,
         reader: &mut impl Read,
         extent: Extent,
@@ -167,7 +202,6 @@ impl Stored {
         if self.is_as_in_memory() {
             return read_binary(reader, &layout, control);
         }
-        control.start(extent.bytes);
         let size = self.number.bytes();
         let endian = self.endian;
         macro_rules! of_component {
@@ -298,14 +332,11 @@ fn narrowed(samples: Samples) -> Samples {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
 
-    fn read(stored: Stored, bytes: &[u8], voxels: u64) -> Samples {
-        let attempt = Attempt { what: "test", path: Path::new("t") };
-        let extent = Extent::checked(attempt, "sizes", [voxels, 1, 1], stored.voxel_type(), 1 << 20).unwrap();
-        stored.read(&mut &bytes[..], extent, &LoadControl::new()).unwrap()
+    fn read(stored: Stored, bytes: &[u8], voxels: usize) -> Samples {
+        let extent = Extent::sized([voxels, 1, 1], stored.voxel_type());
+        stored.read(&mut &bytes[..], extent, &LoadControl::new()).unwrap().samples
     }
 
     #[test]

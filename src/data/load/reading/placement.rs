@@ -5,7 +5,8 @@ use std::time::Instant;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::LoadError;
-use crate::data::attempt::{Attempt, is_usable_affine, is_usable_spacing, unlike_spacings};
+use super::voxels::Voxels;
+use crate::data::attempt::{Attempt, Extent, is_usable_affine, is_usable_spacing, unlike_spacings};
 use crate::data::{Hints, Samples, ValueRange, Volume};
 
 /// Where voxels lie: as the file says it, mended where it says what cannot be.
@@ -104,14 +105,16 @@ fn mended(spacing_mm: [f64; 3], remarks: &mut Vec<String>) -> DVec3 {
 #[derive(Debug)]
 pub(in crate::data::load) struct Parts {
     pub(in crate::data::load) name: String,
-    pub(in crate::data::load) dims: [usize; 3],
+    /// The grid, what was read of it and what is wanted.
+    pub(in crate::data::load) extent: Extent,
+    /// Where the grid lies.
     pub(in crate::data::load) placement: Placement,
-    pub(in crate::data::load) samples: Samples,
+    pub(in crate::data::load) voxels: Voxels,
     pub(in crate::data::load) hints: Hints,
 }
 
 impl Parts {
-    /// The volume.
+    /// The volume: what is wanted of what was read.
     ///
     /// # Errors
     /// `BadInput` where the parts make none: no value is finite, or values span more than a number can say.
@@ -125,25 +128,34 @@ impl Parts {
         attempt: Attempt<'_>,
         help: &str,
     ) -> Result<Volume, LoadError> {
-        let Placement { world_from_index, is_anatomical, is_scale_known, remarks } = self.placement;
-        for remark in &remarks {
+        let Self { name, extent, placement, voxels, hints } = self;
+        let Extent { read, wanted, .. } = extent;
+        for remark in &placement.remarks {
             attempt.warn(remark);
         }
         let start = Instant::now();
-        Volume::new(self.name, self.dims, world_from_index, self.samples)
-            .map(|volume| {
-                let volume = volume.with_anatomy(is_anatomical).with_hints(self.hints).with_remarks(remarks);
-                if is_scale_known { volume } else { volume.with_unknown_scale() }
-            })
-            .and_then(|volume| match volume.hints().padding {
+        let of = |samples: Samples| {
+            let affine = read.placed(placement.world_from_index);
+            let made = Volume::new(name.clone(), read.dims(), affine, samples).map(|volume| {
+                let volume = if read.is_all() { volume } else { volume.kept_of_file(&read) };
+                let volume = volume.with_anatomy(placement.is_anatomical).with_hints(hints.clone());
+                let volume = volume.with_remarks(placement.remarks.clone());
+                if placement.is_scale_known { volume } else { volume.with_unknown_scale() }
+            });
+            made.and_then(|volume| match volume.hints().padding {
                 // A volume of padding alone is shown as it is.
                 Some(padding) if volume.value_range() != ValueRange::new(padding, padding) => {
                     volume.with_padding(padding)
                 }
                 _ => Ok(volume),
             })
-            .map(|volume| volume.with_looking_took(start.elapsed()))
-            .map_err(|error| attempt.bad_input("data", error.to_string(), help))
+        };
+        let Voxels { samples, picked } = voxels;
+        // Means of labels say nothing: whoever sees that these are labels reads them again.
+        let labels = picked.and_then(|picked| of(picked).ok()).filter(Volume::is_of_labels);
+        let volume = labels.map_or_else(|| of(samples), Ok).and_then(|volume| volume.portion(&read, &wanted));
+        let volume = volume.map(|volume| volume.with_looking_took(start.elapsed()));
+        volume.map_err(|error| attempt.bad_input("data", error.to_string(), help))
     }
 }
 

@@ -5,12 +5,13 @@ use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 
-use super::input::{Input, is_gzip};
+use super::input::{Input, is_gzip, most_inflated};
 use super::number::{Part, Stored};
 use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
+use super::voxels::{Meant, Voxels};
 use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
+use crate::data::Volume;
 use crate::data::attempt::{Attempt, Extent};
-use crate::data::{Samples, Volume};
 
 /// Bytes of a file's beginning that are looked at: a header of NIfTI-2 has 540, DICOM's mark ends at 132.
 const START_BYTES: usize = 1024;
@@ -61,8 +62,8 @@ impl Source<'_> {
         }
     }
 
-    /// Reads the voxels of a grid, which begin at byte `at` of the content. Of what is not compressed there must be enough
-    /// before anything is allocated.
+    /// Reads what is kept of the voxels of a grid, which begin at byte `at` of the content. There must be enough, as far as
+    /// this shows in a compressed file, before anything is allocated.
     ///
     /// # Errors
     /// `BadInput` for data that are too short, too long or broken, with `help`; `Limit` where the memory is not there.
@@ -73,14 +74,21 @@ impl Source<'_> {
         (stored, extent): (&Stored, Extent),
         after: After,
         help: &str,
-    ) -> Result<Samples, LoadError> {
+    ) -> Result<Voxels, LoadError> {
         let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
         let needed = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
         let control = self.control;
-        if !self.start.is_gzip() {
+        let [x, y, z] = extent.dims;
+        let grid = format!("for {x} x {y} x {z} voxels of {}", layout.voxel_type.name());
+        if self.start.is_gzip() {
+            let most = most_inflated(self.input.len).saturating_sub(at);
+            if most < needed {
+                let why =
+                    format!("the data are truncated: {needed} bytes expected {grid}, room for {most} found");
+                return Err(attempt.bad_input("data", why, help));
+            }
+        } else {
             let found = self.input.len.saturating_sub(at);
-            let [x, y, z] = extent.dims;
-            let grid = format!("for {x} x {y} x {z} voxels of {}", layout.voxel_type.name());
             if found < needed {
                 let why = format!("the data are truncated: {needed} bytes expected {grid}, {found} found");
                 return Err(attempt.bad_input("data", why, help));
@@ -89,8 +97,7 @@ impl Source<'_> {
                 let why = format!("there are {found} bytes where {needed} were expected {grid}");
                 return Err(attempt.bad_input("data", why, help));
             }
-            // How long it is has been looked at.
-            let read = stored.read_file(&mut self.input, at, extent, control);
+            let read = stored.read_of_file(&mut self.input, at, extent, &Meant::as_stored(None), control);
             return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
         }
         let skip = at;
@@ -100,11 +107,11 @@ impl Source<'_> {
             if skip_bytes(&mut content, skip, control)? < skip {
                 return Err(Fault::Short { got: 0 });
             }
-            let samples = stored.read(&mut content, extent, control)?;
+            let voxels = stored.read(&mut content, extent, control)?;
             if after == After::End && fill(&mut content, &mut [0], control)? > 0 {
                 return Err(Fault::Long);
             }
-            Ok(samples)
+            Ok(voxels)
         };
         read().map_err(|fault| {
             let fault = match fault {

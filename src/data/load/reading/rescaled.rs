@@ -1,128 +1,178 @@
-//! Values as a file means them: those that it holds times a slope, and an intercept added.
+//! Values as a file means them: times a slope, and an intercept added.
 
-use bytemuck::Pod;
-use rayon::prelude::*;
-
-use crate::data::Samples;
+use super::LoadError;
+use super::samples::{Fault, reserve};
+use crate::data::attempt::{Attempt, human_bytes};
+use crate::data::interrupt::{Interrupt, PIECE};
 use crate::data::values::samples::with_samples;
+use crate::data::{Samples, VoxelType};
 
-/// Voxels that a task makes: enough for starting it to cost nothing.
-const CHUNK: usize = 1 << 16;
-
-/// Whole numbers up to here (2⁵²) are themselves, and not the nearest that there is.
-const MOST_EXACT: f64 = 4_503_599_627_370_496.0;
-
-/// Values times a slope, and an intercept added, on all cores. They stay whole numbers where that is exact.
-pub(in crate::data::load) fn rescaled(samples: Samples, slope: f64, intercept: f64) -> Samples {
+/// Rescales values. They stay whole numbers where that is exact; numbers of the same size take the place of those that
+/// were read, others are made beside them.
+///
+/// # Errors
+/// `Limit` where both together need more than `budget_bytes`, or the memory is not there.
+pub(in crate::data::load) fn rescaled(
+    attempt: Attempt<'_>,
+    samples: Samples,
+    [slope, intercept]: [f64; 2],
+    budget_bytes: u64,
+) -> Result<Samples, LoadError> {
     let is_said = slope.is_finite() && intercept.is_finite() && slope != 0.0;
     if !is_said || (slope, intercept) == (1.0, 0.0) {
-        return samples;
+        return Ok(samples);
     }
+    let voxel_type = rescaled_type(&samples, slope, intercept);
+    let bytes_of = |voxel_type: VoxelType| (samples.len() as u64).saturating_mul(voxel_type.bytes() as u64);
+    let (before, after) = (samples.voxel_type(), voxel_type);
+    let needed = if before.bytes() == after.bytes() {
+        bytes_of(after)
+    } else {
+        bytes_of(before).saturating_add(bytes_of(after))
+    };
+    let too_large = || {
+        attempt.limit(
+            "slope and intercept",
+            format!(
+                "the {} numbers become others of {}: that needs {}, {} are allowed",
+                before.name(),
+                after.name(),
+                human_bytes(needed.into()),
+                human_bytes(budget_bytes.into())
+            ),
+            "close other programs, or load a smaller or cropped volume",
+        )
+    };
+    if needed > budget_bytes {
+        return Err(too_large());
+    }
+    converted(samples, voxel_type, |value| value.mul_add(slope, intercept)).map_err(|_no_memory| too_large())
+}
+
+/// The type of the values: of whole numbers the first that holds all, where they stay whole.
+fn rescaled_type(samples: &Samples, slope: f64, intercept: f64) -> VoxelType {
     let is_integer = !matches!(samples, Samples::F32(_) | Samples::F64(_));
     let is_wide = matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
-    let ends =
-        samples.finite_range().map(|(range, _)| [range.low, range.high].map(|v| v.mul_add(slope, intercept)));
-    if let Some(ends) = ends
-        && is_integer
-        && [slope, intercept].iter().all(|number| number.fract() == 0.0 && number.abs() <= MOST_EXACT)
+    if is_integer
+        && slope.fract() == 0.0
+        && intercept.fract() == 0.0
+        && let Some((range, _)) = samples.finite_range()
     {
-        let within = |low: f64, high: f64| ends.iter().all(|end| (low..=high).contains(end));
-        if within(0.0, 255.0) {
-            return Samples::U8(whole(samples, slope, intercept, |value| value as u8));
-        } else if within(f64::from(i16::MIN), f64::from(i16::MAX)) {
-            return Samples::I16(whole(samples, slope, intercept, |value| value as i16));
-        } else if within(0.0, f64::from(u16::MAX)) {
-            return Samples::U16(whole(samples, slope, intercept, |value| value as u16));
-        } else if within(f64::from(i32::MIN), f64::from(i32::MAX)) {
-            return Samples::I32(whole(samples, slope, intercept, |value| value));
+        let ends = [range.low, range.high].map(|value| value.mul_add(slope, intercept));
+        let holds = |low: f64, high: f64| ends.iter().all(|end| (low..=high).contains(end));
+        if holds(0.0, 255.0) {
+            return VoxelType::U8;
+        } else if holds(f64::from(i16::MIN), f64::from(i16::MAX)) {
+            return VoxelType::I16;
+        } else if holds(0.0, f64::from(u16::MAX)) {
+            return VoxelType::U16;
+        } else if holds(f64::from(i32::MIN), f64::from(i32::MAX)) {
+            return VoxelType::I32;
         }
     }
-    if is_wide {
-        Samples::F64(float(samples, slope, intercept, |value| value))
-    } else {
-        Samples::F32(float(samples, slope, intercept, |value| value as f32))
-    }
+    if is_wide { VoxelType::F64 } else { VoxelType::F32 }
 }
 
-/// Whole numbers of which it is known that they fit into 32 bits: what products have beyond these does not count.
-#[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is i32 already")]
-fn whole<U: Pod + Send>(
-    samples: Samples,
-    slope: f64,
-    intercept: f64,
-    kept: impl Fn(i32) -> U + Sync,
-) -> Vec<U> {
-    let (slope, intercept) = (slope as i64 as i32, intercept as i64 as i32);
-    with_samples!(samples, values => mapped(values, |value| {
-        kept((value as i32).wrapping_mul(slope).wrapping_add(intercept))
-    }))
+/// A number type to which values are cast.
+trait Cast {
+    fn of(value: f64) -> Self;
 }
 
-/// Numbers rounded once.
-#[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
-fn float<U: Pod + Send>(
-    samples: Samples,
-    slope: f64,
-    intercept: f64,
-    kept: impl Fn(f64) -> U + Sync,
-) -> Vec<U> {
-    with_samples!(samples, values => mapped(values, |value| kept((value as f64).mul_add(slope, intercept))))
-}
-
-/// Other values in place of some: in the same memory where they are as long.
-fn mapped<T: Pod + Send + Sync, U: Pod + Send>(values: Vec<T>, of: impl Fn(T) -> U + Sync) -> Vec<U> {
-    let values = if size_of::<T>() == size_of::<U>() {
-        match bytemuck::allocation::try_cast_vec::<T, U>(values) {
-            Ok(mut cells) => {
-                cells.par_chunks_mut(CHUNK).for_each(|cells| {
-                    for cell in cells {
-                        *cell = of(bytemuck::cast(*cell));
-                    }
-                });
-                return cells;
+macro_rules! cast {
+    ($($type:ty),+) => { $(
+        impl Cast for $type {
+            fn of(value: f64) -> Self {
+                value as Self
             }
-            Err((_, values)) => values,
         }
-    } else {
-        values
-    };
-    let mut made = vec![U::zeroed(); values.len()];
-    made.par_chunks_mut(CHUNK).zip(values.par_chunks(CHUNK)).for_each(|(made, values)| {
-        made.iter_mut().zip(values).for_each(|(made, &value)| *made = of(value));
-    });
-    made
+    )+ };
+}
+cast!(u8, i8, u16, i16, u32, i32, f32);
+
+impl Cast for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+}
+
+/// Values in another type.
+#[expect(trivial_numeric_casts, reason = "one of the eight types is f64 already")]
+fn converted(samples: Samples, voxel_type: VoxelType, value: impl Fn(f64) -> f64) -> Result<Samples, Fault> {
+    macro_rules! in_type {
+        ($($variant:ident),+) => {
+            match voxel_type {
+                $(VoxelType::$variant => with_samples!(samples, values => each(values, |number| {
+                    Cast::of(value(number as f64))
+                }))
+                .map(Samples::$variant),)+
+            }
+        };
+    }
+    in_type!(U8, I8, U16, I16, U32, I32, F32, F64)
+}
+
+/// Other values in the place of some.
+fn each<T: Copy, R>(values: Vec<T>, value: impl Fn(T) -> R) -> Result<Vec<R>, Fault> {
+    if size_of::<T>() == size_of::<R>() {
+        // Collecting goes on in the same memory.
+        return Ok(values.into_iter().map(value).collect());
+    }
+    let mut others = reserve(values.len())?;
+    let interrupt = Interrupt::here();
+    for piece in values.chunks(PIECE) {
+        if interrupt.is_due() {
+            break;
+        }
+        others.extend(piece.iter().map(|&number| value(number)));
+    }
+    Ok(others)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::data::load::LoadErrorKind;
+
+    fn tried(samples: Samples, scale: [f64; 2], budget: u64) -> Result<Samples, LoadErrorKind> {
+        let attempt = Attempt { what: "test", path: Path::new("t") };
+        rescaled(attempt, samples, scale, budget).map_err(|error| error.kind())
+    }
 
     #[test]
     fn values_are_rescaled_and_stay_whole_where_they_can() {
         let bytes = Samples::U8(vec![0, 200]);
-        assert_eq!(rescaled(bytes.clone(), 1.0, -1024.0), Samples::I16(vec![-1024, -824]));
-        assert_eq!(rescaled(bytes.clone(), 0.5, 0.0), Samples::F32(vec![0.0, 100.0]));
-        for (slope, intercept) in [(1.0, 0.0), (0.0, 5.0), (f64::NAN, 0.0), (2.0, f64::INFINITY)] {
-            assert_eq!(rescaled(bytes.clone(), slope, intercept), bytes, "{slope} {intercept}");
+        let done = |samples: &Samples, scale| tried(samples.clone(), scale, u64::MAX).unwrap();
+        assert_eq!(done(&bytes, [1.0, -1024.0]), Samples::I16(vec![-1024, -824]));
+        assert_eq!(done(&bytes, [0.5, 0.0]), Samples::F32(vec![0.0, 100.0]));
+        for scale in [[1.0, 0.0], [0.0, 5.0], [f64::NAN, 0.0], [2.0, f64::INFINITY]] {
+            assert_eq!(done(&bytes, scale), bytes, "{scale:?}");
         }
         let words = Samples::U16(vec![0, 65535]);
-        assert_eq!(rescaled(words, 1.0, -32768.0), Samples::I16(vec![-32768, 32767]));
+        assert_eq!(done(&words, [1.0, -32768.0]), Samples::I16(vec![-32768, 32767]));
+        assert_eq!(done(&Samples::I32(vec![3, -4]), [0.5, 1.0]), Samples::F64(vec![2.5, -1.0]));
     }
 
     #[test]
-    fn each_type_gives_what_numbers_of_64_bits_would() {
-        let ends = Samples::I32(vec![i32::MIN, -7, 0, i32::MAX]);
-        assert_eq!(rescaled(ends, -1.0, -1.0), Samples::I32(vec![i32::MAX, 6, -1, i32::MIN]));
-        let high = Samples::U32(vec![4_000_000_000, 4_000_000_100]);
-        assert_eq!(rescaled(high.clone(), 2.0, -8_000_000_000.0), Samples::U8(vec![0, 200]));
-        assert_eq!(rescaled(high, 1.0, 1.0), Samples::F64(vec![4_000_000_001.0, 4_000_000_101.0]));
-        let halves = Samples::F64(vec![0.5, f64::NAN]);
-        let Samples::F64(halves) = rescaled(halves, 3.0, 1.0) else { panic!("its type stays") };
-        assert!(halves[0] == 2.5 && halves[1].is_nan());
-        assert_eq!(rescaled(Samples::F32(vec![1.5]), 2.0, 0.0), Samples::F32(vec![3.0]));
-        // Nothing is lost of what is more than a task makes.
-        let many = Samples::U16((0..200_000u32).map(|at| (at % 4096) as u16).collect());
-        let lifted = (0..200_000).map(|at| (at % 4096 - 1024) as i16).collect();
-        assert_eq!(rescaled(many, 1.0, -1024.0), Samples::I16(lifted));
+    fn what_is_made_beside_the_numbers_is_counted() {
+        let bytes = Samples::U8(vec![7; 100]);
+        // A hundred bytes, and as many floats.
+        assert_eq!(tried(bytes.clone(), [0.5, 0.0], 499), Err(LoadErrorKind::Limit));
+        assert_eq!(tried(bytes.clone(), [0.5, 0.0], 500), Ok(Samples::F32(vec![3.5; 100])));
+        assert_eq!(tried(bytes, [1.0, 0.0], 0), Ok(Samples::U8(vec![7; 100])), "nothing is made");
+        let words = Samples::U16(vec![7; 100]);
+        assert_eq!(tried(words.clone(), [1.0, -9.0], 199), Err(LoadErrorKind::Limit));
+        assert_eq!(tried(words, [1.0, -9.0], 200), Ok(Samples::I16(vec![-2; 100])), "in their place");
+    }
+
+    #[test]
+    fn numbers_of_one_size_stay_where_they_are() {
+        let words: Vec<u16> = (0..1000).collect();
+        let at = words.as_ptr() as usize;
+        let Ok(Samples::I16(others)) = tried(Samples::U16(words), [1.0, -9.0], u64::MAX) else {
+            panic!("they fit");
+        };
+        assert_eq!(others.as_ptr() as usize, at);
     }
 }

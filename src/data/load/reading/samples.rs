@@ -7,7 +7,6 @@ use std::io::{self, Read};
 
 use bytemuck::Pod;
 
-use super::large_pages::prefer_large_pages;
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::attempt::{Extent, human_bytes};
@@ -42,6 +41,12 @@ pub(crate) enum Fault {
     Io(io::Error),
     /// `cancel` was set.
     Stopped(LoadError),
+}
+
+impl From<LoadError> for Fault {
+    fn from(stopped: LoadError) -> Self {
+        Self::Stopped(stopped)
+    }
 }
 
 impl Fault {
@@ -163,13 +168,12 @@ macro_rules! read_as {
 
 pub(super) use read_as;
 
-/// Reads binary voxels; what follows them is left alone.
+/// Reads binary voxels of a grid, all of them; what follows them is left alone.
 pub(crate) fn read_binary(
     reader: &mut impl Read,
     layout: &Layout,
     control: &LoadControl,
 ) -> Result<Samples, Fault> {
-    control.start(layout.extent.bytes);
     read_as!(layout.voxel_type, read_blocks(reader, layout, control))
 }
 
@@ -264,9 +268,7 @@ pub(super) fn read_block<T: Sample>(
 
 /// So many values of 0, or an error where the memory is not there. It is taken as it is written to.
 pub(in crate::data::load) fn zeroed<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
-    let mut values = bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)?;
-    prefer_large_pages(&mut values);
-    Ok(values)
+    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)
 }
 
 /// An empty vector with room for `count` values, or an error where the memory is not there.

@@ -9,22 +9,43 @@ use std::io::{self, Read};
 use std::sync::{Mutex, PoisonError};
 
 use super::LoadControl;
+use super::input::Input;
+use super::number::Stored;
 use super::samples::{BLOCK_BYTES, Fault, Layout, Sample, read_as, read_block, zeroed};
+use super::sieve::leap_in_file;
+use super::voxels::{Meant, Voxels};
+use crate::data::attempt::Extent;
 use crate::data::{Samples, VoxelType};
 
 /// More threads than these do not copy faster: memory is the limit.
 const MOST_THREADS: usize = 4;
 
-/// Bytes that a thread takes at a time: two large pages of memory, lest two threads use the same one first.
+/// Bytes that a thread takes at a time: far more than taking some costs, and so few that all threads end together.
 const PART_BYTES: usize = 4 << 20;
 
+impl Stored {
+    /// Reads what is kept of a grid's voxels, which lie in a file from a byte on and are not compressed, as values. Where
+    /// reading the file goes on is not said.
+    pub(in crate::data::load) fn read_of_file(
+        &self,
+        input: &mut Input,
+        at: u64,
+        extent: Extent,
+        meant: &Meant<'_>,
+        control: &LoadControl,
+    ) -> Result<Voxels, Fault> {
+        if extent.read.is_all() && self.is_as_in_memory() {
+            let layout = Layout { extent, voxel_type: self.voxel_type(), endian: self.endian };
+            let samples = read_file(input.reader.get_ref(), at, &layout, control)?;
+            return Ok((meant.values)(samples)?.into());
+        }
+        input.seek(at).map_err(Fault::Io)?;
+        self.read_meant(&mut input.reader, Some(leap_in_file), extent, meant, control)
+    }
+}
+
 /// Reads voxels that begin at a byte of a file; what follows them is left alone.
-pub(super) fn read_file(
-    file: &File,
-    at: u64,
-    layout: &Layout,
-    control: &LoadControl,
-) -> Result<Samples, Fault> {
+fn read_file(file: &File, at: u64, layout: &Layout, control: &LoadControl) -> Result<Samples, Fault> {
     control.start(layout.extent.bytes);
     read_as!(layout.voxel_type, read_parts(file, at, layout, control))
 }
@@ -92,16 +113,12 @@ impl Read for Within<'_> {
 #[cfg(test)]
 mod tests {
     use std::io::Write as _;
-    use std::path::Path;
 
     use super::*;
-    use crate::data::attempt::{Attempt, Extent};
     use crate::data::load::Endian;
 
     fn layout(voxels: u64, voxel_type: VoxelType, endian: Endian) -> Layout {
-        let attempt = Attempt { what: "test", path: Path::new("t") };
-        let extent = Extent::checked(attempt, "sizes", [voxels, 1, 1], voxel_type, 1 << 30).unwrap();
-        Layout { extent, voxel_type, endian }
+        Layout { extent: Extent::sized([voxels as usize, 1, 1], voxel_type), voxel_type, endian }
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! RAW files and dispatch, from the outside: what is read and what is refused.
 
+mod cancelling;
+mod portions;
 pub(super) mod shared;
 
 use std::fs;
@@ -246,8 +248,7 @@ impl std::io::Read for CancellingReader<'_> {
 #[test]
 fn cancelling_stops_within_a_block() {
     let control = LoadControl::new();
-    let attempt = Attempt { what: "test", path: Path::new("t") };
-    let extent = Extent::checked(attempt, "", [64 << 20, 1, 1], VoxelType::U8, 1 << 30).unwrap();
+    let extent = Extent::sized([64 << 20, 1, 1], VoxelType::U8);
     let layout =
         super::reading::samples::Layout { extent, voxel_type: VoxelType::U8, endian: Endian::Little };
     let stopped = super::reading::samples::read_binary(&mut CancellingReader(&control), &layout, &control);

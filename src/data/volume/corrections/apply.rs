@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::scaled::{scaled, scaled_hints};
 use super::{Corrections, Orientation, PaddingValue, SpacingUnit};
-use crate::data::attempt::is_usable_affine;
+use crate::data::attempt::{is_usable_affine, memory_budget_bytes};
 use crate::data::volume::{Volume, VolumeError};
 use crate::math::SceneSpace;
 
@@ -97,14 +97,17 @@ impl Volume {
 
     /// Distances between the voxels of the file, of which one of the volume may be the mean of several.
     pub fn file_spacing_mm(&self) -> DVec3 {
-        self.spacing_mm() / DVec3::from(self.block.map(|n| n as f64))
+        self.spacing_mm() / self.block.steps()
     }
 
     /// The same volume with other values.
     fn with_values(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let scale = by.value_scale;
-        let samples =
-            if scale.is_none() { Arc::clone(&self.samples) } else { Arc::new(scaled(&self.samples, scale)?) };
+        let samples = if scale.is_none() {
+            Arc::clone(&self.samples)
+        } else {
+            Arc::new(scaled(&self.samples, scale, memory_budget_bytes())?)
+        };
         let volume = Self::sharing(self.name.clone(), self.dims, self.world_from_index, samples)?;
         let padding = match by.padding_value {
             PaddingValue::InFile => self.padding_value.map(|number| scale.value(number)),
@@ -138,15 +141,11 @@ impl Volume {
         if !is_moved {
             return self.world_from_index;
         }
-        // Of the voxels in the file: a volume may have the means of blocks of them.
-        let blocks = DVec3::from(self.block.map(|n| n as f64));
-        let is_averaged = self.block != [1; 3];
-        let file_from_index =
-            DAffine3 { matrix3: DMat3::from_diagonal(blocks), translation: 0.5 * (blocks - 1.0) };
-        let world_from_file = if is_averaged {
-            self.world_from_index * file_from_index.inverse()
-        } else {
-            self.world_from_index
+        // Of the voxels in the file, of which a volume may have one for several.
+        let file_from_index = self.block.file_from_index();
+        let world_from_file = match file_from_index {
+            Some(file_from_index) => self.world_from_index * file_from_index.inverse(),
+            None => self.world_from_index,
         };
         let axes = world_from_file.matrix3;
         let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
@@ -166,7 +165,7 @@ impl Volume {
         }
         let [x, y, z] = columns;
         let moved = DAffine3 { matrix3: DMat3::from_cols(x, y, z), translation: origin };
-        if is_averaged { moved * file_from_index } else { moved }
+        file_from_index.map_or(moved, |file_from_index| moved * file_from_index)
     }
 }
 

@@ -9,10 +9,15 @@ macro_rules! narrowest {
     ($($variant:ident: $type:ty),+) => {
         /// The values in the narrowest type of whole numbers that holds them all; `None` where none does.
         #[expect(trivial_numeric_casts, reason = "one of the eight types is f64 already")]
-        fn whole(samples: &Samples, scale: ValueScale, range: ValueRange) -> Result<Option<Samples>, VolumeError> {
+        fn whole(
+            samples: &Samples,
+            scale: ValueScale,
+            range: ValueRange,
+            budget_bytes: u64,
+        ) -> Result<Option<Samples>, VolumeError> {
             $(
                 if range.low >= f64::from(<$type>::MIN) && range.high <= f64::from(<$type>::MAX) {
-                    let values = with_samples!(samples, values => each(values, |&number| {
+                    let values = with_samples!(samples, values => each(values, budget_bytes, |&number| {
                         scale.value(number as f64) as $type
                     }))?;
                     return Ok(Some(Samples::$variant(values)));
@@ -25,19 +30,26 @@ macro_rules! narrowest {
 
 narrowest!(U8: u8, I8: i8, U16: u16, I16: i16, U32: u32, I32: i32);
 
-/// One value for each, where the memory for them is there.
-fn each<T, R>(values: &[T], value: impl Fn(&T) -> R) -> Result<Vec<R>, VolumeError> {
+/// One value for each, where the memory for them is there, and they need no more than `budget_bytes`.
+fn each<T, R>(values: &[T], budget_bytes: u64, value: impl Fn(&T) -> R) -> Result<Vec<R>, VolumeError> {
     let mut scaled = Vec::new();
-    let no_memory =
-        |_| VolumeError::NoMemory { bytes: (values.len() as u64).saturating_mul(size_of::<R>() as u64) };
-    scaled.try_reserve_exact(values.len()).map_err(no_memory)?;
+    let bytes = (values.len() as u64).saturating_mul(size_of::<R>() as u64);
+    if bytes > budget_bytes {
+        return Err(VolumeError::NoMemory { bytes });
+    }
+    scaled.try_reserve_exact(values.len()).map_err(|_full| VolumeError::NoMemory { bytes })?;
     scaled.extend(values.iter().map(value));
     Ok(scaled)
 }
 
-/// What numbers mean: whole numbers stay whole where slope and intercept are.
+/// What numbers mean: whole numbers stay whole where slope and intercept are. The values may need `budget_bytes` beside
+/// the numbers: floats of bytes are four times as long.
 #[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
-pub(super) fn scaled(samples: &Samples, scale: ValueScale) -> Result<Samples, VolumeError> {
+pub(super) fn scaled(
+    samples: &Samples,
+    scale: ValueScale,
+    budget_bytes: u64,
+) -> Result<Samples, VolumeError> {
     let (numbers, _) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
     let ends = [numbers.low, numbers.high].map(|number| scale.value(number));
     let range = ValueRange::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
@@ -45,7 +57,7 @@ pub(super) fn scaled(samples: &Samples, scale: ValueScale) -> Result<Samples, Vo
     if !has_point
         && scale.slope.fract() == 0.0
         && scale.intercept.fract() == 0.0
-        && let Some(whole) = whole(samples, scale, range)?
+        && let Some(whole) = whole(samples, scale, range, budget_bytes)?
     {
         return Ok(whole);
     }
@@ -53,10 +65,11 @@ pub(super) fn scaled(samples: &Samples, scale: ValueScale) -> Result<Samples, Vo
     let is_short = !matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
     if is_short && range.low.abs().max(range.high.abs()) < f64::from(f32::MAX) {
         let value = |number: f64| scale.value(number) as f32;
-        return with_samples!(samples, values => each(values, |&number| value(number as f64)))
+        return with_samples!(samples, values => each(values, budget_bytes, |&number| value(number as f64)))
             .map(Samples::F32);
     }
-    with_samples!(samples, values => each(values, |&number| scale.value(number as f64))).map(Samples::F64)
+    with_samples!(samples, values => each(values, budget_bytes, |&number| scale.value(number as f64)))
+        .map(Samples::F64)
 }
 
 /// What a file says of its numbers, of the values that these mean.
@@ -75,4 +88,21 @@ pub(super) fn scaled_hints(hints: &Hints, scale: ValueScale) -> Hints {
         }
     }
     scaled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_made_where_there_is_room_for_them() {
+        let numbers = Samples::U8(vec![0, 7, 200]);
+        let halves = ValueScale { slope: 0.5, intercept: 0.0 };
+        let floats = Samples::F32(vec![0.0, 3.5, 100.0]);
+        assert_eq!(scaled(&numbers, halves, 12), Ok(floats));
+        assert_eq!(scaled(&numbers, halves, 11), Err(VolumeError::NoMemory { bytes: 12 }));
+        let below = ValueScale { slope: 1.0, intercept: -300.0 };
+        assert_eq!(scaled(&numbers, below, 6), Ok(Samples::I16(vec![-300, -293, -100])));
+        assert_eq!(scaled(&numbers, below, 5), Err(VolumeError::NoMemory { bytes: 6 }));
+    }
 }

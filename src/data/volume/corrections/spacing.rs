@@ -36,6 +36,21 @@ impl SpacingUnit {
         }
     }
 
+    /// The one in which a length has digits in front of the point: millimetres where they do, and shorter ones where not.
+    pub fn showing(length_mm: f64) -> Self {
+        match length_mm {
+            length if length >= 1.0 => Self::Mm,
+            length if length >= 1e-3 => Self::Um,
+            _ => Self::Nm,
+        }
+    }
+
+    /// The one in which distances between voxels are said: down to a hundredth of a millimetre there are digits enough
+    /// behind the point.
+    pub fn of_spacing(spacing_mm: [f64; 3]) -> Self {
+        Self::showing(100.0 * spacing_mm.into_iter().fold(0.0, f64::max))
+    }
+
     /// How it is written behind a number.
     pub fn symbol(self) -> &'static str {
         match self {
@@ -75,4 +90,22 @@ fn numbers(text: &str) -> Option<[f64; 3]> {
     let parts: Vec<f64> =
         text.split(['x', 'X', '×', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
     parts.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_said_in_units_that_suit_them() {
+        for (spacing, unit) in [
+            ([0.5, 0.5, 2.0], SpacingUnit::Mm),
+            ([0.0005, 0.0005, 0.02], SpacingUnit::Mm),
+            ([0.0005, 0.0005, 0.002], SpacingUnit::Um),
+            ([3.25e-6; 3], SpacingUnit::Nm),
+        ] {
+            assert_eq!(SpacingUnit::of_spacing(spacing), unit, "{spacing:?}");
+        }
+        assert_eq!(SpacingUnit::showing(0.5), SpacingUnit::Um);
+    }
 }

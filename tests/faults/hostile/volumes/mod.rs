@@ -7,6 +7,7 @@
 mod bombs;
 mod cuts;
 mod numbers;
+mod parts;
 mod places;
 mod words;
 
@@ -64,6 +65,7 @@ fn all(root: &Path) -> Vec<Case> {
     words::add(&mut made);
     numbers::add(&mut made);
     bombs::add(&mut made);
+    parts::add(&mut made);
     places::add(&mut made, &root.join(FORBIDDEN));
     made.cases
 }

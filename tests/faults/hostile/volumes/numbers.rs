@@ -32,7 +32,7 @@ pub(super) fn add(made: &mut Maker) {
             );
         }
     }
-    for name in ["lzw.tif", "zstd.tif", "colors.tif", "imagej.tif", "ome.tif"] {
+    for name in ["lzw.tif", "zstd.tif", "jpeg.tif", "colors.tif", "imagej.tif", "ome.tif"] {
         tiff(made, name, &of(name));
     }
     for name in ["frames.dcm", "runs.dcm", "jpeg.dcm", "jpeg_2000.dcm", "jpeg_ls.dcm", "lossless.dcm"] {

@@ -34,8 +34,9 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
         Header::read(attempt, &mut Words::new(source.content(), control))?
     };
     let voxel_type = VoxelType::F32;
-    let budget = source.options.memory_budget_bytes;
-    let extent = Extent::checked(attempt, "numbers of voxels", header.dims, voxel_type, budget)?;
+    // Its slices are none of the volume's: x is slowest. All of it is read before anything is left out.
+    let room = source.options.room(source.control);
+    let extent = Extent::checked_whole(attempt, "numbers of voxels", header.dims, voxel_type, room)?;
     let layout = Layout { extent, voxel_type, endian: Endian::Little };
     let values = header.values.len();
     let chosen = source
@@ -70,7 +71,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     })?;
     let mut hints = Hints::default();
     hints.set_acquisition(&header.title);
-    Parts { name, dims: extent.dims, placement: header.placement, samples, hints }.volume(attempt)
+    Parts { name, extent, placement: header.placement, voxels: samples.into(), hints }.volume(attempt)
 }
 
 /// Reads one value of each voxel: x is slowest in the file, and fastest in memory.

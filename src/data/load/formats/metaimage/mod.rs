@@ -17,6 +17,7 @@ use super::placement::Parts;
 use super::reader::{Reader, Source};
 use super::rescaled::rescaled;
 use super::samples::{Fault, Layout};
+use super::voxels::Meant;
 use super::{LoadError, label_files};
 use crate::data::attempt::{Attempt, Dimension, Extent, Offer};
 use crate::data::{Volume, plain};
@@ -47,15 +48,23 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let frame = attempt.chosen(&options.choice, Dimension::Frame, offers)?;
     let stored = storage.stored;
     let voxel_type = stored.voxel_type();
-    let extent = Extent::checked(attempt, "DimSize", grid.dims, voxel_type, options.memory_budget_bytes)?;
+    let extent = Extent::checked(attempt, "DimSize", grid.dims, voxel_type, options.room(control))?;
     let files = Files::of(attempt, &header, &grid)?;
     let described =
         Described { grid: &grid, storage: &storage, files: &files, data_start: header.data_start };
     let mut pieces = Pieces::of(attempt, input, described, frame, control)?;
 
-    let samples = stored.read(&mut pieces, extent, control).map_err(Fault::of_stream);
-    let samples = samples.and_then(|samples| pieces.finish(control).map(|()| samples));
-    let samples = samples.map_err(|fault| match (pieces.failure(), fault) {
+    let mut hints = hints::of(&header);
+    let scale = |name, default| header.number(name).unwrap_or(default);
+    let scale = [scale(layout::SLOPE, 1.0), scale(layout::INTERCEPT, 0.0)];
+    let is_single = stored.components == 1;
+    let values = |samples| {
+        if is_single { rescaled(attempt, samples, scale, options.memory_budget_bytes) } else { Ok(samples) }
+    };
+    let meant = Meant { padding: hints.padding, values: &values };
+    let voxels = stored.read_meant(&mut pieces, None, extent, &meant, control).map_err(Fault::of_stream);
+    let voxels = voxels.and_then(|voxels| pieces.finish(control).map(|()| voxels));
+    let voxels = voxels.map_err(|fault| match (pieces.failure(), fault) {
         (Some(error), _) => error,
         (None, Fault::Corrupt(error)) if storage.is_text => attempt.bad_input(
             "data",
@@ -77,19 +86,12 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
             )
         }
     })?;
-    let samples = if stored.components == 1 {
-        let scale = |name, default| header.number(name).unwrap_or(default);
-        rescaled(samples, scale(layout::SLOPE, 1.0), scale(layout::INTERCEPT, 0.0))
-    } else {
-        samples
-    };
 
     placement.remarks.extend(stored.part.remark().map(str::to_owned));
-    let mut hints = hints::of(&header);
-    if stored.components == 1 {
-        label_files::add(attempt, ENDINGS, &samples, &mut hints);
+    if is_single {
+        label_files::add(attempt, ENDINGS, voxels.in_file(), &mut hints);
     }
     let name = header.get("Name").filter(|name| !name.is_empty());
     let name = plain(&name.map_or_else(|| bare_name(path, ENDINGS), str::to_owned), 120);
-    Parts { name, dims: extent.dims, placement, samples, hints }.volume(attempt)
+    Parts { name, extent, placement, voxels, hints }.volume(attempt)
 }

@@ -45,11 +45,16 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let count = all_z / per_volume;
     let dims = [x, y, per_volume];
     let frame = source.numbered(attempt, Dimension::Frame, count, dims, |_| String::new())?;
-    let budget = source.options.memory_budget_bytes;
-    let extent = Extent::checked(attempt, "NX, NY, NZ", dims, stored.voxel_type(), budget)?;
+    let extent = Extent::checked(
+        attempt,
+        "NX, NY, NZ",
+        dims,
+        stored.voxel_type(),
+        source.options.room(source.control),
+    )?;
     let before = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel()).saturating_mul(frame as u64);
     let at = (HEADER_BYTES as u64 + header.extension_bytes(attempt)?).saturating_add(before);
-    let samples = source.voxels(attempt, at, (&stored, extent), After::More, HELP)?;
+    let voxels = source.voxels(attempt, at, (&stored, extent), After::More, HELP)?;
 
     let remark = if mode.is_complex && source.options.choice.component.is_none() {
         Some("complex numbers are shown by their length")
@@ -66,7 +71,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
         hints.meaning = Meaning::PositiveDensity;
     }
     hints.set_acquisition(&header.label());
-    Parts { name: stem(source.path), dims: extent.dims, placement, samples, hints }.volume(attempt)
+    Parts { name: stem(source.path), extent, placement, voxels, hints }.volume(attempt)
 }
 
 /// How the voxels of a mode are stored.

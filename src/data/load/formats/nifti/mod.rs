@@ -20,9 +20,10 @@ use super::placement::Parts;
 use super::reader::{Reader, Source};
 use super::rescaled::rescaled;
 use super::samples::{Fault, Layout};
+use super::voxels::{Meant, Voxels};
 use super::{LoadControl, LoadError, LoadOptions, label_files};
 use crate::data::attempt::{Attempt, Dimension, Extent};
-use crate::data::{Samples, Volume, plain};
+use crate::data::{Volume, plain};
 use grid::Grid;
 use header::{Form, Header};
 use number_type::NumberType;
@@ -81,7 +82,10 @@ fn read(
     let part = Part::asked(attempt, component, components, number_type.is_color)?;
     let stored = Stored { number: number_type.number, endian: header.endian, components, part };
     let dims = grid.dims;
-    let extent = Extent::checked(attempt, "dim", dims, stored.voxel_type(), options.memory_budget_bytes)?;
+    // Lengths of vectors are made of several volumes, and known when all have been read.
+    let is_planar = grid.components > 1;
+    let checked = if is_planar && part == Part::Magnitude { Extent::checked_whole } else { Extent::checked };
+    let extent = checked(attempt, "dim", dims, stored.voxel_type(), options.room(control))?;
     let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: header.endian };
     let failed = |fault: Fault| {
         fault.into_error(attempt, &layout, "bytes", "check the header, or copy the file again")
@@ -94,42 +98,46 @@ fn read(
         u64::try_from(u128::from(header.data_start) + volumes * bytes).unwrap_or(u64::MAX)
     };
     let is_planar = grid.components > 1;
+    // Of components, each of which is scaled.
+    let are_lengths = is_planar && part == Part::Magnitude;
     let (first, last) = match part {
         Part::Component(at) if is_planar => (place(at), place(at)),
         _ => (place(0), place(grid.components - 1)),
     };
     content.check_room(attempt, "dim", last, bytes)?;
-    let samples = if is_planar && part == Part::Magnitude {
+    let voxels = if are_lengths {
         let places = (0..grid.components).map(place);
-        vectors::lengths(&mut content, &stored, places, header.scale(), extent, control)
+        vectors::lengths(&mut content, &stored, places, header.scale(), extent, control).map(Voxels::from)
     } else {
         let stored = if is_planar { Stored::scalar(stored.number, stored.endian) } else { stored };
-        content
-            .go_to(first, control)
-            .and_then(|()| content.voxels(&stored, extent, control))
-            .map(|samples| scaled(samples, header, &number_type, part))
+        let values = |samples| match scale_of(header, &number_type, part) {
+            Some(scale) => rescaled(attempt, samples, scale, options.memory_budget_bytes),
+            None => Ok(samples),
+        };
+        let meant = Meant { padding: None, values: &values };
+        content.go_to(first, control).and_then(|()| content.voxels(&stored, extent, &meant, control))
     };
-    let samples = samples.and_then(|samples| content.finish(control).map(|()| samples)).map_err(failed)?;
+    let voxels = voxels.and_then(|voxels| content.finish(control).map(|()| voxels)).map_err(failed)?;
 
     let mut placement = geometry::placement(header, dims);
     placement.remarks.extend(number_type.remark(part).map(str::to_owned));
     let mut hints = hints::of(header);
     if components == 1 {
-        label_files::add(attempt, ENDINGS, &samples, &mut hints);
+        label_files::add(attempt, ENDINGS, voxels.in_file(), &mut hints);
     }
     let name = plain(&bare_name(attempt.path, ENDINGS), 120);
-    Parts { name, dims: extent.dims, placement, samples, hints }.volume(attempt)
+    Parts { name, extent, placement, voxels, hints }.volume(attempt)
 }
 
-/// Values as the header means them. Colours are not scaled (`nifti1.h`, "data scaling").
-fn scaled(samples: Samples, header: &Header, number_type: &NumberType, part: Part) -> Samples {
+/// Slope and intercept with which values are what the header means. Colours are not scaled (`nifti1.h`, "data scaling").
+fn scale_of(header: &Header, number_type: &NumberType, part: Part) -> Option<[f64; 2]> {
     let (slope, intercept) = header.scale();
     match part {
-        _ if number_type.is_color => samples,
+        _ if number_type.is_color => None,
         // The length of a complex number: what is added to its real part cannot be told from it.
-        Part::Magnitude => rescaled(samples, slope.abs(), 0.0),
+        Part::Magnitude => Some([slope.abs(), 0.0]),
         // An imaginary part is only stretched.
-        Part::Component(at) if number_type.components > 1 && at > 0 => rescaled(samples, slope, 0.0),
-        _ => rescaled(samples, slope, intercept),
+        Part::Component(at) if number_type.components > 1 && at > 0 => Some([slope, 0.0]),
+        _ => Some([slope, intercept]),
     }
 }

@@ -4,6 +4,7 @@ use std::io::{Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
 use super::super::input::{Input, bare_name, is_gzip};
+use super::super::read_files::note;
 use super::super::reader::Start;
 use super::super::{LoadError, beside};
 use super::ENDINGS;
@@ -21,6 +22,7 @@ pub(super) fn header(attempt: Attempt<'_>) -> Result<Header, LoadError> {
     };
     let of_header = Attempt { what: "read the NIfTI volume's header", path: &path };
     let mut input = Input::open(of_header)?;
+    note(&path);
     let start = Start::of(&mut input).map_err(|error| of_header.io(error))?;
     let Some(form) = Form::of(start.bytes()) else {
         return Err(of_header.bad_input("header", "it is no header of NIfTI or Analyze", "check the file"));

@@ -1,12 +1,14 @@
 //! The data of all files as one stream of bytes: decoded, without what is skipped.
 
-use std::io::{self, BufRead, Read};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use bzip2::bufread::MultiBzDecoder;
 use flate2::bufread::MultiGzDecoder;
 
-use super::super::input::{Input, Witness};
+use super::super::input::{Input, Witness, most_inflated};
+use super::super::sieve::leap_in_file;
 use super::super::text_numbers::TextNumbers;
 use super::super::{LoadControl, LoadError};
 use super::layout::{Encoding, Storage};
@@ -46,8 +48,24 @@ pub(super) struct Data<'a> {
 struct Current {
     path: PathBuf,
     witness: Witness,
-    reader: Box<dyn Read>,
+    reader: Stream,
     left: u64,
+}
+
+/// What the bytes of a file come from.
+enum Stream {
+    /// As they are.
+    Plain(BufReader<File>),
+    Decoded(Box<dyn Read>),
+}
+
+impl Read for Stream {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::Plain(reader) => reader.read(into),
+            Self::Decoded(reader) => reader.read(into),
+        }
+    }
 }
 
 impl<'a> Data<'a> {
@@ -65,18 +83,38 @@ impl<'a> Data<'a> {
     pub(super) fn skip(&mut self, bytes: u64) -> io::Result<()> {
         let files = bytes / self.bytes_of_file.max(1);
         self.places.truncate(self.places.len().saturating_sub(usize::try_from(files).unwrap_or(usize::MAX)));
-        let mut left = bytes % self.bytes_of_file.max(1);
-        // What lies between two looks at `cancel`.
-        let mut block = vec![0; 1 << 16];
+        self.leap(bytes % self.bytes_of_file.max(1))
+    }
+
+    /// Goes forward: of what is neither packed nor text nothing is read.
+    pub(super) fn leap(&mut self, bytes: u64) -> io::Result<()> {
+        let mut left = bytes;
+        let mut block = Vec::new();
         while left > 0 {
-            let want = usize::try_from(left).map_or(block.len(), |left| left.min(block.len()));
-            let got = self.read(&mut block[..want])?;
+            if let Some(Current { reader: Stream::Plain(reader), left: in_file, .. }) = &mut self.current {
+                let step = left.min(*in_file);
+                leap_in_file(reader, step)?;
+                *in_file -= step;
+                left -= step;
+                self.check_end().map_err(|failure| self.failed(failure))?;
+                continue;
+            }
+            // As much as lies between two looks at `cancel`; little where a file has yet to be opened.
+            let most = if self.current.is_some() { 1 << 16 } else { 1 };
+            block.resize(usize::try_from(left).map_or(most, |left| left.min(most)), 0);
+            let got = self.read(&mut block)?;
             if got == 0 {
                 break;
             }
             left -= got as u64;
         }
         Ok(())
+    }
+
+    /// Keeps why something has failed, and says that it has.
+    fn failed(&mut self, failure: LoadError) -> io::Error {
+        self.failure = Some(failure);
+        io::Error::other("the data cannot be read")
     }
 
     /// Opens the next file; whether there is one.
@@ -152,10 +190,7 @@ impl<'a> Data<'a> {
 
 impl Read for Data<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        self.read_some(into).map_err(|failure| {
-            self.failure = Some(failure);
-            io::Error::other("the data cannot be read")
-        })
+        self.read_some(into).map_err(|failure| self.failed(failure))
     }
 }
 
@@ -174,7 +209,7 @@ fn decoded(
     storage: Storage,
     bytes: u64,
     control: &LoadControl,
-) -> Result<Box<dyn Read>, LoadError> {
+) -> Result<Stream, LoadError> {
     let start = match place {
         Place::Attached(_, start) => *start,
         Place::Detached(_) => 0,
@@ -201,6 +236,9 @@ fn decoded(
             // Legal: several headers can point into one file.
             attempt.warn(format_args!("{} bytes after the voxels are ignored", found - bytes));
         }
+        Encoding::Gzip if most_inflated(available) < bytes => {
+            return Err(truncated(bytes, most_inflated(available), "bytes"));
+        }
         Encoding::Hex if found / 2 < bytes => return Err(truncated(bytes, found / 2, "bytes")),
         // A digit each and a space between: less cannot hold the numbers.
         Encoding::Text if found.div_ceil(2) < numbers => {
@@ -210,18 +248,18 @@ fn decoded(
     }
     let reader = input.reader;
     // The skipped bytes of compressed data are counted after inflating.
-    let mut decoder: Box<dyn Read> = match storage.encoding {
-        Encoding::Raw => Box::new(reader),
-        Encoding::Gzip => Box::new(MultiGzDecoder::new(reader)),
-        Encoding::Bzip2 => Box::new(MultiBzDecoder::new(reader)),
+    let mut decoder = match storage.encoding {
+        Encoding::Raw => Stream::Plain(reader),
+        Encoding::Gzip => Stream::Decoded(Box::new(MultiGzDecoder::new(reader))),
+        Encoding::Bzip2 => Stream::Decoded(Box::new(MultiBzDecoder::new(reader))),
         Encoding::Hex | Encoding::Text => {
             let mut reader = reader;
             skip_bytes(attempt, storage.encoding, &mut reader, skip, control)?;
-            return Ok(match storage.encoding {
+            return Ok(Stream::Decoded(match storage.encoding {
                 Encoding::Hex => Box::new(Hex { reader }),
                 // One more than needed tells too much from enough.
                 _ => Box::new(TextNumbers::new(reader, storage.number, numbers.saturating_add(1))),
-            });
+            }));
         }
     };
     skip_bytes(attempt, storage.encoding, &mut decoder, skip, control)?;

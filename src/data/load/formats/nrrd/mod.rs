@@ -20,6 +20,7 @@ use super::number::{Number, Part, Stored};
 use super::placement::Parts;
 use super::reader::{Reader, Source};
 use super::samples::{Fault, Layout};
+use super::voxels::Meant;
 use super::{Dimension, Endian, LoadError, LoadOptions, Offer};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Meaning, Volume, plain};
@@ -53,7 +54,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let endian = storage.endian.filter(|_| storage.encoding != Encoding::Text).unwrap_or(Endian::Little);
     let stored = Stored { number: storage.number, endian, components: geometry.components, part };
     let extent =
-        Extent::checked(attempt, "sizes", geometry.dims, stored.voxel_type(), options.memory_budget_bytes)?;
+        Extent::checked(attempt, "sizes", geometry.dims, stored.voxel_type(), options.room(control))?;
     let bytes_of_frame = (extent.voxels as u64)
         .checked_mul(stored.bytes_of_voxel())
         .filter(|bytes| bytes.checked_mul(geometry.frames).is_some())
@@ -70,8 +71,9 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let mut data = Data::new(places, storage, bytes_of_file, control);
     let read = data.skip(frame * bytes_of_frame).map_err(Fault::Io);
     let layout = Layout { extent, voxel_type: stored.voxel_type(), endian };
-    let samples = read.and_then(|()| stored.read(&mut data, extent, control));
-    let samples = samples.map_err(|fault| match data.failure.take() {
+    let meant = Meant::as_stored(hints.padding);
+    let voxels = read.and_then(|()| stored.read_meant(&mut data, Some(Data::leap), extent, &meant, control));
+    let voxels = voxels.map_err(|fault| match data.failure.take() {
         Some(failure) => failure,
         None => fault.into_error(attempt, &layout, "bytes", HELP),
     })?;
@@ -84,7 +86,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     placement.remarks.extend(part.remark().map(str::to_owned));
     let name = header.get("content").filter(|content| !content.is_empty());
     let name = name.map_or_else(|| stem(path), |content| plain(content, 120));
-    Parts { name, dims: extent.dims, placement: geometry.placement, samples, hints }.volume(attempt)
+    Parts { name, extent, placement: geometry.placement, voxels, hints }.volume(attempt)
 }
 
 /// Which time step is read, from 0 where they are behind each other, and which of the numbers beside each other.

@@ -18,9 +18,10 @@ use super::number::{Part, Stored};
 use super::placement::{Parts, Placement};
 use super::reader::{After, Reader, Source};
 use super::samples::{Fault, Layout, is_corruption, skip_bytes};
+use super::voxels::Voxels;
 use super::{Dimension, LoadError, Offer};
 use crate::data::attempt::{Attempt, Extent, quoted};
-use crate::data::{Hints, Samples, Volume, plain};
+use crate::data::{Hints, Volume, plain};
 use grid::Grid;
 use header::{Header, MAGIC};
 use zip::Entry;
@@ -70,8 +71,13 @@ fn wanted(
         let chosen = source.numbered(attempt, dimension, count, grid.dims, |_| String::new())?;
         number = number.saturating_mul(count).saturating_add(chosen as u64);
     }
-    let budget = source.options.memory_budget_bytes;
-    let extent = Extent::checked(attempt, "shape", grid.dims, stored.voxel_type(), budget)?;
+    let extent = Extent::checked(
+        attempt,
+        "shape",
+        grid.dims,
+        stored.voxel_type(),
+        source.options.room(source.control),
+    )?;
     let before = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel()).saturating_mul(number);
     let remark = match part {
         Part::Magnitude => Some("complex numbers are shown by their length"),
@@ -87,9 +93,9 @@ fn load_array(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let header = Header::read(attempt, &mut source.content())?;
     let grid = Grid::of(attempt, &header)?;
     let Wanted { stored, extent, at, placement } = wanted(&source, attempt, &header, &grid)?;
-    let samples = source.voxels(attempt, at, (&stored, extent), After::More, HELP)?;
+    let voxels = source.voxels(attempt, at, (&stored, extent), After::More, HELP)?;
     let name = stem(source.path);
-    Parts { name, dims: extent.dims, placement, samples, hints: Hints::default() }.volume(attempt)
+    Parts { name, extent, placement, voxels, hints: Hints::default() }.volume(attempt)
 }
 
 /// Loads an array of an archive.
@@ -129,10 +135,10 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let chosen = attempt.chosen(&source.options.choice, Dimension::Array, offers.collect())?;
     let (entry, header, grid) = arrays.swap_remove(chosen);
     let wanted = wanted(&source, attempt, &header, &grid)?;
-    let samples = inflated(&mut source, attempt, &entry, &wanted)?;
+    let voxels = inflated(&mut source, attempt, &entry, &wanted)?;
     let Wanted { extent, placement, .. } = wanted;
     let name = plain(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(ENDING)), 120);
-    Parts { name, dims: extent.dims, placement, samples, hints: Hints::default() }.volume(attempt)
+    Parts { name, extent, placement, voxels, hints: Hints::default() }.volume(attempt)
 }
 
 /// Reads what is wanted of an entry of an archive.
@@ -141,7 +147,7 @@ fn inflated(
     attempt: Attempt<'_>,
     entry: &Entry,
     wanted: &Wanted,
-) -> Result<Samples, LoadError> {
+) -> Result<Voxels, LoadError> {
     let Wanted { stored, extent, at, .. } = wanted;
     let needed = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel()).saturating_add(*at);
     // Before anything is allocated.
@@ -165,7 +171,7 @@ fn inflated(
         }
         stored.read(&mut content, *extent, control)
     };
-    let samples = read().map_err(|fault| match fault {
+    let voxels = read().map_err(|fault| match fault {
         Fault::Io(error) if is_corruption(&error) => {
             broken(attempt, entry, &format!("they cannot be inflated: {error}"))
         }
@@ -176,7 +182,7 @@ fn inflated(
     if is_all && content.crc().sum() != entry.checksum {
         return Err(broken(attempt, entry, "their checksum is another"));
     }
-    Ok(samples)
+    Ok(voxels)
 }
 
 fn broken(attempt: Attempt<'_>, entry: &Entry, why: &str) -> LoadError {

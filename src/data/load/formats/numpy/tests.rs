@@ -3,6 +3,7 @@
 use std::io::Write as _;
 
 use super::*;
+use crate::data::Samples;
 use crate::data::load::tests::shared::load_bytes as loaded_as;
 use crate::data::load::{Choice, LoadErrorKind};
 

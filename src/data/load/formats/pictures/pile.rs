@@ -3,18 +3,18 @@
 //! Some are decoded at a time, on all cores; besides the volume itself no more than those are in memory.
 
 use std::io::{self, Read};
-use std::ops::Range;
 
-use crate::data::Samples;
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::load::reading::number::Stored;
 use crate::data::load::reading::samples::{Fault, Layout};
+use crate::data::load::reading::voxels::{Meant, Voxels};
 use crate::data::load::{LoadControl, LoadError};
 
 /// Bytes of slices that are decoded at a time: enough for all cores, little beside a volume.
 const AT_ONCE_BYTES: u64 = 32 << 20;
 
-/// Reads the voxels of slices, each stored as `stored` says. `decode` gives the bytes of some of them.
+/// Reads what is kept of the voxels of slices, each stored as `stored` says. `decode` gives the bytes of some of them, by
+/// their numbers; those of which nothing is kept are not asked for.
 ///
 /// # Errors
 /// What `decode` says; `BadInput` where a slice has other bytes than it should, `Limit` without memory.
@@ -22,14 +22,18 @@ pub(super) fn read_pile(
     attempt: Attempt<'_>,
     stored: &Stored,
     extent: Extent,
+    meant: &Meant<'_>,
     control: &LoadControl,
-    decode: impl FnMut(Range<usize>) -> Result<Vec<Vec<u8>>, LoadError>,
-) -> Result<Samples, LoadError> {
-    let [width, height, count] = extent.dims;
+    decode: impl FnMut(&[usize]) -> Result<Vec<Vec<u8>>, LoadError>,
+) -> Result<Voxels, LoadError> {
+    let [width, height, _] = extent.dims;
+    let slices: Vec<usize> = extent.read.slices().collect();
+    let count = slices.len();
     let slice_bytes = (width as u64 * height as u64).saturating_mul(stored.bytes_of_voxel());
     let at_once = usize::try_from(AT_ONCE_BYTES / slice_bytes.max(1)).unwrap_or(count).clamp(1, count);
-    let mut pile = Pile { decode, count, at_once, next: 0, ready: Vec::new(), at: 0, failed: None };
-    let read = stored.read(&mut pile, extent, control);
+    let mut pile = Pile { decode, slices, at_once, next: 0, ready: Vec::new(), at: 0, failed: None };
+    let needed = extent.of_slices(stored.voxel_type());
+    let read = stored.read_meant(&mut pile, None, needed, meant, control);
     let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
     match (read, pile.failed) {
         (_, Some(error)) => Err(error),
@@ -42,9 +46,10 @@ pub(super) fn read_pile(
 /// The bytes of all slices, one after the other.
 struct Pile<F> {
     decode: F,
-    count: usize,
+    /// Those that are needed.
+    slices: Vec<usize>,
     at_once: usize,
-    /// The slice after those that are ready.
+    /// The one of them after those that are ready.
     next: usize,
     /// What is to be handed out, the next one last.
     ready: Vec<Vec<u8>>,
@@ -54,7 +59,7 @@ struct Pile<F> {
     failed: Option<LoadError>,
 }
 
-impl<F: FnMut(Range<usize>) -> Result<Vec<Vec<u8>>, LoadError>> Read for Pile<F> {
+impl<F: FnMut(&[usize]) -> Result<Vec<Vec<u8>>, LoadError>> Read for Pile<F> {
     fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
         loop {
             if let Some(slice) = self.ready.last() {
@@ -66,9 +71,9 @@ impl<F: FnMut(Range<usize>) -> Result<Vec<Vec<u8>>, LoadError>> Read for Pile<F>
                 }
                 self.ready.pop();
                 self.at = 0;
-            } else if self.next < self.count {
-                let end = self.count.min(self.next + self.at_once);
-                match (self.decode)(self.next..end) {
+            } else if self.next < self.slices.len() {
+                let end = self.slices.len().min(self.next + self.at_once);
+                match (self.decode)(&self.slices[self.next..end]) {
                     Ok(slices) => self.ready = slices,
                     Err(error) => {
                         self.failed = Some(error);
@@ -89,6 +94,8 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::data::Samples;
+    use crate::data::attempt::{Kept, Portion};
     use crate::data::load::Endian;
     use crate::data::load::reading::number::Number;
 
@@ -96,16 +103,23 @@ mod tests {
     fn slices_follow_each_other_and_one_that_fails_ends_it() {
         let attempt = Attempt { what: "test", path: Path::new("t") };
         let stored = Stored::scalar(Number::U8, Endian::Little);
-        let extent = Extent::checked(attempt, "sizes", [2, 1, 3], stored.voxel_type(), 100).unwrap();
-        let control = LoadControl::new();
-        let slices = |range: Range<usize>| Ok(range.map(|z| vec![z as u8, 10 + z as u8]).collect());
-        let read = read_pile(attempt, &stored, extent, &control, slices);
-        assert_eq!(read.unwrap(), Samples::U8(vec![0, 10, 1, 11, 2, 12]));
-        let short = |range: Range<usize>| Ok(range.map(|z| vec![z as u8]).collect());
-        let error = read_pile(attempt, &stored, extent, &control, short).unwrap_err();
+        let extent = Extent::sized([2, 1, 3], stored.voxel_type());
+        let (control, meant) = (LoadControl::new(), Meant::as_stored(None));
+        let slices = |some: &[usize]| Ok(some.iter().map(|&z| vec![z as u8, 10 + z as u8]).collect());
+        let read = read_pile(attempt, &stored, extent, &meant, &control, slices);
+        assert_eq!(read.unwrap().samples, Samples::U8(vec![0, 10, 1, 11, 2, 12]));
+        let half = Kept::of(&Portion::every(2), [2, 1, 3], false).unwrap();
+        let half = Extent { wanted: half, read: half, ..extent };
+        let read = read_pile(attempt, &stored, half, &meant, &control, |some| {
+            assert_eq!(some, [0, 2], "of the second slice nothing is kept");
+            slices(some)
+        });
+        assert_eq!(read.unwrap().samples, Samples::U8(vec![0, 2]));
+        let short = |some: &[usize]| Ok(some.iter().map(|&z| vec![z as u8]).collect());
+        let error = read_pile(attempt, &stored, extent, &meant, &control, short).unwrap_err();
         assert!(error.to_string().contains("6 bytes expected"), "{error}");
-        let fails = |_: Range<usize>| Err(attempt.bad_input("page 1", "it is broken", "mend it"));
-        let error = read_pile(attempt, &stored, extent, &control, fails).unwrap_err();
+        let fails = |_: &[usize]| Err(attempt.bad_input("page 1", "it is broken", "mend it"));
+        let error = read_pile(attempt, &stored, extent, &meant, &control, fails).unwrap_err();
         assert!(error.to_string().contains("it is broken"), "{error}");
     }
 }

@@ -46,8 +46,10 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     };
     let part = source.part(attempt, components, components > 1)?;
     let stored = Stored { number, endian: Endian::Big, components, part };
-    let extent = Extent::checked(attempt, "dimensions", header.dims, stored.voxel_type(), budget)?;
-    let (samples, after) = match unpacked {
+    // What is packed is unpacked as a whole, as far as the budget reaches.
+    let room = source.options.room(source.control);
+    let extent = Extent::checked(attempt, "dimensions", header.dims, stored.voxel_type(), room)?;
+    let (voxels, after) = match unpacked {
         None => {
             let at = header.bytes as u64;
             (source.voxels(attempt, at, (&stored, extent), After::More, HELP)?, Vec::new())
@@ -63,12 +65,12 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
                 ));
             }
             let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
-            let samples = stored
+            let voxels = stored
                 .read(&mut data, extent, control)
                 .map_err(|fault| fault.into_error(attempt, &layout, "bytes", HELP))?;
-            (samples, data.to_vec())
+            (voxels, data.to_vec())
         }
     };
     let (placement, hints) = (header.placement(part), header.hints(&after));
-    Parts { name: stem(source.path), dims: extent.dims, placement, samples, hints }.volume(attempt)
+    Parts { name: stem(source.path), extent, placement, voxels, hints }.volume(attempt)
 }

@@ -4,9 +4,10 @@ use super::super::number::{Number, Stored};
 use super::super::placement::{Parts, Placement};
 use super::super::reader::{After, Source};
 use super::super::samples::Layout;
+use super::super::voxels::{Meant, Voxels};
 use super::super::{Dimension, Endian, LoadError};
 use crate::data::attempt::{Attempt, Extent};
-use crate::data::{Hints, Samples, Volume, VoxelType};
+use crate::data::{Hints, Volume, VoxelType};
 
 /// A header longer than this is not a header: the suggestion of `--offset` would mislead.
 const LONGEST_HEADER_BYTES: u64 = 1 << 20;
@@ -58,8 +59,8 @@ impl Form {
         let part = source.part(attempt, self.components, self.is_color)?;
         let stored = Stored { number: self.number, endian: self.endian, components: self.components, part };
         let frame = source.numbered(attempt, Dimension::Frame, self.frames, self.dims, |_| String::new())?;
-        let budget = source.options.memory_budget_bytes;
-        let extent = Extent::checked(attempt, self.dims_field, self.dims, stored.voxel_type(), budget)?;
+        let room = source.options.room(source.control);
+        let extent = Extent::checked(attempt, self.dims_field, self.dims, stored.voxel_type(), room)?;
         let bytes = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
         let all_bytes = bytes.saturating_mul(self.frames);
         let offset = self.offset.unwrap_or(0);
@@ -68,7 +69,7 @@ impl Form {
         // Voxels may begin with gzip's magic by chance: a file of the right size is not compressed.
         let fits_exactly = offset.checked_add(all_bytes) == Some(source.input.len);
         let zipped_name = source.path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
-        let samples = if source.start.is_gzip() && (zipped_name || !fits_exactly) {
+        let voxels = if source.start.is_gzip() && (zipped_name || !fits_exactly) {
             let after = if self.frames == 1 { After::End } else { After::More };
             let help = "check the dimensions, the type and --offset";
             source.voxels(attempt, at, (&stored, extent), after, help)?
@@ -77,7 +78,7 @@ impl Form {
             read_plain(&mut source, attempt, at, &stored, extent)?
         };
         let placement = self.placement.remarked(part.remark());
-        let parts = Parts { name, dims: extent.dims, placement, samples, hints: self.hints };
+        let parts = Parts { name, extent, placement, voxels, hints: self.hints };
         parts.volume_or(attempt, help)
     }
 
@@ -123,8 +124,9 @@ fn read_plain(
     at: u64,
     stored: &Stored,
     extent: Extent,
-) -> Result<Samples, LoadError> {
-    stored.read_file(&mut source.input, at, extent, source.control).map_err(|fault| {
+) -> Result<Voxels, LoadError> {
+    let meant = Meant::as_stored(None);
+    stored.read_of_file(&mut source.input, at, extent, &meant, source.control).map_err(|fault| {
         let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
         fault.into_error(attempt, &layout, "bytes", "the file has changed meanwhile: load it again")
     })

@@ -9,9 +9,10 @@ use super::super::number::{Number, Part, Stored};
 use super::super::placement::{Parts, Placement};
 use super::super::reader::Source;
 use super::super::samples::{Fault, Layout};
+use super::super::voxels::Voxels;
 use super::super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::attempt::{Attempt, Extent};
-use crate::data::{Hints, Modality, Samples, Volume};
+use crate::data::{Hints, Modality, Volume};
 
 /// Arrays that are offered at most: more than simulations have.
 pub(super) const MOST_ARRAYS: usize = 4096;
@@ -105,7 +106,7 @@ impl<P> Chosen<P> {
         (self.extent.voxels as u64).saturating_mul(self.array.components as u64)
     }
 
-    /// Reads the values from where they begin.
+    /// Reads what is kept of the values from where they begin.
     ///
     /// # Errors
     /// `BadInput` also for what the reader calls invalid or too short: it decodes what a file holds.
@@ -115,13 +116,16 @@ impl<P> Chosen<P> {
         reader: &mut impl Read,
         endian: Endian,
         control: &LoadControl,
-    ) -> Result<Samples, LoadError> {
+    ) -> Result<Voxels, LoadError> {
         const HELP: &str = "copy the file again, or write it again with another program";
         let stored = Stored { endian, ..self.stored };
         let layout = Layout { extent: self.extent, voxel_type: stored.voxel_type(), endian };
         stored.read(reader, self.extent, control).map_err(|fault| match fault {
             Fault::Io(error) if is_of_content(&error) => {
                 attempt.bad_input(&self.array.name, error.to_string(), HELP)
+            }
+            Fault::Io(error) if error.kind() == io::ErrorKind::OutOfMemory => {
+                Fault::NoMemory.into_error(attempt, &layout, "bytes", HELP)
             }
             fault => fault.into_error(attempt, &layout, "bytes", HELP),
         })
@@ -132,7 +136,7 @@ impl<P> Chosen<P> {
         self,
         attempt: Attempt<'_>,
         grid: &Grid,
-        samples: Samples,
+        voxels: Voxels,
         title: &str,
     ) -> Result<Volume, LoadError> {
         let mut placement = grid.placement(self.array.of_cells);
@@ -141,7 +145,7 @@ impl<P> Chosen<P> {
         let name = if self.is_one_of_several { format!("{file} {}", self.array.name) } else { file };
         let mut hints = Hints::default();
         hints.modality = Modality::of_description(title);
-        Parts { name, dims: self.extent.dims, placement, samples, hints }.volume(attempt)
+        Parts { name, extent: self.extent, placement, voxels, hints }.volume(attempt)
     }
 }
 
@@ -151,6 +155,7 @@ pub(super) fn choose<P>(
     grid: &Grid,
     mut arrays: Vec<Array<P>>,
     options: &LoadOptions,
+    control: &LoadControl,
 ) -> Result<Chosen<P>, LoadError> {
     if arrays.is_empty() {
         return Err(attempt.bad_input(
@@ -172,8 +177,7 @@ pub(super) fn choose<P>(
     // The byte order is said when they are read.
     let stored = Stored { number: array.number, endian: Endian::Little, components, part };
     let dims = grid.dims(array.of_cells);
-    let extent =
-        Extent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.memory_budget_bytes)?;
+    let extent = Extent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.room(control))?;
     Ok(Chosen { array, stored, extent, is_one_of_several })
 }
 

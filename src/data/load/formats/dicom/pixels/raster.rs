@@ -1,14 +1,12 @@
 //! Pixels as they are stored to voxels.
 
-use bytemuck::Pod;
-
 use super::shape::{Colors, PixelNumber, Shape};
 use crate::data::load::Endian;
 use crate::data::load::reading::number::Part;
 
 /// A type that voxels have.
 pub(in crate::data::load::formats::dicom) trait Voxel:
-    Pod + Send
+    Copy + Default + Send
 {
     fn of_integer(value: i64) -> Self;
     fn of_float(value: f64) -> Self;

@@ -12,6 +12,7 @@ use super::raster::{Raster, Voxel};
 use super::shape::Shape;
 use crate::data::attempt::{Attempt, human_bytes};
 use crate::data::load::reading::input::Input;
+use crate::data::load::reading::read_files::note;
 use crate::data::load::{Endian, LoadControl, LoadError};
 
 /// Most fragments that are looked at: 16 for each of the most frames.
@@ -193,6 +194,7 @@ impl Store {
         voxels: &mut [T],
         control: &LoadControl,
     ) -> Result<(), LoadError> {
+        note(attempt.path);
         let size = self.shape.bytes_of_frame();
         let beyond = || attempt.bad_input("Number of Frames", "it has fewer frames than it says", HELP_COPY);
         match &self.kept {

@@ -17,6 +17,7 @@ use crate::data::attempt::{Attempt, Extent, quoted};
 use crate::data::load::reading::input::{Input, stem};
 use crate::data::load::reading::placement::{Parts, Placement};
 use crate::data::load::reading::reader::{Reader, Source, Start};
+use crate::data::load::reading::voxels::Meant;
 use crate::data::load::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume, plain};
 use groups::{Group, groups};
@@ -168,11 +169,11 @@ fn volume(
     }
     let stored = model.stored;
     let dims = [model.size[0], model.size[1], files.len() as u64];
-    let extent = Extent::checked(attempt, "files", dims, stored.voxel_type(), options.memory_budget_bytes)?;
-    let samples = read_pile(attempt, &stored, extent, control, |range| {
-        files[range]
-            .par_iter()
-            .map(|path| {
+    let extent = Extent::checked(attempt, "files", dims, stored.voxel_type(), options.room(control))?;
+    let voxels = read_pile(attempt, &stored, extent, &Meant::as_stored(None), control, |some| {
+        some.par_iter()
+            .map(|&slice| {
+                let path = &files[slice];
                 let (header, bytes) = look_at(path, true)?;
                 check(attempt, [(&model, first), (&header, path)])?;
                 Ok(bytes)
@@ -182,7 +183,7 @@ fn volume(
     let mut placement = Placement::unknown();
     placement.remarks = remarks;
     placement.remarks.extend(stored.part.remark().map(str::to_owned));
-    Parts { name, dims: extent.dims, placement, samples, hints: Hints::default() }.volume(attempt)
+    Parts { name, extent, placement, voxels, hints: Hints::default() }.volume(attempt)
 }
 
 /// Two slices must be alike, and each file hold one.

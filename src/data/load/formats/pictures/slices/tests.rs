@@ -58,6 +58,24 @@ fn slices_are_stacked_in_natural_order() {
 }
 
 #[test]
+fn of_a_folder_the_files_that_are_meant_are_read() {
+    let stack = folder(&[
+        ("1.png", grey(2, &[1, 2])),
+        ("2.png", grey(2, &[3, 4])),
+        ("3.png", grey(2, &[5, 6])),
+        ("other.png", grey(1, &[9])),
+    ]);
+    let meant = |names: &[&str]| {
+        let among = names.iter().map(|name| stack.path().join(name)).collect();
+        let options = LoadOptions { among: Some(among), ..LoadOptions::default() };
+        load(stack.path(), &options, &LoadControl::new())
+    };
+    assert_eq!(*meant(&["3.png", "2.png"]).unwrap().samples(), Samples::U8(vec![3, 4, 5, 6]));
+    assert_eq!(*meant(&["other.png"]).unwrap().samples(), Samples::U8(vec![9]));
+    assert_refused(meant(&["elsewhere.png"]), LoadErrorKind::BadInput, &["none of its 0 files"]);
+}
+
+#[test]
 fn all_kinds_of_pictures_also_single() {
     let picture = grey(4, &[7; 16]);
     for ending in ["png", "bmp", "jpg"] {

@@ -23,7 +23,7 @@ pub(super) fn unreadable(attempt: Attempt<'_>, field: &str, error: io::Error) ->
 pub(super) fn compression_name(compression: u64) -> &'static str {
     match compression {
         2..=4 => "for fax machines (CCITT)",
-        6 | 7 | 34892 | 65000 => "as JPEG",
+        34892 | 65000 => "as JPEG of a camera",
         33003 | 33004 | 33005 | 34712 => "as JPEG 2000",
         34925 => "as LZMA",
         34887 => "as LERC",

@@ -19,6 +19,7 @@ use crate::data::load::LoadError;
 use crate::data::load::reading::reader::{Reader, Source};
 use file::Tiff;
 use file::page::tag;
+use said::palette::Palette;
 use said::{imagej, lsm, ome};
 
 pub(in crate::data::load) use single::Picture;
@@ -60,5 +61,10 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
         let [slope, intercept] = stack.scale;
         stack.hints.set_padding(slope.mul_add(stored, intercept));
     }
-    stack.volume(attempt, tiff, options, control)
+    let palette = Palette::of(&mut tiff);
+    let volume = stack.volume(attempt, tiff, options, control)?;
+    Ok(match palette {
+        Some(palette) => palette.on(volume),
+        None => volume,
+    })
 }

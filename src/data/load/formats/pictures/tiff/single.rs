@@ -8,6 +8,7 @@ use super::stack::{check_page_bytes, stored};
 use crate::data::attempt::Attempt;
 use crate::data::load::reading::input::Input;
 use crate::data::load::reading::number::Stored;
+use crate::data::load::reading::read_files::note;
 use crate::data::load::{LoadControl, LoadError, LoadOptions};
 
 /// The one page of a file.
@@ -70,6 +71,7 @@ impl Picture {
         attempt: Attempt<'_>,
         control: &LoadControl,
     ) -> Result<Vec<u8>, LoadError> {
+        note(attempt.path);
         let packed = self.tiff.fetch(attempt, self.number, None, control)?;
         packed.unpack(attempt, self.number, control)
     }

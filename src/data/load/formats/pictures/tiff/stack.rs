@@ -1,6 +1,5 @@
 //! Which pages of which files are the slices of a volume, and their voxels.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -13,8 +12,14 @@ use crate::data::load::formats::pictures::pile::read_pile;
 use crate::data::load::reading::input::{Input, Witness};
 use crate::data::load::reading::number::{Part, Stored};
 use crate::data::load::reading::placement::{Parts, Placement};
+use crate::data::load::reading::rescaled::rescaled;
+use crate::data::load::reading::voxels::Meant;
 use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume};
+
+/// Bytes of pages that are fetched before they are unpacked: pages are longer than what is in them only by mistake, or
+/// where many of them are the same bytes.
+const PACKED_BYTES: u64 = 32 << 20;
 
 /// A page of one of several files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -154,8 +159,7 @@ impl Stack {
         let sample = sample.or_else(|| chosen_sample(&model, options));
         let stored = stored(attempt, &model, sample, options)?;
         let dims = [model.width, model.height, slices.len() as u64];
-        let extent =
-            Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.memory_budget_bytes)?;
+        let extent = Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.room(control))?;
         check_page_bytes(attempt, &model, options)?;
         placement.remarks.extend(stored.part.remark().map(str::to_owned));
         if model.is_inverted {
@@ -165,28 +169,39 @@ impl Stack {
                 "the lowest values stand for white: values are shown as they are".to_owned()
             });
         }
-        let samples = read_pile(attempt, &stored, extent, control, |range: Range<usize>| {
-            let mut packed = Vec::new();
-            for &Slice { file, page } in &slices[range.clone()] {
-                packed.push(files.with(file, |attempt, tiff| {
-                    let found = page_of(attempt, tiff, page)?;
-                    if !found.is_like(&model) {
-                        return Err(unlike(attempt, page, &found, &model));
-                    }
-                    // Where samples lie beside each other all are fetched, and one is taken later.
-                    tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
-                })?);
-            }
-            let slices = slices[range].par_iter().zip(packed.par_iter());
-            let unpacked: Vec<_> =
-                slices.map(|(slice, packed)| packed.unpack(attempt, slice.page, control)).collect();
-            unpacked.into_iter().collect()
+        // The first page, before there is room for all: one that has not what it announces asks for none.
+        files.with(first.file, |attempt, tiff| {
+            tiff.check_room(attempt, first.page, sample.filter(|_| model.is_planar), control)
         })?;
-        let samples = crate::data::load::reading::rescaled::rescaled(samples, slope, intercept);
+        let values = |samples| rescaled(attempt, samples, [slope, intercept], options.memory_budget_bytes);
+        let meant = Meant { padding: hints.padding, values: &values };
+        let voxels = read_pile(attempt, &stored, extent, &meant, control, |some| {
+            let mut unpacked = Vec::new();
+            let mut slices = some.iter().map(|&slice| &slices[slice]).peekable();
+            while slices.peek().is_some() {
+                let (mut packed, mut bytes) = (Vec::new(), 0);
+                while let Some(&Slice { file, page }) = slices.next_if(|_| bytes < PACKED_BYTES) {
+                    let of_page = files.with(file, |attempt, tiff| {
+                        let found = page_of(attempt, tiff, page)?;
+                        if !found.is_like(&model) {
+                            return Err(unlike(attempt, page, &found, &model));
+                        }
+                        // Where samples lie beside each other all are fetched, and one is taken later.
+                        tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
+                    })?;
+                    bytes += of_page.len();
+                    packed.push((page, of_page));
+                }
+                let of_slices =
+                    packed.par_iter().map(|(page, packed)| packed.unpack(attempt, *page, control));
+                unpacked.extend(of_slices.collect::<Result<Vec<_>, _>>()?);
+            }
+            Ok(unpacked)
+        })?;
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }
-        Parts { name, dims: extent.dims, placement, samples, hints }.volume(attempt)
+        Parts { name, extent, placement, voxels, hints }.volume(attempt)
     }
 }
 

@@ -65,12 +65,13 @@ pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
             ways.extend((0..voxel_type.bytes()).map(|phase| (voxel_type, endian, phase)));
         }
     }
+    let lively: Vec<usize> = spots.0.iter().map(|spot| liveliest(&spot.bytes)).collect();
     let code = |(voxel_type, endian, phase): (VoxelType, Endian, usize)| {
         let keys: Vec<Vec<i64>> = spots
             .0
             .iter()
-            .map(|spot| {
-                let from = liveliest(&spot.bytes);
+            .zip(&lively)
+            .map(|(spot, &from)| {
                 let skip = from + first(spot.at + from as u64, voxel_type, phase);
                 let to = spot.bytes.len().min(from + LOOKED_AT);
                 keys(spot.bytes.get(skip..to).unwrap_or_default(), voxel_type, endian)

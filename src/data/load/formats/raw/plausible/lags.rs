@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::super::bytes::RawBytes;
 use super::codes::{Code, first};
+use super::numbers::{each_value, with_numbers};
 use super::spots::Spots;
 use crate::data::VoxelType;
 use crate::data::load::Endian;
@@ -30,11 +31,8 @@ const GROUP: usize = 128;
 /// Bytes that are read in one piece for slices whose size nothing says: two of 1024 × 1024 voxels of two bytes.
 const LONG_BYTES: u64 = 4 << 20;
 
-/// Comparisons of voxels in it with rows behind them: a few milliseconds.
-const LONG_PAIRS: usize = 1 << 21;
-
-/// Every third voxel of a run is enough.
-const LONG_STEP: usize = 3;
+/// Comparisons of voxels in it with rows behind them: a millisecond or two, as they lie together.
+const LONG_PAIRS: usize = 1 << 22;
 
 /// Numbers of rows that are proposed because voxels agree.
 const FOUND: usize = 6;
@@ -62,40 +60,9 @@ impl Greys {
     }
 
     fn of(&self, bytes: &[u8]) -> Vec<f32> {
-        let mut greys = Vec::with_capacity(bytes.len() / self.voxel_type.bytes());
-        each_value(bytes, self.voxel_type, self.endian, |value| greys.push(self.grey(value)));
+        let mut greys = Vec::new();
+        with_numbers!(bytes, self.voxel_type, self.endian, numbers => greys.extend(numbers.map(|n| self.grey(n))));
         greys
-    }
-}
-
-/// Gives the numbers of bytes one after the other.
-pub(in crate::data::load::formats::raw) fn each_value(
-    bytes: &[u8],
-    voxel_type: VoxelType,
-    endian: Endian,
-    mut give: impl FnMut(f64),
-) {
-    macro_rules! values {
-        ($number:ty) => {
-            for chunk in bytes.chunks_exact(size_of::<$number>()) {
-                let raw = chunk.try_into().unwrap_or_default();
-                let value = match endian {
-                    Endian::Little => <$number>::from_le_bytes(raw),
-                    Endian::Big => <$number>::from_be_bytes(raw),
-                };
-                give(value.into());
-            }
-        };
-    }
-    match voxel_type {
-        VoxelType::U8 => values!(u8),
-        VoxelType::I8 => values!(i8),
-        VoxelType::U16 => values!(u16),
-        VoxelType::I16 => values!(i16),
-        VoxelType::U32 => values!(u32),
-        VoxelType::I32 => values!(i32),
-        VoxelType::F32 => values!(f32),
-        VoxelType::F64 => values!(f64),
     }
 }
 
@@ -297,11 +264,15 @@ impl Lags {
             return Vec::new();
         }
         let mut sums = vec![0.0f64; most];
-        let lively = runs(&long[..long.len() / 2]).into_iter().flatten();
-        for start in lively.step_by(LONG_STEP).take((LONG_PAIRS / most).max(256)) {
-            let grey = long[start];
-            for (sum, other) in sums.iter_mut().zip(long[start..].iter().step_by(row)) {
-                *sum += f64::from((other - grey).abs());
+        let mut left = (LONG_PAIRS / most).max(256);
+        for run in runs(&long[..long.len() / 2]) {
+            if left == 0 {
+                break;
+            }
+            left = left.saturating_sub(run.len());
+            for (rows, sum) in sums.iter_mut().enumerate() {
+                let ahead = rows * row;
+                *sum += distance(&long[run.clone()], &long[run.start + ahead..run.end + ahead]);
             }
         }
         let depth =
@@ -362,6 +333,20 @@ impl Lags {
         }
         Ok(Groups(groups).dip())
     }
+}
+
+/// How much voxels differ from others, all together; eight sums at a time do not wait for each other.
+fn distance(here: &[f32], there: &[f32]) -> f64 {
+    let (here, rest) = here.as_chunks::<8>();
+    let (there, others) = there.as_chunks::<8>();
+    let mut sums = [0.0f32; 8];
+    for (here, there) in here.iter().zip(there) {
+        for (sum, (here, there)) in sums.iter_mut().zip(here.iter().zip(there)) {
+            *sum += (there - here).abs();
+        }
+    }
+    let rest = rest.iter().zip(others).map(|(here, there)| f64::from((there - here).abs()));
+    sums.into_iter().map(f64::from).sum::<f64>() + rest.sum::<f64>()
 }
 
 /// Mean differences at each distance.

@@ -8,6 +8,7 @@
 mod codes;
 mod evidence;
 mod lags;
+mod numbers;
 mod shapes;
 mod spots;
 #[cfg(test)]
@@ -21,7 +22,7 @@ use super::said::Said;
 use codes::Code;
 pub use evidence::{Evidence, Proposal};
 use lags::Lags;
-pub(super) use lags::each_value;
+pub(super) use numbers::each_value;
 use shapes::{Shape, Size};
 use spots::Spots;
 

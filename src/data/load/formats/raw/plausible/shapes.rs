@@ -1,5 +1,6 @@
 //! Rows, slices and headers that make up a file's length, and how well neighbours agree in them.
 
+use std::collections::HashMap;
 use std::io;
 
 use super::super::bytes::RawBytes;
@@ -191,8 +192,18 @@ pub(super) fn slices(
     tried.truncate(SLICES);
     tried.extend(left_over(size, agreeing, row.length, said));
     let mut shapes = Vec::new();
+    // Whatever comes before them, slices of so many rows agree as well.
+    let mut known: HashMap<usize, Dip> = HashMap::new();
     for Tried { dims, header, prior } in tried {
-        let slice = if dims[2] > 1 { lags.slice(bytes, dims[0], dims[1])? } else { Dip::default() };
+        let slice = match known.get(&dims[1]) {
+            _ if dims[2] <= 1 => Dip::default(),
+            Some(&slice) => slice,
+            None => {
+                let slice = lags.slice(bytes, dims[0], dims[1])?;
+                known.insert(dims[1], slice);
+                slice
+            }
+        };
         let unlike = lags.unlike.max(f64::MIN_POSITIVE);
         let far = if slice.difference > 0.0 || slice.sigmas != 0.0 { slice.difference } else { unlike };
         let nearness = (unlike / far.max(1e-6 * unlike)).ln().clamp(-1.0, 2.5);

@@ -26,11 +26,11 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let (control, options) = (source.control, source.options);
     let lines = Lines::new(attempt, content_from(attempt, &mut source, 0)?, control);
     let Scan { title, is_text, grid, arrays, .. } = Scan::of(attempt, lines)?;
-    let chosen = choose(attempt, &grid, arrays, options)?;
+    let chosen = choose(attempt, &grid, arrays, options, control)?;
     let name = chosen.array.name.as_str();
     let Place { start, are_shares } = chosen.array.place;
     let room = if source.start.is_gzip() { u64::MAX } else { source.input.len.saturating_sub(start) };
-    let samples = if is_text {
+    let voxels = if is_text {
         // A digit each and a space between.
         check_room(attempt, name, chosen.numbers(), room.div_ceil(2), "numbers")?;
         let text = content_from(attempt, &mut source, start)?;
@@ -45,5 +45,5 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
         let mut bytes = content_from(attempt, &mut source, start)?;
         chosen.read(attempt, &mut bytes, Endian::Big, control)?
     };
-    chosen.volume(attempt, &grid, samples, &title)
+    chosen.volume(attempt, &grid, voxels, &title)
 }

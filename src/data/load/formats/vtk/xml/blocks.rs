@@ -2,6 +2,7 @@
 
 use std::io::{self, Cursor, Read};
 
+use bytemuck::allocation::try_zeroed_vec;
 use flate2::read::ZlibDecoder;
 
 use super::super::super::Endian;
@@ -122,6 +123,14 @@ impl<R: Read> Blocks<R> {
         Ok(Self { reader, compressor, compressed, block_bytes, last_bytes, packed, ready })
     }
 
+    /// Bytes that are in memory beside the volume: the longest block, and that unpacked.
+    pub(super) fn needed_bytes(&self) -> u64 {
+        let longest = self.compressed.iter().copied().max().unwrap_or(0);
+        // The last of several is no longer than they are.
+        let unpacked = if self.compressed.len() == 1 { self.last_bytes } else { self.block_bytes };
+        longest.saturating_add(unpacked)
+    }
+
     /// Unpacks the next block.
     fn refill(&mut self) -> io::Result<()> {
         self.ready.set_position(0);
@@ -135,16 +144,21 @@ impl<R: Read> Blocks<R> {
         if (found as u64) < bytes {
             return Err(invalid("the data are truncated: they end within a block"));
         }
-        let room = ready.try_reserve_exact(wanted + 1);
-        room.map_err(|_no_memory| io::Error::from(io::ErrorKind::OutOfMemory))?;
+        let no_memory = || io::Error::from(io::ErrorKind::OutOfMemory);
         let unpacked = match self.compressor {
             Compressor::Zlib => {
+                ready.try_reserve_exact(wanted + 1).map_err(|_full| no_memory())?;
                 // A byte more than wanted tells too much from enough.
                 let mut decoder = ZlibDecoder::new(&self.packed[..]).take(wanted as u64 + 1);
                 decoder.read_to_end(ready).map_err(|error| error.to_string())
             }
+            // A byte of a length stands for 255 others.
+            Compressor::Lz4 if self.packed.len().saturating_mul(255) < wanted => {
+                Err(format!("{} bytes cannot make {wanted}", self.packed.len()))
+            }
             Compressor::Lz4 => {
-                ready.resize(wanted, 0);
+                // Zeros take memory only as they are written: as much as the block really has.
+                *ready = try_zeroed_vec(wanted).map_err(|()| no_memory())?;
                 lz4_flex::block::decompress_into(&self.packed, ready).map_err(|error| error.to_string())
             }
         };

@@ -17,13 +17,14 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::super::number::Number;
 use super::super::reader::{Source, Start};
 use super::super::text_numbers::TextNumbers;
+use super::super::voxels::Voxels;
 use super::super::{Endian, LoadControl, LoadError};
 use super::RESAMPLE;
 use super::image::{
     Array, Chosen, Grid, MOST_ARRAYS, MOST_COMPONENTS, broken, check_room, choose, content_from,
 };
-use crate::data::attempt::{Attempt, quoted};
-use crate::data::{Samples, Volume, plain};
+use crate::data::attempt::{Attempt, human_bytes, quoted};
+use crate::data::{Volume, plain};
 use base64::{Base64, most_bytes};
 use blocks::{Blocks, Compressor, Words, check_length};
 use skeleton::Skeleton;
@@ -75,9 +76,9 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let grid = grid(attempt, piece)?;
     let style = style(attempt, root)?;
     let arrays = arrays(attempt, piece, &grid)?;
-    let chosen = choose(attempt, &grid, arrays, source.options)?;
-    let samples = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
-    chosen.volume(attempt, &grid, samples, "")
+    let chosen = choose(attempt, &grid, arrays, source.options, source.control)?;
+    let voxels = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
+    chosen.volume(attempt, &grid, voxels, "")
 }
 
 /// The piece of the image.
@@ -279,8 +280,8 @@ fn read(
     chosen: &Chosen<Place>,
     style: Style,
     appended: Option<u64>,
-) -> Result<Samples, LoadError> {
-    let control = source.control;
+) -> Result<Voxels, LoadError> {
+    let (control, budget) = (source.control, source.options.memory_budget_bytes);
     let name = chosen.array.name.as_str();
     match chosen.array.place {
         Place::Ascii(start, length) => {
@@ -294,7 +295,7 @@ fn read(
         Place::Base64(start, length) => {
             let text = content_from(attempt, source, start)?.take(length);
             let room = most_bytes(length);
-            read_binary(attempt, Base64::new(text), chosen, style, Some(room), control)
+            read_binary(attempt, Base64::new(text), chosen, style, Some(room), budget, control)
         }
         Place::Appended(offset) => {
             let start = appended.and_then(|appended| appended.checked_add(offset)).ok_or_else(|| {
@@ -303,23 +304,33 @@ fn read(
             let room = (!source.start.is_gzip()).then(|| source.input.len.saturating_sub(start));
             let content = content_from(attempt, source, start)?;
             if style.appends_text {
-                read_binary(attempt, Base64::new(content), chosen, style, room.map(most_bytes), control)
+                read_binary(
+                    attempt,
+                    Base64::new(content),
+                    chosen,
+                    style,
+                    room.map(most_bytes),
+                    budget,
+                    control,
+                )
             } else {
-                read_binary(attempt, content, chosen, style, room, control)
+                read_binary(attempt, content, chosen, style, room, budget, control)
             }
         }
     }
 }
 
-/// Reads values in binary, where the file has room for so many bytes of them.
+/// Reads values in binary, where the file has room for so many bytes of them. The volume and a block of it may need
+/// `budget_bytes`.
 fn read_binary(
     attempt: Attempt<'_>,
     mut reader: impl Read,
     chosen: &Chosen<Place>,
     style: Style,
     room: Option<u64>,
+    budget_bytes: u64,
     control: &LoadControl,
-) -> Result<Samples, LoadError> {
+) -> Result<Voxels, LoadError> {
     let Style { words, compressor, .. } = style;
     let expected = chosen.stored_bytes();
     let Some(compressor) = compressor else {
@@ -329,5 +340,17 @@ fn read_binary(
     };
     let blocks = Blocks::open(reader, words, compressor, expected, room);
     let mut blocks = blocks.map_err(|error| broken(attempt, error))?;
+    let needed = chosen.extent.bytes.saturating_add(blocks.needed_bytes());
+    if needed > budget_bytes {
+        return Err(attempt.limit(
+            &chosen.array.name,
+            format!(
+                "the volume and a compressed block of it need {}, {} are allowed",
+                human_bytes(needed.into()),
+                human_bytes(budget_bytes.into())
+            ),
+            "close other programs, or write the file again with smaller blocks",
+        ));
+    }
     chosen.read(attempt, &mut blocks, words.endian, control)
 }

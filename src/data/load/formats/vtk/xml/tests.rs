@@ -319,3 +319,28 @@ fn lying_headers_are_refused() {
     let inline = points("type=\"UInt8\" format=\"binary\"", "CAAAAAECAwQ?");
     assert_refused(load_bytes(&file("", &inline, b"")), bad, &["'?'"]);
 }
+
+#[test]
+fn blocks_are_counted_with_the_volume() {
+    let appended = points("type=\"UInt8\" format=\"appended\" offset=\"0\"", "");
+    let read = |size: usize| {
+        let (header, data) = blocks(false, Endian::Little, &vec![7; 600_000], size, zlib);
+        let data = [b"<AppendedData encoding=\"raw\">_", header.as_slice(), &data].concat();
+        let whole = file("compressor=\"vtkZLibDataCompressor\"", &appended, &data);
+        // Bytes of blocks may be no text.
+        let at = |from: &[u8]| whole.windows(from.len()).position(|part| part == from).unwrap();
+        let (extent, end) = (at(b"WholeExtent"), at(b"Origin"));
+        let piece = at(b"<Piece Extent");
+        let image = [
+            &whole[..extent],
+            b"WholeExtent=\"0 99 0 99 0 59\" ",
+            &whole[end..piece],
+            b"<Piece>",
+            &whole[piece + b"<Piece Extent=\"0 1 0 1 0 1\">".len()..],
+        ];
+        load_bytes(&image.concat())
+    };
+    assert_eq!(*read(32 << 10).unwrap().samples(), Samples::U8(vec![7; 600_000]));
+    // Of the budget of 1 MiB 586 KiB are the volume.
+    assert_refused(read(600_000), LoadErrorKind::Limit, &["compressed block", "1.1 MiB", "smaller blocks"]);
+}

@@ -3,14 +3,12 @@
 use std::io::Read;
 
 use flate2::read::ZlibDecoder;
-use ruzstd::decoding::StreamingDecoder;
 use weezl::{BitOrder, LzwStatus, decode};
 
+use super::jpeg::{self, Picture};
+use super::zstd;
 use crate::data::load::LoadControl;
 use crate::data::load::reading::samples::{BLOCK_BYTES, Fault, fill};
-
-/// The largest window of Zstandard that every decoder is to allow (RFC 8878, 3.1.1.1.2).
-const ZSTD_WINDOW_BYTES: u64 = 8 << 20;
 
 /// How the bytes of a part are compressed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +18,7 @@ pub(super) enum Codec {
     Deflate,
     PackBits,
     Zstd,
+    Jpeg,
 }
 
 impl Codec {
@@ -32,12 +31,14 @@ impl Codec {
             8 | 32946 => Self::Deflate,
             32773 => Self::PackBits,
             50000 => Self::Zstd,
+            // With an older number where the picture is whole.
+            6 | 7 => Self::Jpeg,
             _ => return None,
         })
     }
 
     /// The most bytes that so many compressed ones can stand for.
-    pub(super) fn most(self, packed: usize) -> u64 {
+    pub(super) fn most(self, packed: u64) -> u64 {
         let times = match self {
             Self::None => 1,
             // A code of at least 9 bits stands for one of 4096 strings, each a byte longer than another.
@@ -48,22 +49,29 @@ impl Codec {
             Self::PackBits => 64,
             // A block of 128 KiB of the same byte takes four (RFC 8878, 3.1.1.2).
             Self::Zstd => 32 << 10,
+            // A block of 64 pixels takes a bit at least, and may stand for four times as many of each of three numbers, of
+            // which it is one of six.
+            Self::Jpeg => 1024,
         };
-        (packed as u64).saturating_mul(times)
+        packed.saturating_mul(times)
     }
 
-    /// Fills `out` as far as the compressed bytes go; how far that is. What would come after is not looked at.
-    pub(super) fn expand(self, packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
+    /// Fills `out` as far as the compressed bytes go; how far that is. What would come after is not looked at. What the
+    /// page says of a `picture` counts where it is one.
+    pub(super) fn expand(
+        self,
+        packed: &[u8],
+        picture: Picture<'_>,
+        out: &mut [u8],
+        control: &LoadControl,
+    ) -> Result<usize, Fault> {
         match self {
             Self::None => fill(&mut &packed[..], out, control),
             Self::Lzw => expand_lzw(packed, out, control),
             Self::Deflate => fill(&mut ZlibDecoder::new(packed), out, control),
             Self::PackBits => fill(&mut PackBits { packed, left: 0, repeated: None }, out, control),
-            Self::Zstd => {
-                let window = (out.len() as u64).next_power_of_two().max(ZSTD_WINDOW_BYTES);
-                let decoder = StreamingDecoder::new_with_max_window_size(packed, window);
-                fill(&mut decoder.map_err(|error| Fault::Io(std::io::Error::other(error)))?, out, control)
-            }
+            Self::Zstd => zstd::expand(packed, picture.whole, out, control),
+            Self::Jpeg => jpeg::expand(picture, packed, out),
         }
     }
 }
@@ -133,7 +141,7 @@ mod tests {
 
     fn expanded(codec: Codec, packed: &[u8], most: usize) -> Result<Vec<u8>, Fault> {
         let mut out = vec![0; most];
-        let count = codec.expand(packed, &mut out, &LoadControl::new())?;
+        let count = codec.expand(packed, Picture::default(), &mut out, &LoadControl::new())?;
         out.truncate(count);
         Ok(out)
     }
@@ -156,7 +164,7 @@ mod tests {
     fn what_cannot_be_in_so_few_bytes_is_known() {
         let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
         std::io::Write::write_all(&mut encoder, &vec![0; 1 << 22]).unwrap();
-        let packed = encoder.finish().unwrap().len();
+        let packed = encoder.finish().unwrap().len() as u64;
         assert!(Codec::Deflate.most(packed) >= 1 << 22 && Codec::Deflate.most(packed) < 5 << 20);
         assert_eq!(Codec::None.most(20), 20);
     }

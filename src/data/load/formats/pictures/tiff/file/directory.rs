@@ -49,12 +49,12 @@ impl Entry {
         Ok(bytes)
     }
 
-    /// Its values, where they are whole numbers and not below zero.
-    pub(in super::super) fn numbers(self, file: &mut Bytes) -> io::Result<Vec<u64>> {
+    /// Its values, where they are whole numbers and not below zero, at most so many of them.
+    pub(in super::super) fn numbers(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u64>> {
         let is_whole = matches!(self.kind, 1 | 3 | 4 | 13 | 16 | 18);
         let size = bytes_of(self.kind).filter(|_| is_whole).ok_or(io::ErrorKind::InvalidData)? as usize;
         let endian = file.endian;
-        let bytes = self.bytes(file, u64::MAX)?;
+        let bytes = self.bytes(file, most.saturating_mul(size as u64))?;
         Ok(bytes.chunks_exact(size).map(|number| whole(number, endian)).collect())
     }
 
@@ -78,7 +78,7 @@ impl Entry {
     /// Its first value, where it is a whole number.
     pub(in super::super) fn whole(self, file: &mut Bytes) -> io::Result<u64> {
         let one = Self { count: self.count.min(1), ..self };
-        one.numbers(file)?.first().copied().ok_or_else(|| io::ErrorKind::InvalidData.into())
+        one.numbers(file, 1)?.first().copied().ok_or_else(|| io::ErrorKind::InvalidData.into())
     }
 
     /// Its text up to a zero byte, at most so many bytes of it. What is no UTF-8 is Latin-1, as older programs write it.

@@ -3,18 +3,22 @@
 pub(super) mod bytes;
 mod codec;
 pub(super) mod directory;
+mod jpeg;
 pub(super) mod page;
+mod parts;
 mod unpack;
+mod zstd;
 
 use std::io;
 
+use bytemuck::allocation::try_zeroed_vec;
 use rayon::prelude::*;
 
-use super::fault::{HELP, compression_name, unreadable};
+use super::fault::{HELP, unreadable};
 use crate::data::attempt::Attempt;
 use crate::data::load::reading::input::Input;
 use crate::data::load::reading::number::Number;
-use crate::data::load::reading::samples::{self, Fault};
+use crate::data::load::reading::samples::Fault;
 use crate::data::load::{Endian, LoadControl, LoadError};
 use bytes::Bytes;
 use codec::Codec;
@@ -22,8 +26,14 @@ use directory::{Directory, walk};
 use page::{Offsets, Page};
 use unpack::{invert, restore, widen};
 
-/// A tile may be larger than its page by so much: pages are rounded up to whole tiles, of 256 x 256 pixels mostly.
-const MOST_TILE_EXCESS: u64 = 64 << 20;
+/// Most strips or tiles of a page: those of 256 x 256 pixels are so many in a page of a quarter of a million squared.
+const MOST_PARTS: u64 = 1 << 20;
+
+/// Tiles that show nothing may be the same bytes. As many bytes as this are read again, beyond those of the file.
+const MOST_SHARED_BYTES: u64 = 32 << 20;
+
+/// Tables of JPEG: four for quantising and eight for codes have 2.7 KiB.
+const MOST_TABLES_BYTES: u64 = 64 << 10;
 
 /// A file whose pages are known.
 pub(super) struct Tiff {
@@ -41,6 +51,8 @@ pub(super) struct Packed {
     /// By sample, where each has its own; then by row and column of parts. An empty one was never written.
     parts: Vec<Vec<u8>>,
     samples: usize,
+    /// What its pictures of JPEG share.
+    tables: Vec<u8>,
 }
 
 impl Tiff {
@@ -74,7 +86,7 @@ impl Tiff {
     /// Fetches the parts of a page: all, or those of one sample where each sample has its own.
     ///
     /// # Errors
-    /// `BadInput` where they are not in the file, or not of a kind that is read.
+    /// As [`Self::check_room`]; `Limit` where the memory is not there.
     pub(super) fn fetch(
         &mut self,
         attempt: Attempt<'_>,
@@ -84,21 +96,50 @@ impl Tiff {
     ) -> Result<Packed, LoadError> {
         let field = format!("page {number}");
         let fault = |error| unreadable(attempt, &field, error);
+        let (page, places) = self.places(attempt, number, sample, control)?;
+        let mut parts = Vec::new();
+        for Place { offset, count } in places {
+            control.check()?;
+            let mut part = zeroed(attempt, &field, count)?;
+            self.bytes.read(offset, &mut part).map_err(fault)?;
+            parts.push(part);
+        }
+        let tables = page.jpeg_tables.map(|entry| entry.raw(&mut self.bytes, MOST_TABLES_BYTES));
+        let tables = tables.transpose().map_err(fault)?.unwrap_or_default();
+        let samples = if page.is_planar { 1 } else { page.samples };
+        Ok(Packed { page, endian: self.bytes.endian, parts, samples, tables })
+    }
+
+    /// Checks that the file has room for the parts of a page, and they for its pixels.
+    ///
+    /// # Errors
+    /// `BadInput` where they are not in the file, too short, or not of a kind that is read.
+    pub(super) fn check_room(
+        &mut self,
+        attempt: Attempt<'_>,
+        number: usize,
+        sample: Option<usize>,
+        control: &LoadControl,
+    ) -> Result<(), LoadError> {
+        self.places(attempt, number, sample, control).map(drop)
+    }
+
+    /// A page, and where the parts lie that [`Self::fetch`] fetches.
+    fn places(
+        &mut self,
+        attempt: Attempt<'_>,
+        number: usize,
+        sample: Option<usize>,
+        control: &LoadControl,
+    ) -> Result<(Page, Vec<Place>), LoadError> {
+        let field = format!("page {number}");
+        let fault = |error| unreadable(attempt, &field, error);
         let page = *self.pages.get(number).ok_or_else(|| {
             attempt.bad_input(&field, format!("the file has only {} pages", self.pages.len()), HELP)
         })?;
         page.check(attempt, &field)?;
-        let endian = self.bytes.endian;
         let [across, down] = page.grid();
         let per_sample = across.checked_mul(down).ok_or_else(|| fault(io::ErrorKind::InvalidData.into()))?;
-        let offsets = match page.offsets {
-            Offsets::At(at) => vec![at],
-            Offsets::Listed(entry) => entry.numbers(&mut self.bytes).map_err(fault)?,
-        };
-        let counts = match page.counts {
-            Some(entry) => entry.numbers(&mut self.bytes).map_err(fault)?,
-            None => Vec::new(),
-        };
         let samples = if page.is_planar { 1 } else { page.samples };
         let wanted = match (page.is_planar, sample) {
             (true, Some(sample)) => sample..sample + 1,
@@ -106,15 +147,36 @@ impl Tiff {
             (false, _) => 0..1,
         };
         // Each part that is listed takes some bytes of the file, so that this is no more than the file is long.
-        let listed = offsets.len() as u64;
-        if per_sample.saturating_mul(wanted.end as u64) > listed {
+        let listed = match page.offsets {
+            Offsets::At(_) => 1,
+            Offsets::Listed(entry) => entry.count,
+        };
+        let needed = per_sample.saturating_mul(wanted.end as u64);
+        if needed > listed {
             let why = format!("{per_sample} strips or tiles are needed and {listed} are listed");
             return Err(attempt.bad_input(&field, why, HELP));
         }
-        let mut parts = Vec::new();
+        if needed > MOST_PARTS {
+            let why = format!("it has {needed} strips or tiles, {MOST_PARTS} are allowed");
+            return Err(attempt.limit(&field, why, "save it with larger tiles"));
+        }
+        let offsets = match page.offsets {
+            Offsets::At(at) => vec![at],
+            Offsets::Listed(entry) => entry.numbers(&mut self.bytes, needed).map_err(fault)?,
+        };
+        let counts = match page.counts {
+            Some(entry) => entry.numbers(&mut self.bytes, needed).map_err(fault)?,
+            None => Vec::new(),
+        };
+        let (mut places, mut sum) = (Vec::new(), 0u64);
         let [start, end] = [wanted.start, wanted.end].map(|sample| sample * per_sample as usize);
         for (at, &offset) in offsets.iter().enumerate().take(end).skip(start) {
             control.check()?;
+            // Never written: all 0, as other readers have it.
+            if offset == 0 {
+                places.push(Place { offset, count: 0 });
+                continue;
+            }
             let row = at as u64 % per_sample / across;
             let whole = page.part_bytes(samples, row);
             let count = match counts.get(at).copied() {
@@ -124,108 +186,48 @@ impl Tiff {
                 Some(count) => count.min(whole.saturating_mul(2).saturating_add(1 << 16)),
                 None => return Err(fault(io::ErrorKind::InvalidData.into())),
             };
-            if offset == 0 {
-                parts.push(Vec::new());
-                continue;
-            }
             if offset.checked_add(count).is_none_or(|end| end > self.bytes.len()) {
                 return Err(fault(io::ErrorKind::UnexpectedEof.into()));
             }
-            let mut part = zeroed(attempt, &field, count)?;
-            self.bytes.read(offset, &mut part).map_err(fault)?;
-            parts.push(part);
+            sum += count;
+            if sum > self.bytes.len().saturating_add(MOST_SHARED_BYTES) {
+                let why = "its strips or tiles are the same bytes over and over";
+                return Err(attempt.bad_input(&field, why, HELP));
+            }
+            let room = Codec::of(page.compression).map_or(0, |codec| codec.most(count));
+            if room < whole && count > 0 {
+                let why =
+                    format!("a strip or tile ends too early: {whole} bytes expected, room for {room} found");
+                return Err(attempt.bad_input(&field, why, HELP));
+            }
+            places.push(Place { offset, count });
         }
-        Ok(Packed { page, endian, parts, samples })
+        Ok((page, places))
     }
 }
 
-/// So many bytes of zero.
+/// Where a part lies in the file; of no bytes where it was never written.
+struct Place {
+    offset: u64,
+    count: u64,
+}
+
+/// So many bytes of zero, which take memory only as they are written: a page that holds less than it announces takes no
+/// more than it holds.
 fn zeroed(attempt: Attempt<'_>, field: &str, count: u64) -> Result<Vec<u8>, LoadError> {
-    let room = usize::try_from(count).ok().and_then(|count| samples::zeroed(count).ok());
+    let room = usize::try_from(count).ok().and_then(|count| try_zeroed_vec(count).ok());
     room.ok_or_else(|| {
         let why = format!("the memory for {count} bytes is not there");
         attempt.limit(field, why, "close other programs or load a smaller volume")
     })
 }
 
-impl Page {
-    /// Parts across and down.
-    fn grid(&self) -> [u64; 2] {
-        [self.width.div_ceil(self.part[0]), self.height.div_ceil(self.part[1])]
-    }
-
-    /// Bytes of a row of a part, as it is before it is compressed.
-    fn row_bytes(&self, samples: usize) -> u64 {
-        (u128::from(self.part[0]) * samples as u128 * u128::from(self.bits)).div_ceil(8) as u64
-    }
-
-    /// Bytes of a part in a row of parts; the last strip may be shorter.
-    fn part_bytes(&self, samples: usize, row: u64) -> u64 {
-        let left = self.height - row * self.part[1];
-        let rows = if self.is_tiled { self.part[1] } else { self.part[1].min(left) };
-        self.row_bytes(samples).saturating_mul(rows)
-    }
-
-    /// Whether it is of a kind that is read, and its sizes can be.
-    pub(super) fn check(&self, attempt: Attempt<'_>, field: &str) -> Result<(), LoadError> {
-        let refuse = |why: String, help: &str| Err(attempt.bad_input(field, why, help));
-        let bits = self.bits;
-        if let page::Meaning::Foreign(photometric) = self.meaning {
-            let kind = match photometric {
-                4 => "a mask",
-                5 => "CMYK",
-                6 => "YCbCr",
-                8..=10 => "CIE L*a*b*",
-                32803 | 34892 => "the raw data of a camera",
-                _ => "not known",
-            };
-            return refuse(
-                format!("its colours are of a kind that is not read: {kind}"),
-                "save it as grey or RGB",
-            );
-        }
-        if self.number().is_none() {
-            let format = match self.format {
-                2 => "signed",
-                3 => "floating point",
-                5 | 6 => "complex",
-                _ => "unsigned",
-            };
-            return refuse(
-                format!("its numbers are of a kind that is not read: {format}, of {bits} bits"),
-                "save it with unsigned or signed numbers of 8, 16 or 32 bits, or floating point of 32",
-            );
-        }
-        if Codec::of(self.compression).is_none() {
-            let name = compression_name(self.compression);
-            return refuse(
-                format!("it is compressed {name} (number {}), which is not read", self.compression),
-                "save it uncompressed, or with LZW, Deflate, PackBits or Zstandard",
-            );
-        }
-        let suits = match self.predictor {
-            1 => true,
-            2 => bits.is_multiple_of(8),
-            3 => self.format == 3,
-            _ => false,
-        };
-        if !suits {
-            return refuse(
-                format!("predictor {} does not go with its numbers of {bits} bits", self.predictor),
-                "save it without a predictor",
-            );
-        }
-        let samples = if self.is_planar { 1 } else { self.samples };
-        let part = self.part_bytes(samples, 0);
-        // Unpacked numbers are at least as long as packed ones.
-        match self.bytes() {
-            Some(whole) if part <= whole.saturating_add(MOST_TILE_EXCESS) => Ok(()),
-            _ => refuse(format!("tiles of {} x {} pixels cannot be meant", self.part[0], self.part[1]), HELP),
-        }
-    }
-}
-
 impl Packed {
+    /// Bytes of its parts.
+    pub(super) fn len(&self) -> u64 {
+        self.parts.iter().map(|part| part.len() as u64).sum()
+    }
+
     /// The numbers of the page, little-endian, those of a pixel beside each other.
     ///
     /// # Errors
@@ -243,7 +245,6 @@ impl Packed {
         let planes = (self.parts.len() / (across * down).max(1)).max(1);
         let row_bytes = page.width as usize * self.samples * size;
         let bytes = (row_bytes as u64).saturating_mul(page.height).saturating_mul(planes as u64);
-        self.check_room(attempt, &field)?;
         let mut all = zeroed(attempt, &field, bytes)?;
         let plane_bytes = all.len() / planes;
         for (plane, parts) in all.chunks_exact_mut(plane_bytes).zip(self.parts.chunks(across * down)) {
@@ -251,38 +252,16 @@ impl Packed {
             let rows = plane
                 .par_chunks_mut(row_bytes.saturating_mul(page.part[1] as usize))
                 .zip(parts.par_chunks(across));
-            let rows = rows.enumerate().map(|(row, (band, parts))| {
+            rows.enumerate().try_for_each(|(row, (band, parts))| {
                 parts.iter().enumerate().try_for_each(|(column, part)| {
                     self.unpack_part(attempt, &field, [column, row], part, band, control)
                 })
-            });
-            // Of several that are broken the first is told.
-            if let Some(error) = rows.find_map_first(Result::err) {
-                return Err(error);
-            }
+            })?;
         }
         if page.is_inverted && matches!(page.format, 1 | 4) {
             invert(&mut all, page.bits);
         }
         Ok(if planes > 1 { woven(&all, planes, size) } else { all })
-    }
-
-    /// Refuses parts that cannot hold as much as they should, before memory is taken for that.
-    fn check_room(&self, attempt: Attempt<'_>, field: &str) -> Result<(), LoadError> {
-        let [across, down] = self.page.grid().map(|count| (count as usize).max(1));
-        let Some(codec) = Codec::of(self.page.compression) else { return Ok(()) };
-        for (at, packed) in self.parts.iter().enumerate().filter(|(_, packed)| !packed.is_empty()) {
-            let wanted = self.page.part_bytes(self.samples, (at / across % down) as u64);
-            let room = codec.most(packed.len());
-            if room < wanted {
-                return Err(attempt.bad_input(
-                    field,
-                    format!("a strip or tile ends too early: {wanted} bytes expected, room for {room} found"),
-                    HELP,
-                ));
-            }
-        }
-        Ok(())
     }
 
     /// Puts what a part holds where it belongs among some rows.
@@ -348,7 +327,14 @@ impl Packed {
             packed
         };
         let wanted = out.len();
-        match codec.expand(packed, out, control) {
+        let picture = jpeg::Picture {
+            tables: &self.tables,
+            size: self.page.part,
+            whole: self.page.row_bytes(self.samples).saturating_mul(self.page.part[1]) as usize,
+            samples: self.samples,
+            is_ybr: self.page.is_ybr && self.samples == 3,
+        };
+        match codec.expand(packed, picture, out, control) {
             Ok(found) if found == wanted => Ok(()),
             Ok(found) => Err(attempt.bad_input(
                 field,
@@ -356,6 +342,11 @@ impl Packed {
                 HELP,
             )),
             Err(Fault::Stopped(error)) => Err(error),
+            Err(Fault::Long) => {
+                let why =
+                    format!("a compressed strip or tile goes on beyond the {wanted} bytes of its pixels");
+                Err(attempt.bad_input(field, why, HELP))
+            }
             Err(Fault::Io(error)) => {
                 let why = format!("a compressed strip or tile is broken: {error}");
                 Err(attempt.bad_input(field, crate::data::plain(&why, 200), HELP))

@@ -25,17 +25,22 @@ pub(in super::super) mod tag {
     pub(in super::super::super) const Y_RESOLUTION: u16 = 283;
     pub(in super::super::super) const PLANAR: u16 = 284;
     pub(in super::super::super) const PREDICTOR: u16 = 317;
+    pub(in super::super::super) const COLOR_MAP: u16 = 320;
     pub(in super::super::super) const TILE_WIDTH: u16 = 322;
     pub(in super::super::super) const TILE_HEIGHT: u16 = 323;
     pub(in super::super::super) const TILE_OFFSETS: u16 = 324;
     pub(in super::super::super) const TILE_COUNTS: u16 = 325;
     pub(in super::super::super) const EXTRA_SAMPLES: u16 = 338;
+    pub(in super::super::super) const JPEG_TABLES: u16 = 347;
     pub(in super::super::super) const SAMPLE_FORMAT: u16 = 339;
     /// Of GDAL, in text: the value of what was not measured.
     pub(in super::super::super) const NO_DATA: u16 = 42113;
     /// Of Zeiss' laser scanning microscopes.
     pub(in super::super::super) const LSM_INFO: u16 = 34412;
 }
+
+/// The kind of colours that is brightness and two differences.
+const YBR: u64 = 6;
 
 /// What the samples of a pixel are together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,6 +80,10 @@ pub(in super::super) struct Page {
     pub(in super::super) is_planar: bool,
     pub(in super::super) compression: u64,
     pub(in super::super) predictor: u64,
+    /// What pictures of JPEG share.
+    pub(in super::super) jpeg_tables: Option<Entry>,
+    /// Colours are brightness and two differences, as in JPEG.
+    pub(in super::super) is_ybr: bool,
     /// Bits of a byte from the lowest.
     pub(in super::super) is_reversed: bool,
     pub(in super::super) is_tiled: bool,
@@ -109,6 +118,10 @@ impl Page {
         } else {
             [width, say(tag::ROWS_PER_STRIP, Some(height))?.min(height)]
         };
+        let compression = say(tag::COMPRESSION, Some(1))?;
+        let is_jpeg = matches!(compression, 6 | 7);
+        // The decoder makes red, green and blue of them.
+        let is_ybr = is_jpeg && photometric == YBR && samples == 3;
         let subfile = say(tag::NEW_SUBFILE_TYPE, Some(0))?;
         let old_subfile = say(tag::SUBFILE_TYPE, Some(1))?;
         let page = Self {
@@ -117,12 +130,15 @@ impl Page {
             bits,
             format: say(tag::SAMPLE_FORMAT, Some(1))?,
             samples,
-            meaning: meaning(photometric, samples, extra),
+            meaning: if is_ybr { Meaning::Color } else { meaning(photometric, samples, extra) },
             is_inverted: photometric == 0,
             is_planar: say(tag::PLANAR, Some(1))? == 2 && samples > 1,
-            compression: say(tag::COMPRESSION, Some(1))?,
-            predictor: say(tag::PREDICTOR, Some(1))?,
-            is_reversed: say(tag::FILL_ORDER, Some(1))? == 2,
+            compression,
+            // Neither is for pictures.
+            predictor: if is_jpeg { 1 } else { say(tag::PREDICTOR, Some(1))? },
+            is_reversed: !is_jpeg && say(tag::FILL_ORDER, Some(1))? == 2,
+            jpeg_tables: directory.get(tag::JPEG_TABLES).filter(|_| is_jpeg),
+            is_ybr,
             is_tiled,
             part,
             offsets: directory
@@ -143,8 +159,8 @@ impl Page {
         for (tag, first) in [(tag::BITS, self.bits), (tag::SAMPLE_FORMAT, self.format)] {
             // One number stands for all samples; more than samples say nothing more.
             if let Some(entry) = directory.get(tag).filter(|entry| entry.count > 1) {
-                let numbers = entry.numbers(file)?;
-                if numbers.iter().take(self.samples).any(|&number| number != first) {
+                let numbers = entry.numbers(file, self.samples as u64)?;
+                if numbers.iter().any(|&number| number != first) {
                     return Ok(false);
                 }
             }

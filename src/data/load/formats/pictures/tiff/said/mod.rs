@@ -4,3 +4,4 @@ pub(super) mod imagej;
 mod length;
 pub(super) mod lsm;
 pub(super) mod ome;
+pub(super) mod palette;

@@ -3,7 +3,7 @@
 use super::writer::{LITTLE, LONG, Leaf, SHORT, Writer};
 use super::{assert_refused, load_bytes};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::{Endian, LoadErrorKind};
+use crate::data::load::{Endian, LoadControl, LoadErrorKind, LoadOptions, load};
 
 fn leaf() -> Leaf {
     LITTLE.leaf([2, 2], 8, &[1, 2, 3, 4])
@@ -64,7 +64,8 @@ fn sizes_that_cannot_be_are_refused_before_anything_is_allocated() {
 #[test]
 fn kinds_that_are_not_read_are_named() {
     for (leaf, words) in [
-        (leaf().with(tag::COMPRESSION, SHORT, &[7]), "JPEG"),
+        (leaf().with(tag::COMPRESSION, SHORT, &[7]).with(tag::BITS, SHORT, &[12]), "they have 12"),
+        (leaf().with(tag::COMPRESSION, SHORT, &[34712]), "JPEG 2000"),
         (leaf().with(tag::COMPRESSION, SHORT, &[34925]), "LZMA"),
         (leaf().with(tag::COMPRESSION, SHORT, &[4]), "fax"),
         (leaf().with(tag::COMPRESSION, SHORT, &[999]), "number 999"),
@@ -82,7 +83,7 @@ fn kinds_that_are_not_read_are_named() {
 
 #[test]
 fn compressed_parts_that_are_broken_or_short() {
-    for compression in [5, 8, 32773, 50000] {
+    for compression in [5, 7, 8, 32773, 50000] {
         for part in [vec![0x55; 30], vec![0]] {
             let leaf = LITTLE.leaf([9, 9], 8, &part).with(tag::COMPRESSION, SHORT, &[compression]);
             let refused = load_bytes(&LITTLE.file(&[leaf]));
@@ -96,4 +97,22 @@ fn a_part_that_was_never_written_is_empty() {
     let leaf = leaf().with_rows_per_strip(1, vec![vec![5, 6], Vec::new()]);
     let volume = load_bytes(&LITTLE.file(&[leaf])).unwrap();
     assert_eq!(*volume.samples(), crate::data::Samples::U8(vec![5, 6, 0, 0]));
+}
+
+#[test]
+fn the_same_bytes_over_and_over_are_no_strips() {
+    // 4 MiB that each of 64 strips claims: 256 MiB, of a page of 64 MiB.
+    let bytes = vec![0x55; 4 << 20];
+    let file = {
+        let leaf = LITTLE.leaf([1 << 20, 64], 8, &bytes).with(tag::COMPRESSION, SHORT, &[8]);
+        let counts = vec![bytes.len() as u64 / 2; 64];
+        let leaf = leaf.with(tag::ROWS_PER_STRIP, SHORT, &[1]).with(tag::STRIP_OFFSETS, LONG, &[8; 64]);
+        LITTLE.file(&[leaf.with(tag::STRIP_COUNTS, LONG, &counts)])
+    };
+    let options = LoadOptions::default();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("same.tif");
+    std::fs::write(&path, file).unwrap();
+    let refused = load(&path, &options, &LoadControl::new());
+    assert_refused(refused, LoadErrorKind::BadInput, &["page 0", "over and over"]);
 }

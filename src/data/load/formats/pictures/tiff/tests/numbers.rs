@@ -196,3 +196,22 @@ fn white_is_turned_around_and_few_bits_are_widened() {
     let expected = vec![0xABC, 0x123, 1, 1, 2, 3];
     assert_eq!(samples_of(&LITTLE.file(&[twelve])), Samples::U16(expected));
 }
+
+#[test]
+fn labels_have_the_colours_of_their_table() {
+    // Red, green and blue of 256 numbers.
+    let table: Vec<u64> = (0..768).map(|at| if at < 256 { 257 * at } else { 0 }).collect();
+    let read = |number: fn(usize, usize) -> u8| {
+        let pixels: Vec<u8> = (0..64 * 64).map(|at| number(at % 64, at / 64)).collect();
+        let leaf = LITTLE.leaf([64, 64], 8, &pixels).with(tag::PHOTOMETRIC, SHORT, &[3]);
+        load_bytes(&LITTLE.file(&[leaf.with(tag::COLOR_MAP, SHORT, &table)])).unwrap()
+    };
+    let labels = read(|x, y| [0, 90, 20, 60, 120, 30, 0, 150, 10][x / 22 + 3 * (y / 22)]);
+    assert!(labels.remarks()[0].contains("table of colours"));
+    let found = &labels.hints().labels;
+    assert_eq!(found.get(90).and_then(|label| label.color), Some([90.0 / 255.0, 0.0, 0.0]));
+    assert_eq!(found.get(91), None, "no voxel has it");
+    // What is no label map has numbers alone.
+    let smooth = read(|x, y| (x * 2 + y) as u8);
+    assert!(smooth.hints().labels.is_empty() && smooth.remarks()[0].contains("table of colours"));
+}

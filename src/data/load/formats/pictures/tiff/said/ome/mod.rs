@@ -112,9 +112,16 @@ pub(in super::super) fn stack(
     of_root(attempt, tiff, root, choice)
 }
 
+/// Whether a name says nothing: programs that ask for none count images, as in `Image0` and `Image:0`.
+fn is_counted(name: &str) -> bool {
+    let number = name.strip_prefix("Image").unwrap_or(name).trim_start_matches([':', ' ', '_']);
+    name.is_empty() || name.starts_with("Image") && number.bytes().all(|byte| byte.is_ascii_digit())
+}
+
 fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
     use std::io::Read as _;
     let input = crate::data::load::reading::input::Input::open(attempt)?;
+    crate::data::load::reading::read_files::note(attempt.path);
     let mut text = String::new();
     input.reader.take(MOST_XML_BYTES).read_to_string(&mut text).map_err(|error| attempt.io(error))?;
     Ok(text)
@@ -175,7 +182,7 @@ fn of_root(
     check_size(attempt, tiff, &slices, sizes.dims)?;
     chosen.remark(&mut placement);
     let name = match named(image) {
-        name if name.trim().is_empty() => crate::data::load::reading::input::stem(attempt.path),
+        name if is_counted(name.trim()) => crate::data::load::reading::input::stem(attempt.path),
         name => plain(name.trim(), 120),
     };
     Ok(Stack {
@@ -246,4 +253,19 @@ fn hints(root: Node<'_, '_>, image: Node<'_, '_>, pixels: Node<'_, '_>, channel:
 /// A file of a set.
 pub(super) fn beside_of(attempt: Attempt<'_>, name: &str) -> Result<PathBuf, LoadError> {
     beside::resolve(attempt, "FileName", name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_counted;
+
+    #[test]
+    fn names_that_count_images_say_nothing() {
+        for name in ["", "Image0", "Image:0", "Image 12", "Image"] {
+            assert!(is_counted(name), "{name}");
+        }
+        for name in ["0", "Images", "Image of a cell", "cell 3", "image1.tif"] {
+            assert!(!is_counted(name), "{name}");
+        }
+    }
 }

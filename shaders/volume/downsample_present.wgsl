@@ -1,0 +1,14 @@
+// The next level of the pyramid where voxels are missing: density, and the share of its kernel that is there.
+#import "volume/halved.wgsl"
+
+@group(0) @binding(2) var level: texture_storage_3d<PAIR_FORMAT, write>;
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    resample = bound_resample;
+    let texel = texel_of(group, local);
+    if (any(texel >= textureDimensions(level))) {
+        return;
+    }
+    textureStore(level, texel, halved(texel));
+}

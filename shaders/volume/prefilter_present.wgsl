@@ -1,0 +1,18 @@
+// Level 0 of the pyramid where voxels are missing: the volume blurred (volume/prefilter.wgsl), and beside it the share of
+// that kernel which lies on voxels that are there, so that one fetch says both.
+#import "volume/prefiltered.wgsl"
+#import "density/stored_presence.wgsl"
+
+@group(0) @binding(2) var level: texture_storage_3d<PAIR_FORMAT, write>;
+@group(0) @binding(4) var presence_level: texture_3d<f32>;
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    resample = bound_resample;
+    let texel = texel_of(group, local);
+    if (any(texel >= textureDimensions(level))) {
+        return;
+    }
+    let share = share_stored(textureLoad(presence_level, texel, 0));
+    textureStore(level, texel, vec4f(prefiltered(texel), share, 0.0, 0.0));
+}

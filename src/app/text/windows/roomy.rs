@@ -1,0 +1,66 @@
+//! The question how much of a large volume is read.
+
+use crate::app::text::data::{dimensions, ordinal};
+use crate::data::load::{Size, human_bytes};
+
+pub(crate) const TITLE: &str = "A large volume: how much of it?";
+
+/// What the file holds.
+pub(crate) fn holds(source: &str, size: &Size) -> String {
+    let bytes = human_bytes(size.bytes().into());
+    format!("{source} holds {} voxels of {}, {bytes}", dimensions(size.dims), size.voxel_type.name())
+}
+
+/// What the whole volume would take of the memory, and what there is.
+pub(crate) fn memory(needed: u64, free: u64) -> String {
+    format!("Memory: all of it takes {}, {} are free", human_bytes(needed.into()), human_bytes(free.into()))
+}
+
+/// What the whole volume would take of the graphics adapter, and how many voxels that holds, if not all.
+pub(crate) fn adapter(needed: u64, held: Option<[usize; 3]>) -> String {
+    let needed = human_bytes(needed.into());
+    match held {
+        Some(held) => {
+            format!("Graphics adapter: all of it takes {needed}, it holds {} voxels", dimensions(held))
+        }
+        None => format!("Graphics adapter: all of it takes {needed}, which it holds"),
+    }
+}
+
+/// What a part takes, and what there is to say of that.
+pub(crate) fn takes(dims: [usize; 3], bytes: u64, but: Option<&str>) -> String {
+    let taken = format!("{} voxels, {}", dimensions(dims), human_bytes(bytes.into()));
+    but.map_or(taken.clone(), |but| format!("{taken}: {but}"))
+}
+
+/// A part has no room either, takes most of it, or more than the graphics adapter has.
+pub(crate) const TOO_MUCH: &str = "too much";
+pub(crate) const TIGHT: &str = "most of what is free";
+pub(crate) const AVERAGED: &str = "the graphics adapter shows means of it";
+
+pub(crate) fn average(block: usize) -> String {
+    format!("Average {block} × {block} × {block}")
+}
+
+pub(crate) fn every(step: usize) -> String {
+    format!("Every {} voxel", ordinal(step))
+}
+
+pub(crate) const AVERAGE_TIP: &str = "Each voxel is the mean of a block; of labels the most frequent one";
+pub(crate) const EVERY_TIP: &str =
+    "Along each axis the voxels between are left out: values stay as the file has them";
+pub(crate) const REGION: &str = "Region";
+pub(crate) const REGION_TIP: &str =
+    "A part with all of its voxels, from the first to before the last, counted from 0";
+pub(crate) const WHOLE: &str = "Whole all the same";
+pub(crate) const WHOLE_TIP: &str = "Other programs may have to wait, or lose their memory";
+pub(crate) const OPEN: &str = "Open this much";
+pub(crate) const CANCEL: &str = "Do not open";
+
+pub(crate) fn first_along(axis: &str) -> String {
+    format!("First voxel along {axis}")
+}
+
+pub(crate) fn end_along(axis: &str) -> String {
+    format!("End along {axis}")
+}

@@ -1,0 +1,303 @@
+//! The size of a volume, checked before anything is allocated: what of it is wanted, and what reading keeps.
+
+use super::choice::Choice;
+use super::control::LoadControl;
+use super::error::{Attempt, LoadError};
+use super::kept::Kept;
+use super::limits::human_bytes;
+use super::portion::{LONGEST_STEP, Portion, Thinning};
+use super::size::{Size, needed_bytes};
+use crate::data::VoxelType;
+
+/// What there is for a volume, and how much of it is wanted.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::data) struct Room<'a> {
+    /// Most bytes of voxels.
+    pub(in crate::data) budget_bytes: u64,
+    /// What is said of what is read.
+    pub(in crate::data) choice: &'a Choice,
+    /// Who waits for it.
+    pub(in crate::data) control: &'a LoadControl,
+}
+
+/// The size of a grid, what of it is wanted, and what of it reading keeps: that fits into the memory budget.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::data) struct Extent {
+    /// Voxels of the file's grid along x, y, z, none of them 0.
+    pub(in crate::data) dims: [usize; 3],
+    /// Their product.
+    pub(in crate::data) voxels: usize,
+    /// Bytes of all voxels.
+    pub(in crate::data) bytes: u64,
+    /// What is wanted of them.
+    pub(in crate::data) wanted: Kept,
+    /// What reading keeps of them: what is wanted, or more where that is better made of what was read.
+    pub(in crate::data) read: Kept,
+}
+
+impl Extent {
+    /// The extent of a grid of which all is read, with no look at any limit.
+    pub(in crate::data) fn sized(dims: [usize; 3], voxel_type: VoxelType) -> Self {
+        let kept = Kept::all(dims);
+        let bytes = (kept.count() as u64).saturating_mul(voxel_type.bytes() as u64);
+        Self { dims, voxels: kept.count(), bytes, wanted: kept, read: kept }
+    }
+
+    /// The extent of the slices of it that are needed, where they are all that there is.
+    pub(in crate::data) fn of_slices(self, voxel_type: VoxelType) -> Self {
+        let kept = self.read.of_slices();
+        Self { wanted: kept, read: kept, ..Self::sized(kept.grid, voxel_type) }
+    }
+
+    /// Checks `dims`, which `field` gave, against zero, overflow and the budget, for a reader that keeps what is wanted
+    /// and no more.
+    ///
+    /// Blocks are averaged after reading where all that they are made of fits, else while it is read.
+    pub(in crate::data) fn checked(
+        attempt: Attempt<'_>,
+        field: &str,
+        dims: [u64; 3],
+        voxel_type: VoxelType,
+        room: Room<'_>,
+    ) -> Result<Self, LoadError> {
+        let extent = Self::measured(attempt, field, dims, voxel_type, room)?;
+        extent.weighed(voxel_type, room, false)?;
+        let Self { wanted, .. } = extent;
+        let boxed = Self { read: wanted.boxed(), ..extent };
+        let has_room = boxed.needed_bytes(voxel_type) <= u128::from(room.budget_bytes);
+        if wanted.is_averaged && has_room && !is_short_of_room() {
+            return Ok(boxed);
+        }
+        let extent = extent.within(attempt, field, voxel_type, room, false)?;
+        if let Some(watch) = room.choice.watch.as_ref().filter(|_| extent.read.is_averaged) {
+            watch.saw_averaging();
+        }
+        Ok(extent)
+    }
+
+    /// As [`Self::checked`], for a reader that makes all voxels before any can be left out.
+    pub(in crate::data) fn checked_whole(
+        attempt: Attempt<'_>,
+        field: &str,
+        dims: [u64; 3],
+        voxel_type: VoxelType,
+        room: Room<'_>,
+    ) -> Result<Self, LoadError> {
+        let extent = Self::measured(attempt, field, dims, voxel_type, room)?;
+        extent.weighed(voxel_type, room, true)?;
+        Self { read: Kept::all(extent.dims), ..extent }.within(attempt, field, voxel_type, room, true)
+    }
+
+    /// The extent of a grid, of which what is wanted is read.
+    fn measured(
+        attempt: Attempt<'_>,
+        field: &str,
+        dims: [u64; 3],
+        voxel_type: VoxelType,
+        room: Room<'_>,
+    ) -> Result<Self, LoadError> {
+        let [x, y, z] = dims;
+        if dims.contains(&0) {
+            return Err(attempt.bad_input(
+                field,
+                format!("{x} x {y} x {z} voxels are an empty volume"),
+                "every dimension must be at least 1",
+            ));
+        }
+        // Three 64-bit factors can leave even 128 bits; saturated they still are over any budget.
+        let voxels = dims.iter().fold(1u128, |product, &n| product.saturating_mul(u128::from(n)));
+        let bytes = voxels.saturating_mul(voxel_type.bytes() as u128);
+        // On a 32-bit system the budget may be larger than what can be addressed.
+        let narrow = |n: u64| usize::try_from(n).ok();
+        let (Some(x), Some(y), Some(z), Ok(voxels), Ok(bytes)) =
+            (narrow(x), narrow(y), narrow(z), usize::try_from(voxels), u64::try_from(bytes))
+        else {
+            return Err(attempt.limit(
+                field,
+                format!(
+                    "{x} x {y} x {z} voxels of {} need {}, {} are allowed",
+                    voxel_type.name(),
+                    human_bytes(bytes),
+                    human_bytes(u128::from(room.budget_bytes))
+                ),
+                "check the dimensions",
+            ));
+        };
+        let dims = [x, y, z];
+        let portion = room.choice.portion.unwrap_or_default();
+        let Some(wanted) = Kept::of(&portion, dims, room.choice.are_labels) else {
+            return Err(attempt.outside(dims));
+        };
+        if let Some(watch) = &room.choice.watch {
+            watch.saw_grid(dims);
+        }
+        Ok(Self { dims, voxels, bytes, wanted, read: wanted })
+    }
+
+    /// Asks who waits for the volume whether it is read like this, unless that was said.
+    fn weighed(&self, voxel_type: VoxelType, room: Room<'_>, is_read_whole: bool) -> Result<(), LoadError> {
+        if room.choice.portion.is_some()
+            || room.control.accepts(&Size { dims: self.dims, voxel_type, is_read_whole })
+        {
+            Ok(())
+        } else {
+            Err(LoadError::Cancelled)
+        }
+    }
+
+    /// Checks that there is room for what is read, and for what is made of that.
+    fn within(
+        self,
+        attempt: Attempt<'_>,
+        field: &str,
+        voxel_type: VoxelType,
+        room: Room<'_>,
+        is_read_whole: bool,
+    ) -> Result<Self, LoadError> {
+        let needed = self.needed_bytes(voxel_type);
+        if needed <= u128::from(room.budget_bytes) {
+            return Ok(self);
+        }
+        let [x, y, z] = self.dims;
+        let portion = room.choice.portion.unwrap_or_default();
+        let grid = format!("{x} x {y} x {z} voxels of {}", voxel_type.name());
+        let what = if portion.is_whole() { grid } else { format!("{} {grid}", portion.in_words()) };
+        Err(attempt.limit(
+            field,
+            format!(
+                "{what} need {}, {} are allowed",
+                human_bytes(needed),
+                human_bytes(u128::from(room.budget_bytes))
+            ),
+            self.help(voxel_type, room, is_read_whole),
+        ))
+    }
+
+    /// What helps where not all of it has room.
+    fn help(&self, voxel_type: VoxelType, room: Room<'_>, is_read_whole: bool) -> String {
+        const OTHERWISE: &str =
+            "check the dimensions, close other programs, or load a smaller or cropped volume";
+        if is_read_whole {
+            return OTHERWISE.to_owned();
+        }
+        let fits = |thinning: fn(usize) -> Thinning| {
+            let region = room.choice.portion.and_then(|portion| portion.region);
+            let portions = (2..=LONGEST_STEP).map(|n| Portion { region, thinning: thinning(n) });
+            let mut kept = portions.filter_map(|portion| Kept::of(&portion, self.dims, false));
+            kept.find(|&kept| {
+                let extent = Self { wanted: kept, read: kept, ..*self };
+                extent.needed_bytes(voxel_type) <= u128::from(room.budget_bytes)
+            })
+        };
+        let step = |kept: Kept| kept.step.into_iter().max().unwrap_or(1);
+        let said = |kept: Kept| {
+            let [x, y, z] = kept.dims();
+            let bytes = kept.count() as u128 * voxel_type.bytes() as u128;
+            format!("{x} x {y} x {z} voxels in {}", human_bytes(bytes))
+        };
+        let Some(every) = fits(Thinning::Every) else { return OTHERWISE.to_owned() };
+        let means = fits(Thinning::Average).map_or_else(String::new, |average| {
+            format!("--reduce {} averages blocks into {}, ", step(average), said(average))
+        });
+        let every = format!("--every {} reads {}, ", step(every), said(every));
+        every
+            + &means
+            + "--region X0:X1,Y0:Y1,Z0:Z1 reads a part; or check the dimensions, or close other programs"
+    }
+
+    /// Bytes for what is read, for what is made of it, and for what is read at a time.
+    fn needed_bytes(&self, voxel_type: VoxelType) -> u128 {
+        needed_bytes(&self.read, &self.wanted, voxel_type)
+    }
+}
+
+/// Whether blocks are averaged while they are read even where there is room for all: only in tests of that.
+#[cfg(not(test))]
+const fn is_short_of_room() -> bool {
+    false
+}
+
+#[cfg(test)]
+pub(in crate::data) use tests::in_little_room;
+#[cfg(test)]
+use tests::is_short_of_room;
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::path::Path;
+
+    use super::super::error::LoadErrorKind;
+    use super::*;
+
+    thread_local! {
+        static LITTLE: Cell<bool> = const { Cell::new(false) };
+    }
+
+    pub(super) fn is_short_of_room() -> bool {
+        LITTLE.get()
+    }
+
+    /// Does something as if there were no room for blocks that are averaged afterwards.
+    pub(in crate::data) fn in_little_room<T>(what: impl FnOnce() -> T) -> T {
+        LITTLE.set(true);
+        let done = what();
+        LITTLE.set(false);
+        done
+    }
+
+    fn extent(dims: [u64; 3], budget_bytes: u64, portion: Portion) -> Result<Extent, LoadError> {
+        let attempt = Attempt { what: "test", path: Path::new("t") };
+        let choice = Choice { portion: Some(portion), ..Choice::default() };
+        let room = Room { budget_bytes, choice: &choice, control: &LoadControl::new() };
+        Extent::checked(attempt, "sizes", dims, VoxelType::U16, room)
+    }
+
+    fn kind_of(dims: [u64; 3], budget: u64) -> Result<Extent, LoadErrorKind> {
+        extent(dims, budget, Portion::default()).map_err(|error| error.kind())
+    }
+
+    #[test]
+    fn sizes_are_checked_without_overflow() {
+        let ok = Extent::sized([2, 3, 4], VoxelType::U16);
+        assert_eq!((ok.voxels, ok.bytes), (24, 48));
+        assert_eq!(kind_of([2, 3, 4], 48), Ok(ok));
+        assert_eq!(kind_of([2, 3, 4], 47), Err(LoadErrorKind::Limit));
+        assert_eq!(kind_of([2, 0, 4], 48), Err(LoadErrorKind::BadInput));
+        assert_eq!(kind_of([u64::MAX; 3], u64::MAX), Err(LoadErrorKind::Limit));
+        assert_eq!(kind_of([1 << 32, 1 << 32, 1], u64::MAX), Err(LoadErrorKind::Limit));
+        assert_eq!(kind_of([1_000_000; 3], u64::MAX / 16), Err(LoadErrorKind::Limit));
+    }
+
+    #[test]
+    fn what_is_left_out_needs_no_room() {
+        // 8000 voxels of 2 bytes; every second are 1000.
+        let dims = [20, 20, 20];
+        assert!(extent(dims, 2000, Portion::every(2)).is_ok_and(|extent| extent.wanted == extent.read));
+        assert!(extent(dims, 1999, Portion::every(2)).is_err());
+        let region = |text: &str| Portion { region: text.parse().ok(), ..Portion::default() };
+        assert!(extent(dims, 400, region("0:10,0:10,0:2")).is_ok());
+        let outside = extent(dims, 400, region("0:21,:,:")).unwrap_err();
+        assert_eq!(outside.kind(), LoadErrorKind::BadInput);
+        // Averaged afterwards where all of them have room beside the means, else two slices at a time, of 10 bytes each
+        // voxel, beside the means and one voxel of each block.
+        assert!(extent(dims, 18_000, Portion::average(2)).is_ok_and(|extent| extent.read.is_all()));
+        assert!(extent(dims, 17_999, Portion::average(2)).is_ok_and(|extent| extent.wanted == extent.read));
+        assert!(extent(dims, 2 * 2000 + 800 * 10, Portion::average(2)).is_ok());
+        assert!(extent(dims, 2 * 2000 + 800 * 10 - 1, Portion::average(2)).is_err());
+    }
+
+    #[test]
+    fn too_large_a_volume_hears_how_much_of_it_has_room() {
+        let said = extent([2000, 2000, 1000], 1 << 30, Portion::default()).unwrap_err().to_string();
+        for words in [
+            "need 7.5 GiB, 1.0 GiB are allowed",
+            "--every 2 reads 1000 x 1000 x 500 voxels in 953.7 MiB",
+            "--reduce 3 ",
+        ] {
+            assert!(said.contains(words), "{words}: {said}");
+        }
+        let endless = extent([1 << 40, 1 << 20, 1], 1 << 20, Portion::default()).unwrap_err().to_string();
+        assert!(endless.contains("check the dimensions"), "{endless}");
+    }
+}

@@ -1,0 +1,165 @@
+//! How much of a file's grid is read: all of it, a box, every so manyth voxel, or the means of blocks.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// The longest step from a voxel to the next that is kept, and the longest edge of a block. What is larger leaves nothing
+/// to see even of the longest axes, and a row of voxels of so many steps is still a small buffer.
+pub(super) const LONGEST_STEP: usize = 4096;
+
+/// What is read of a volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Portion {
+    /// A box, in voxels of the file; all of them without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub region: Option<Region>,
+    /// How many voxels of that are kept.
+    #[serde(skip_serializing_if = "Thinning::is_none")]
+    pub thinning: Thinning,
+}
+
+/// How many voxels of a box are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Thinning {
+    /// All of them.
+    #[default]
+    None,
+    /// Along each axis the first, and then every so manyth.
+    Every(usize),
+    /// The means of blocks of so many voxels along each axis; of labels the most frequent.
+    Average(usize),
+}
+
+/// A box of voxels, whose ends may be left to the volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Region(pub [Stretch; 3]);
+
+/// Voxels along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stretch {
+    /// The first, from 0.
+    pub first: usize,
+    /// The first that is not among them any more; behind the last where it is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end: Option<usize>,
+}
+
+impl Portion {
+    /// Whether nothing is left out.
+    pub fn is_whole(&self) -> bool {
+        self.region.is_none() && self.thinning.step() == 1
+    }
+
+    /// Every so manyth voxel of all of them.
+    pub fn every(step: usize) -> Self {
+        Self { region: None, thinning: Thinning::Every(step) }
+    }
+
+    /// Means of blocks of all voxels.
+    pub fn average(block: usize) -> Self {
+        Self { region: None, thinning: Thinning::Average(block) }
+    }
+
+    /// What is read, in words after which the grid is named: `every 2nd voxel of`.
+    pub fn in_words(&self) -> String {
+        let thinning = match (self.thinning, self.thinning.step()) {
+            (_, 1) => "",
+            (Thinning::Average(_), n) => &format!("means of {n} x {n} x {n} voxels of "),
+            (_, 2) => "every second voxel of ",
+            (_, 3) => "every third voxel of ",
+            (_, n) => &format!("every {n}th voxel of "),
+        };
+        let region = self.region.map_or(String::new(), |region| format!("the region {region} of "));
+        format!("{thinning}{region}").trim_end().to_owned()
+    }
+}
+
+impl Thinning {
+    /// Voxels of the file along each axis for which one stands.
+    pub fn step(self) -> usize {
+        match self {
+            Self::None => 1,
+            Self::Every(n) | Self::Average(n) => n.clamp(1, LONGEST_STEP),
+        }
+    }
+
+    fn is_none(&self) -> bool {
+        self.step() == 1
+    }
+}
+
+/// `0:10,5:,:`
+impl FromStr for Region {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected =
+            || format!("expected first and end along x, y and z, as in 0:64,0:64,10:20, found {text:?}");
+        let stretch = |text: &str| {
+            let (first, end) = text.split_once(':')?;
+            let number = |text: &str, default| {
+                if text.is_empty() { Some(default) } else { text.parse().ok().map(Some) }
+            };
+            Some(Stretch { first: number(first.trim(), Some(0))??, end: number(end.trim(), None)? })
+        };
+        let stretches: Option<Vec<Stretch>> = text.split(',').map(stretch).collect();
+        stretches.and_then(|stretches| stretches.try_into().ok()).map(Self).ok_or_else(expected)
+    }
+}
+
+impl fmt::Display for Region {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (axis, Stretch { first, end }) in self.0.into_iter().enumerate() {
+            let comma = if axis > 0 { "," } else { "" };
+            let end = end.map_or(String::new(), |end| end.to_string());
+            write!(f, "{comma}{first}:{end}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_are_understood_and_written_alike() {
+        let region: Region = "1:4,:,2:".parse().unwrap();
+        assert_eq!(region.to_string(), "1:4,0:,2:");
+        assert_eq!(region.to_string().parse(), Ok(region));
+        for text in ["", "1:2", "1:2,3:4", "1:2,3:4,5", "a:2,3:4,5:6", "-1:2,3:4,5:6", "1:2,3:4,5:6,7:8"] {
+            assert!(text.parse::<Region>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn portions_are_kept_as_little_text() {
+        for (portion, text) in [
+            (Portion::default(), "{}"),
+            (Portion::every(2), r#"{"thinning":{"every":2}}"#),
+            (Portion::average(4), r#"{"thinning":{"average":4}}"#),
+            (
+                Portion { region: "0:8,:,1:".parse().ok(), thinning: Thinning::Every(3) },
+                r#"{"region":[{"first":0,"end":8},{"first":0},{"first":1}],"thinning":{"every":3}}"#,
+            ),
+        ] {
+            assert_eq!(serde_json::to_string(&portion).unwrap(), text);
+            assert_eq!(serde_json::from_str::<Portion>(text).unwrap(), portion);
+        }
+        // From a session of somebody else's.
+        let odd: Portion = serde_json::from_str(r#"{"thinning":{"every":0}}"#).unwrap();
+        assert!(odd.is_whole());
+    }
+
+    #[test]
+    fn portions_are_said_in_words() {
+        let boxed = Portion { region: "0:8,:,1:".parse().ok(), thinning: Thinning::Every(2) };
+        assert_eq!(boxed.in_words(), "every second voxel of the region 0:8,0:,1: of");
+        assert_eq!(Portion::average(4).in_words(), "means of 4 x 4 x 4 voxels of");
+        assert_eq!(Portion::every(5).in_words(), "every 5th voxel of");
+    }
+}

@@ -1,0 +1,100 @@
+//! What volumes take of the memory, known before any of their voxels is read.
+
+use super::kept::Kept;
+use super::portion::Portion;
+use crate::data::VoxelType;
+
+/// Bytes beside the voxels for what is found of each brick of 8³: bounds of its 64 cells, of itself, and which of them are
+/// seen.
+const BYTES_OF_BRICK: usize = 64 * 2 + 8 + 2 * 8;
+
+/// Voxels of a brick.
+const BRICK: usize = 8 * 8 * 8;
+
+/// The size of a file's grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// Their type, at most: whole numbers of 64 bits may take less.
+    pub voxel_type: VoxelType,
+    /// Whether all voxels must be read before any can be left out.
+    pub is_read_whole: bool,
+}
+
+impl Size {
+    /// Voxels along x, y, z of a portion; nothing where it reaches beyond the grid.
+    pub fn dims_of(&self, portion: &Portion) -> Option<[usize; 3]> {
+        Kept::of(portion, self.dims, false).map(|kept| kept.dims())
+    }
+
+    /// Bytes of the file's voxels.
+    pub fn bytes(&self) -> u64 {
+        saturated(bytes_of(&Kept::all(self.dims), self.voxel_type))
+    }
+
+    /// Bytes of memory that a portion takes, with what is found of it, while it is opened; nothing where it reaches beyond
+    /// the grid.
+    pub fn host_bytes(&self, portion: &Portion) -> Option<u64> {
+        let wanted = Kept::of(portion, self.dims, false)?;
+        let voxels = if self.is_read_whole {
+            needed_bytes(&Kept::all(self.dims), &wanted, self.voxel_type)
+        } else {
+            let while_read = needed_bytes(&wanted, &wanted, self.voxel_type);
+            while_read.min(needed_bytes(&wanted.boxed(), &wanted, self.voxel_type))
+        };
+        let bricks =
+            wanted.dims().into_iter().fold(1u128, |all, n| all.saturating_mul(n as u128)) / BRICK as u128;
+        Some(saturated(voxels.saturating_add(bricks.saturating_mul(BYTES_OF_BRICK as u128))))
+    }
+}
+
+fn saturated(bytes: u128) -> u64 {
+    u64::try_from(bytes).unwrap_or(u64::MAX)
+}
+
+fn bytes_of(kept: &Kept, voxel_type: VoxelType) -> u128 {
+    let voxels = kept.dims().into_iter().fold(1u128, |all, n| all.saturating_mul(n as u128));
+    voxels.saturating_mul(voxel_type.bytes() as u128)
+}
+
+/// Bytes for what is read, for what is made of it, and for what is read at a time.
+pub(super) fn needed_bytes(read: &Kept, wanted: &Kept, voxel_type: VoxelType) -> u128 {
+    let kept = bytes_of(read, voxel_type);
+    if read != wanted {
+        // Voxels that are picked are moved to the front of those that were read.
+        return kept.saturating_add(if wanted.is_averaged { bytes_of(wanted, voxel_type) } else { 0 });
+    }
+    if !read.is_averaged {
+        return kept;
+    }
+    // Beside the means one voxel of each block, which tells labels; and as many slices as a block is deep, which are of
+    // numbers of at most 8 bytes once they mean what the file says.
+    let [x, y, _] = read.edges();
+    let slab = x as u128 * y as u128 * read.step[2] as u128;
+    kept.saturating_mul(2)
+        .saturating_add(slab.saturating_mul((voxel_type.bytes() + size_of::<f64>()) as u128))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn portions_take_less() {
+        let size = Size { dims: [80, 80, 80], voxel_type: VoxelType::U16, is_read_whole: false };
+        let host = |size: &Size, portion: Portion| size.host_bytes(&portion).unwrap();
+        assert_eq!(size.bytes(), 1_024_000);
+        // 1000 bricks beside them.
+        assert_eq!(host(&size, Portion::default()), 1_024_000 + 152_000);
+        assert_eq!(host(&size, Portion::every(2)), 128_000 + 19_000);
+        // Means, one voxel of each block, and two slices at a time.
+        assert_eq!(host(&size, Portion::average(2)), 2 * 128_000 + 2 * 6400 * 10 + 19_000);
+        let whole = Size { is_read_whole: true, ..size };
+        assert_eq!(host(&whole, Portion::every(2)), 1_024_000 + 19_000);
+        let outside = Portion { region: "0:81,:,:".parse().ok(), ..Portion::default() };
+        assert_eq!((size.host_bytes(&outside), size.dims_of(&outside)), (None, None));
+        let endless = Size { dims: [usize::MAX; 3], ..size };
+        assert_eq!(host(&endless, Portion::default()), u64::MAX);
+    }
+}

@@ -1,0 +1,215 @@
+//! The bytes of the voxels that are kept, out of a stream with those of a whole grid.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+
+use super::LoadControl;
+use super::samples::{BLOCK_BYTES, Fault, fill, reserve};
+use crate::data::attempt::Kept;
+
+/// Goes forward in a stream without reading what is passed over.
+pub(in crate::data::load) type Leap<R> = fn(&mut R, u64) -> io::Result<()>;
+
+/// Goes forward in a file: what is not in the buffer is not read.
+pub(in crate::data::load) fn leap_in_file(reader: &mut BufReader<File>, count: u64) -> io::Result<()> {
+    let mut left = count;
+    while left > 0 {
+        let step = left.min(i64::MAX as u64);
+        reader.seek_relative(step as i64)?;
+        left -= step;
+    }
+    Ok(())
+}
+
+/// Reads what is kept as if nothing else were there. At its end the stream is behind the last voxel of the grid.
+pub(super) struct Sieve<'a, R> {
+    reader: &'a mut R,
+    /// How it goes forward, where it need not read.
+    leap: Option<Leap<R>>,
+    control: &'a LoadControl,
+    kept: Kept,
+    /// Bytes of a voxel.
+    size: usize,
+    /// Bytes that are to be handed out, and how many of them were.
+    ready: Vec<u8>,
+    given: usize,
+    /// Where the next voxels of the stream are that are kept, along x, y and z.
+    next: [usize; 3],
+    /// Bytes of the stream before the next one.
+    at: u64,
+    /// Where bytes go that nobody wants.
+    scrap: Vec<u8>,
+    /// Why there are no more.
+    pub(super) fault: Option<Fault>,
+}
+
+impl<'a, R: Read> Sieve<'a, R> {
+    /// A sieve for voxels of so many bytes.
+    pub(super) fn new(
+        reader: &'a mut R,
+        leap: Option<Leap<R>>,
+        kept: Kept,
+        size: usize,
+        control: &'a LoadControl,
+    ) -> Self {
+        let (ready, scrap, next) = (Vec::new(), Vec::new(), kept.low);
+        Self { reader, leap, control, kept, size, ready, given: 0, next, at: 0, scrap, fault: None }
+    }
+
+    /// Voxels of the stream before the next one.
+    pub(super) fn voxels_passed(&self) -> u64 {
+        self.at / self.size as u64
+    }
+
+    /// Goes to a byte of the stream; whether there are so many.
+    fn go_to(&mut self, at: u64) -> Result<bool, Fault> {
+        let mut left = at.saturating_sub(self.at);
+        if let Some(leap) = self.leap {
+            self.control.check().map_err(Fault::Stopped)?;
+            leap(self.reader, left).map_err(Fault::Io)?;
+            self.at += left;
+            return Ok(true);
+        }
+        while left > 0 {
+            let want = usize::try_from(left).map_or(BLOCK_BYTES, |left| left.min(BLOCK_BYTES));
+            if self.scrap.len() < want {
+                self.scrap.resize(want, 0);
+            }
+            let got = fill(self.reader, &mut self.scrap[..want], self.control)?;
+            self.at += got as u64;
+            left -= got as u64;
+            if got < want {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Reads the next voxels that are kept, as many as lie in a row and are read at a time; whether there are any.
+    fn read_next(&mut self) -> Result<bool, Fault> {
+        let Kept { grid: [nx, ny, nz], low, high, step, .. } = self.kept;
+        let of_voxels = |voxels: u64| voxels.saturating_mul(self.size as u64);
+        let [x, y, z] = self.next;
+        self.given = 0;
+        self.ready.clear();
+        if z >= high[2] {
+            self.go_to(of_voxels(nx as u64 * ny as u64 * nz as u64))?;
+            return Ok(false);
+        }
+        let place = (z as u64 * ny as u64 + y as u64) * nx as u64 + x as u64;
+        let at_once = (BLOCK_BYTES / self.size / step[0] * step[0]).max(step[0]);
+        let voxels = at_once.min(high[0] - x);
+        if !self.go_to(of_voxels(place))? {
+            return Ok(false);
+        }
+        // Not what lies between the last voxel that is kept and the next piece.
+        let wanted = ((voxels - 1) / step[0] * step[0] + 1) * self.size;
+        if self.ready.capacity() < wanted {
+            self.ready = reserve(wanted)?;
+        }
+        self.ready.resize(wanted, 0);
+        let got = fill(self.reader, &mut self.ready, self.control)?;
+        self.at += got as u64;
+        let size = self.size;
+        let mut kept = 0;
+        for voxel in (0..got / size).step_by(step[0]) {
+            self.ready.copy_within(voxel * size..(voxel + 1) * size, kept);
+            kept += size;
+        }
+        self.ready.truncate(kept);
+        self.next = if got < wanted {
+            [x, y, high[2]]
+        } else if x + voxels < high[0] {
+            [x + voxels, y, z]
+        } else if y + step[1] < high[1] {
+            [low[0], y + step[1], z]
+        } else {
+            [low[0], low[1], z + step[2]]
+        };
+        Ok(kept > 0)
+    }
+}
+
+impl<R: Read> Read for Sieve<'_, R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        if self.given == self.ready.len() {
+            match self.read_next() {
+                Ok(true) => {}
+                Ok(false) => return Ok(0),
+                Err(fault) => {
+                    self.fault = Some(fault);
+                    return Err(io::Error::other("the voxels cannot be read"));
+                }
+            }
+        }
+        let count = out.len().min(self.ready.len() - self.given);
+        out[..count].copy_from_slice(&self.ready[self.given..self.given + count]);
+        self.given += count;
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::attempt::Portion;
+
+    /// A grid of 5 × 4 × 3 voxels of two bytes, the first of which says which it is, with something behind them.
+    fn bytes() -> Vec<u8> {
+        (0..60).flat_map(|voxel| [voxel, 100]).chain([7, 7, 7]).collect()
+    }
+
+    fn sieved<'a>(bytes: &'a [u8], portion: &Portion, leap: Option<Leap<&'a [u8]>>) -> (Vec<u8>, usize) {
+        let kept = Kept::of(portion, [5, 4, 3], false).unwrap();
+        let control = LoadControl::new();
+        let mut rest = bytes;
+        let mut found = Vec::new();
+        Sieve::new(&mut rest, leap, kept, 2, &control).read_to_end(&mut found).unwrap();
+        (found.chunks(2).map(|voxel| voxel[0]).collect(), rest.len())
+    }
+
+    #[test]
+    fn what_is_kept_comes_out_and_the_stream_ends_behind_the_grid() {
+        let leap: Leap<&[u8]> = |rest, count| {
+            *rest = &rest[count as usize..];
+            Ok(())
+        };
+        let every = Portion::every(2);
+        let kept = vec![0, 2, 4, 10, 12, 14, 40, 42, 44, 50, 52, 54];
+        assert_eq!(sieved(&bytes(), &every, None), (kept.clone(), 3));
+        assert_eq!(sieved(&bytes(), &every, Some(leap)), (kept, 3));
+        let region = Portion { region: "1:3,2:4,1:2".parse().ok(), ..Portion::default() };
+        assert_eq!(sieved(&bytes(), &region, None), (vec![31, 32, 36, 37], 3));
+        assert_eq!(sieved(&bytes(), &Portion { region: region.region, ..every }, None), (vec![31], 3));
+        assert_eq!(sieved(&bytes()[..43], &every, None).0, [0, 2, 4, 10, 12, 14], "the rest is not there");
+        assert_eq!(
+            sieved(&bytes()[..85], &every, None).0.len(),
+            7,
+            "cut off within a row, and within a voxel"
+        );
+    }
+
+    #[test]
+    fn rows_longer_than_a_block_come_in_pieces() {
+        let long = 3 * BLOCK_BYTES + 5;
+        let bytes: Vec<u8> = (0..2 * long).map(|at| (at % 251) as u8).collect();
+        let kept = Kept::of(&Portion::every(3), [long, 2, 1], false).unwrap();
+        let control = LoadControl::new();
+        let mut found = Vec::new();
+        Sieve::new(&mut &bytes[..], None, kept, 1, &control).read_to_end(&mut found).unwrap();
+        let expected: Vec<u8> = bytes[..long].iter().step_by(3).copied().collect();
+        assert!(found == expected);
+    }
+
+    #[test]
+    fn who_gives_up_is_heard() {
+        let control = LoadControl::new();
+        control.cancel();
+        let kept = Kept::of(&Portion::every(2), [5, 4, 3], false).unwrap();
+        let bytes = bytes();
+        let mut rest = &bytes[..];
+        let mut sieve = Sieve::new(&mut rest, None, kept, 2, &control);
+        assert!(sieve.read(&mut [0; 8]).is_err());
+        assert!(matches!(sieve.fault, Some(Fault::Stopped(_))));
+    }
+}

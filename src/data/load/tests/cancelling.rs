@@ -1,0 +1,112 @@
+//! Giving up: whatever is being done to a volume, hardly anything of it is done afterwards.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use tempfile::TempDir;
+
+use super::shared::gzip;
+use crate::data::load::{Choice, LoadControl, LoadError, LoadOptions, Portion, load};
+use crate::data::{Dataset, Volume};
+
+/// Voxels along an edge: 2 MiB of them.
+const EDGE: usize = 128;
+
+/// Values between two looks at whether they are wanted.
+const PIECE: usize = 1 << 16;
+
+fn write(folder: &TempDir, edge: usize, is_packed: bool) -> PathBuf {
+    let bytes: Vec<u8> = (0..edge.pow(3)).map(|at| (at * 31 / 7) as u8).collect();
+    let ending = if is_packed { ".gz" } else { "" };
+    let path = folder.path().join(format!("large_{edge}x{edge}x{edge}_uint8.raw{ending}"));
+    fs::write(&path, if is_packed { gzip(&bytes) } else { bytes }).unwrap();
+    path
+}
+
+fn read(path: &Path, portion: Portion, control: &LoadControl) -> Result<Volume, LoadError> {
+    let choice = Choice { portion: Some(portion), ..Choice::default() };
+    load(path, &LoadOptions { choice, ..LoadOptions::default() }, control)
+}
+
+/// All that is done to a volume before its first picture.
+fn open(path: &Path, portion: Portion, control: &LoadControl) -> Result<Dataset, LoadError> {
+    let volume = read(path, portion, control)?;
+    let dataset = control.during(|| Dataset::new(volume));
+    if control.is_cancelled() { Err(LoadError::Cancelled) } else { Ok(dataset) }
+}
+
+#[test]
+fn every_stage_is_cut_into_small_pieces() {
+    let folder = TempDir::new().unwrap();
+    let path = write(&folder, EDGE, false);
+    let control = LoadControl::new();
+    let volume = read(&path, Portion::default(), &control).unwrap();
+    let pieces = EDGE.pow(3) / PIECE;
+    // Range, values that matter, identity, and at most a MiB of what is read at a time.
+    let of_reading = control.begun();
+    assert!(of_reading >= 3 * pieces as u64 + 2, "{of_reading}");
+    control.during(|| volume.averaged([2; 3])).unwrap();
+    let of_means = control.begun() - of_reading;
+    assert!(of_means >= EDGE as u64, "{of_means}: a slice at a time");
+    control.during(|| Dataset::new(volume));
+    let of_bounds = control.begun() - of_means - of_reading;
+    // Bricks, cells and histogram.
+    assert!(of_bounds >= 4 * EDGE as u64, "{of_bounds}");
+}
+
+#[test]
+fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
+    let folder = TempDir::new().unwrap();
+    for (is_packed, portion) in [
+        (false, Portion::default()),
+        (true, Portion::default()),
+        (false, Portion::every(2)),
+        (true, Portion::average(2)),
+    ] {
+        let path = write(&folder, EDGE, is_packed);
+        let control = LoadControl::new();
+        open(&path, portion, &control).unwrap();
+        let all = control.begun();
+        // The first and the last ones, and twenty between.
+        let moments =
+            [1, 2, 3, all - 1].into_iter().chain((1..20).map(|at| at * all / 20).filter(|&at| at > 0));
+        for moment in moments {
+            let control = LoadControl::new();
+            control.cancel_after(moment);
+            let given_up = open(&path, portion, &control);
+            assert!(matches!(given_up, Err(LoadError::Cancelled)), "{moment} of {all}");
+            // One piece for each core may have been begun at the same moment.
+            let late = control.begun() - moment;
+            assert!(late <= rayon::current_num_threads() as u64 + 1, "{late} pieces after {moment} of {all}");
+        }
+    }
+}
+
+/// `cargo nextest run --lib --run-ignored only -E 'test(how_long)' --no-capture`
+#[test]
+#[ignore = "it measures, and checks nothing"]
+fn how_long_who_cancels_waits() {
+    let folder = TempDir::new().unwrap();
+    for is_packed in [false, true] {
+        let path = write(&folder, 512, is_packed);
+        let start = Instant::now();
+        open(&path, Portion::default(), &LoadControl::new()).unwrap();
+        let whole = start.elapsed();
+        let longest = (1..40u32).map(|at| {
+            let control = LoadControl::new();
+            std::thread::scope(|scope| {
+                let opened = scope.spawn(|| drop(open(&path, Portion::default(), &control)));
+                std::thread::sleep(whole * at / 40);
+                control.cancel();
+                let start = Instant::now();
+                opened.join().unwrap();
+                (start.elapsed(), at)
+            })
+        });
+        let (longest, at) = longest.max().unwrap();
+        println!(
+            "512³, packed: {is_packed}, in all {whole:?}; longest wait {longest:?}, after {at} of 40 parts"
+        );
+    }
+}

@@ -1,0 +1,154 @@
+//! A volume of every so manyth voxel of another, and one of a portion of a file's grid.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::{Samples, Volume, VolumeError};
+use crate::data::attempt::Kept;
+use crate::data::values::samples::with_samples;
+
+impl Volume {
+    /// The first voxel along each axis and then every so manyth, where they were in the world. Where nobody else holds the
+    /// volume's voxels this takes no memory beside them.
+    ///
+    /// # Errors
+    /// When none of these voxels is finite.
+    pub fn thinned(self, step: [usize; 3]) -> Result<Self, VolumeError> {
+        let dims = self.dims();
+        let step = [0, 1, 2].map(|axis| step[axis].clamp(1, dims[axis]));
+        if step == [1; 3] {
+            return Ok(self);
+        }
+        let found = [0, 1, 2].map(|axis| dims[axis].div_ceil(step[axis]));
+        let mut whole = self;
+        let shared = std::mem::replace(&mut whole.samples, Arc::new(Samples::U8(Vec::new())));
+        let mut samples = Arc::unwrap_or_clone(shared);
+        keep_every(&mut samples, dims, step);
+        let world_from_index = whole.world_from_index() * between(step);
+        let thinned = Self::new(whole.name(), found, world_from_index, samples)?;
+        let thinned = match whole.padding_value() {
+            Some(padding) => thinned.clone().with_padding(padding).unwrap_or(thinned),
+            None => thinned,
+        };
+        let block = whole.block.of_blocks(step, DVec3::ZERO);
+        Ok(Self { block, ..thinned.standing_for(&whole) })
+    }
+
+    /// What is wanted of a grid, of a volume that is what was read of it: all of it, a box of it, or what is wanted already.
+    ///
+    /// # Errors
+    /// As [`Volume::new`].
+    pub(in crate::data) fn portion(self, read: &Kept, wanted: &Kept) -> Result<Self, VolumeError> {
+        if read == wanted {
+            return Ok(self);
+        }
+        let within = [0, 1, 2].map(|axis| {
+            let first = wanted.low[axis] - read.low[axis];
+            first..first + wanted.high[axis] - wanted.low[axis]
+        });
+        let boxed = if read.boxed() == wanted.boxed() { self } else { self.cropped(&within)? };
+        if wanted.is_averaged { boxed.reduced(wanted.step) } else { boxed.thinned(wanted.step) }
+    }
+
+    /// States which voxels of a file's grid these are, which were all that was read.
+    #[must_use]
+    pub(in crate::data) fn kept_of_file(self, read: &Kept) -> Self {
+        let edges = DVec3::from(read.step.map(|n| n as f64));
+        let first = if read.is_averaged { 0.5 * (edges - 1.0) } else { DVec3::ZERO };
+        Self { file_dims: read.edges(), block: self.block.of_blocks(read.step, first), ..self }
+    }
+}
+
+impl Kept {
+    /// Indices of the voxels that are kept to those of the grid: in the order of [`Volume::cropped`] and
+    /// [`Volume::reduced`], so that both ways lead to the same numbers.
+    pub(in crate::data) fn placed(&self, world_from_index: DAffine3) -> DAffine3 {
+        if self.is_all() {
+            return world_from_index;
+        }
+        let low = DVec3::from(self.low.map(|n| n as f64));
+        let of_box = if self.boxed().is_all() {
+            world_from_index
+        } else {
+            world_from_index * DAffine3::from_translation(low)
+        };
+        if self.step == [1; 3] {
+            return of_box;
+        }
+        let mut index_from_kept = between(self.step);
+        if self.is_averaged {
+            index_from_kept.translation = 0.5 * (DVec3::from(self.step.map(|n| n as f64)) - 1.0);
+        }
+        of_box * index_from_kept
+    }
+}
+
+/// Indices of every so manyth voxel to those of all.
+fn between(step: [usize; 3]) -> DAffine3 {
+    DAffine3::from_mat3(DMat3::from_diagonal(DVec3::from(step.map(|n| n as f64))))
+}
+
+/// Moves every so manyth value of a grid to the front, and lets go of the others.
+fn keep_every(samples: &mut Samples, [nx, ny, nz]: [usize; 3], [sx, sy, sz]: [usize; 3]) {
+    with_samples!(samples, values => {
+        // What is moved comes from where it goes to, or from behind it.
+        let mut to = 0;
+        for z in (0..nz).step_by(sz) {
+            for y in (0..ny).step_by(sy) {
+                let row = (z * ny + y) * nx;
+                for x in (row..row + nx).step_by(sx) {
+                    values[to] = values[x];
+                    to += 1;
+                }
+            }
+        }
+        values.truncate(to);
+        values.shrink_to_fit();
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::attempt::Portion;
+
+    fn volume() -> Volume {
+        let values = (0..5 * 4 * 3).map(|value| value as u8).collect();
+        Volume::with_spacing("t", [5, 4, 3], DVec3::new(1.0, 2.0, 3.0), Samples::U8(values)).unwrap()
+    }
+
+    #[test]
+    fn every_second_voxel_stays_where_it_was() {
+        let half = volume().thinned([2, 2, 2]).unwrap();
+        assert_eq!((half.dims(), half.file_dims()), ([3, 2, 2], [5, 4, 3]));
+        let kept = [0, 2, 4, 10, 12, 14, 40, 42, 44, 50, 52, 54];
+        assert_eq!(half.samples(), &Samples::U8(kept.to_vec()));
+        assert_eq!(half.spacing_mm(), DVec3::new(2.0, 4.0, 6.0));
+        let place = |volume: &Volume, index| volume.world_from_index().transform_point3(index);
+        assert_eq!(place(&half, DVec3::ONE), place(&volume(), DVec3::splat(2.0)));
+        assert_eq!(volume().thinned([1; 3]).unwrap().content_id(), volume().content_id());
+        let slice = volume().thinned([2, 2, 9]).unwrap();
+        assert_eq!((slice.dims(), slice.spacing_mm().z), ([3, 2, 1], 9.0), "no step is longer than the axis");
+    }
+
+    #[test]
+    fn corrections_of_thinned_voxels_are_those_of_the_files() {
+        use crate::data::{Corrections, Flips};
+        let by = Corrections { flip: Flips { x: true, ..Flips::default() }, ..Corrections::default() };
+        let first = volume().corrected(&by).unwrap().thinned([2; 3]).unwrap();
+        let last = volume().thinned([2; 3]).unwrap().corrected(&by).unwrap();
+        assert!(first.world_from_index().abs_diff_eq(last.world_from_index(), 1e-9));
+    }
+
+    #[test]
+    fn a_portion_of_what_was_read_lies_where_it_would_be_read() {
+        let region = "1:5,0:4,1:".parse().ok();
+        for thinning in [Portion::default(), Portion::every(2), Portion::average(2)].map(|it| it.thinning) {
+            let wanted = Kept::of(&Portion { region, thinning }, [5, 4, 3], false).unwrap();
+            let part = volume().portion(&Kept::all([5, 4, 3]), &wanted).unwrap();
+            assert_eq!((part.dims(), part.file_dims()), (wanted.dims(), wanted.edges()));
+            assert_eq!(part.world_from_index(), wanted.placed(volume().world_from_index()), "{thinning:?}");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Parts of files that are packed by themselves, strips of TIFF and blocks of VTK: what announces far more than it holds,
+//! and what holds far more than it announces.
+
+use super::Maker;
+
+/// A size that is announced where there is next to nothing: more than any refusal may need.
+const ANNOUNCED: u32 = 1 << 30;
+
+/// Bytes that a block of Zstandard has at most.
+const ZSTD_BLOCK: u32 = 128 << 10;
+
+pub(super) fn add(made: &mut Maker) {
+    of_tiff(made);
+    of_vtk(made);
+}
+
+/// A frame of Zstandard whose blocks repeat a byte; its window is of `2^(10 + exponent)` bytes.
+fn zstd(exponent: u8, blocks: u32, is_ended: bool) -> Vec<u8> {
+    let mut frame = vec![0x28, 0xb5, 0x2f, 0xfd, 0, exponent << 3];
+    for at in 1..=blocks {
+        // Size, the kind "the same byte again", and whether it is the last.
+        let header = ZSTD_BLOCK << 3 | 1 << 1 | u32::from(is_ended && at == blocks);
+        frame.extend(&header.to_le_bytes()[..3]);
+        frame.push(7);
+    }
+    frame
+}
+
+/// A file of one page of bytes, with the places and lengths of its strips.
+fn tiff([width, height]: [u32; 2], compression: u32, rows: u32, strips: &[[u32; 2]], data: &[u8]) -> Vec<u8> {
+    // Places count from the data on, which follow the header of 8 bytes.
+    let mut file = [b"II*\0".to_vec(), vec![0; 4], data.to_vec()].concat();
+    let mut place = |numbers: Vec<u32>| {
+        if let [one] = numbers[..] {
+            return one;
+        }
+        let at = file.len() as u32;
+        file.extend(numbers.into_iter().flat_map(u32::to_le_bytes));
+        at
+    };
+    let count = strips.len() as u32;
+    let offsets = place(strips.iter().map(|strip| 8 + strip[0]).collect());
+    let lengths = place(strips.iter().map(|strip| strip[1]).collect());
+    let at = file.len() as u32;
+    file[4..8].copy_from_slice(&at.to_le_bytes());
+    let entries = [
+        [256, 1, width],
+        [257, 1, height],
+        [258, 1, 8],
+        [259, 1, compression],
+        [262, 1, 1],
+        [273, count, offsets],
+        [278, 1, rows],
+        [279, count, lengths],
+    ];
+    file.extend((entries.len() as u16).to_le_bytes());
+    for [tag, count, value] in entries {
+        // All are of four bytes.
+        file.extend([(tag as u16).to_le_bytes(), 4u16.to_le_bytes()].concat());
+        file.extend([count, value].map(u32::to_le_bytes).concat());
+    }
+    file.extend([0; 4]);
+    file
+}
+
+fn of_tiff(made: &mut Maker) {
+    let whole = |data: &[u8]| vec![[0, data.len() as u32]];
+    let edge = ANNOUNCED.isqrt();
+    for exponent in [0, 13, 17, 18, 21, 31] {
+        for (what, blocks, is_ended) in [
+            ("one block", 1, true),
+            ("blocks of 32 MiB", 256, true),
+            ("blocks of 2 GiB", 16 << 10, true),
+            ("blocks without an end", 300, false),
+        ] {
+            let frame = zstd(exponent, blocks, is_ended);
+            for [width, height] in [[100, 100], [4096, 4096], [edge, edge]] {
+                // What fills a page of a gigabyte is a volume of a gigabyte.
+                if u64::from(blocks) * u64::from(ZSTD_BLOCK) >= u64::from(ANNOUNCED) && width == edge {
+                    continue;
+                }
+                let what = format!("{what}, window 2^{}, {width} x {height} pixels", 10 + exponent);
+                let file = tiff([width, height], 50000, height, &whole(&frame), &frame);
+                made.add(what, "frame.tif", &file);
+            }
+        }
+    }
+    // Of which the first does not fill the strip.
+    let frames = zstd(0, 1, true).repeat(10_000);
+    made.add("many frames", "frames.tif", &tiff([edge, edge], 50000, edge, &whole(&frames), &frames));
+    // What every method can announce of the bytes, before it turns out that they are broken.
+    let broken = [vec![0x80, 0x0b, 0x60, 0x50, 0x22], vec![0x55; 1 << 20]].concat();
+    for compression in [1, 5, 8, 32773, 50000, 7] {
+        for rows in [1, edge / 8, edge] {
+            let count = edge.div_ceil(rows);
+            let strips = vec![[0, broken.len() as u32 / count]; count as usize];
+            let what = format!("compression {compression}, strips of {rows} rows");
+            made.add(what, "announced.tif", &tiff([edge, edge], compression, rows, &strips, &broken));
+        }
+    }
+    // Very many strips of the same bytes, each of a row of one pixel.
+    let same = vec![0x55; 128 << 10];
+    for compression in [5, 8, 32773] {
+        let strips = vec![[0, same.len() as u32]; 1 << 16];
+        let what = format!("the same bytes over and over, compression {compression}");
+        made.add(what, "same.tif", &tiff([1, 1 << 16], compression, 1, &strips, &same));
+    }
+}
+
+fn of_vtk(made: &mut Maker) {
+    let edge = 1024;
+    let root = |compressor: &str, encoding: &str| {
+        format!(
+            "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" header_type=\"UInt32\" compressor=\"{compressor}\">\
+             <ImageData WholeExtent=\"1 {edge} 1 {edge} 1 {edge}\"><Piece Extent=\"1 {edge} 1 {edge} 1 {edge}\"><PointData>\
+             <DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"0\"/></PointData></Piece></ImageData>\
+             <AppendedData encoding=\"{encoding}\">_"
+        )
+    };
+    // A run of a literal and a match that goes on as far as the bytes do; then one that leads before the beginning.
+    let long = [vec![0x1f, 7, 1, 0], vec![255; 5 << 20], vec![0, 0]].concat();
+    let astray = [vec![0x1f, 7, 9, 0], vec![255; 5 << 20], vec![0, 0]].concat();
+    for (compressor, data) in [
+        ("vtkLZ4DataCompressor", vec![0x55; 100]),
+        ("vtkLZ4DataCompressor", long[..1 << 20].to_vec()),
+        ("vtkLZ4DataCompressor", astray),
+        ("vtkZLibDataCompressor", vec![0x55; 100]),
+        ("vtkZLibDataCompressor", vec![0x55; 5 << 20]),
+    ] {
+        for block in [ANNOUNCED, ANNOUNCED / 4] {
+            let count = ANNOUNCED / block;
+            let each = data.len() as u32 / count;
+            let header = [vec![count, block, 0], vec![each; count as usize]].concat();
+            let header: Vec<u8> = header.into_iter().flat_map(u32::to_le_bytes).collect();
+            let start = root(compressor, "raw");
+            let file = [start.as_bytes(), &header, &data].concat();
+            made.add(
+                format!("{compressor}, blocks of {block} bytes, {} bytes", data.len()),
+                "part.vti",
+                &file,
+            );
+        }
+    }
+}
