@@ -166,32 +166,28 @@ impl Loader {
         options.memory_budget_bytes = options.memory_budget_bytes.min(memory_budget_bytes());
         let question = Question::default();
         let control = Arc::new(if reading.takes_all_memory {
+            options.memory_budget_bytes = options.memory_budget_bytes / 3 * 4;
             LoadControl::new()
         } else {
             weighing(self.context.clone(), options.memory_budget_bytes, question.clone())
         });
-        let task = {
-            if reading.takes_all_memory {
-                options.memory_budget_bytes = options.memory_budget_bytes / 3 * 4;
-            }
-            options.raw = reading.raw.unwrap_or(options.raw);
-            options.choice = reading.choice.clone().unwrap_or(options.choice);
-            options.among.clone_from(&reading.among);
-            let opening = Opening {
-                source: source.to_owned(),
-                reading: reading.clone(),
-                known,
-                options,
-                context: self.context.clone(),
-                shaders: self.shaders.clone(),
-                control: Arc::clone(&control),
-                question,
-                phase: Arc::clone(&phase),
-            };
-            move || {
-                let control = Arc::clone(&opening.control);
-                control.during(|| open(opening))
-            }
+        options.raw = reading.raw.unwrap_or(options.raw);
+        options.choice = reading.choice.clone().unwrap_or(options.choice);
+        options.among.clone_from(&reading.among);
+        let opening = Opening {
+            source: source.to_owned(),
+            reading: reading.clone(),
+            known,
+            options,
+            context: self.context.clone(),
+            shaders: self.shaders.clone(),
+            control: Arc::clone(&control),
+            question,
+            phase: Arc::clone(&phase),
+        };
+        let task = move || {
+            let control = Arc::clone(&opening.control);
+            control.during(|| open(opening))
         };
         let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
         self.running = Some(Running { source: source.to_owned(), reading, control, phase, work });

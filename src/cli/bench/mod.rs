@@ -100,7 +100,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let context = Context::headless()?;
     let mut orbits = Vec::new();
     for volume in args.volumes.iter().filter(|_| args.only.as_deref() != Some("growth")) {
-        let loaded = args.look.load(volume, &context)?;
+        let loaded = args.look.shown(volume, args.look.read_volume(volume)?, &context)?;
         let mut renderer = Renderer::new(&context)?;
         let settings = args.look.look(&loaded)?.settings(&mut renderer, &loaded)?;
         let mut bench = Bench { args, loaded: &loaded, renderer, settings };

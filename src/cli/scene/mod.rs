@@ -233,11 +233,9 @@ pub(super) struct SceneArgs {
 
 /// A volume with what follows from it, after a word about values that are not finite.
 fn checked(volume: Volume) -> Dataset {
-    if volume.non_finite_voxels() > 0 {
-        warn_line(&format!(
-            "warning: {} voxels are not finite and count as nothing",
-            volume.non_finite_voxels()
-        ));
+    let missing = volume.non_finite_voxels();
+    if missing > 0 {
+        warn_line(&format!("warning: {missing} voxels are not finite and count as nothing"));
     }
     Dataset::new(volume)
 }
@@ -268,11 +266,6 @@ impl SceneArgs {
 }
 
 impl LookArgs {
-    /// Loads a volume for an adapter that is open.
-    pub(super) fn load(&self, source: &Path, context: &Context) -> Result<Dataset, CliError> {
-        self.shown(source, self.read_volume(source)?, context)
-    }
-
     /// Reads a volume, whatever shows it.
     pub(super) fn read_volume(&self, source: &Path) -> Result<Volume, CliError> {
         Ok(open(source, &self.load.load_options()?, &LoadControl::new())?)

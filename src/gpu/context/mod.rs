@@ -4,6 +4,7 @@ mod addresses;
 pub(super) mod clock;
 mod complaints;
 pub(super) mod error;
+mod formats;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -14,10 +15,10 @@ pub(crate) use self::addresses::check_room_for_drivers;
 pub(super) use self::addresses::{OF_THE_COMPILER, check_room};
 use self::clock::Clock;
 use self::complaints::Complaints;
+pub(super) use self::formats::pair_format;
 use super::GpuError;
 use crate::data::plain;
 use crate::fault::{self, Count, Fault};
-use crate::gpu::pipelines::binding::pair_format;
 
 /// Said when there is no adapter.
 const ADAPTER_HELP: &str =

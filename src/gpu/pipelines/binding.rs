@@ -1,6 +1,7 @@
 //! Bindings by name: what a shader declares, and what is bound to it.
 
 use crate::gpu::Context;
+use crate::gpu::context::pair_format;
 
 /// A binding of a shader: its number in its group, its name there, and what may be bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -40,14 +41,6 @@ pub(crate) fn ring_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
     match storage {
         wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rgba32Float,
         _ => wgpu::TextureFormat::Rgba16Float,
-    }
-}
-
-/// The format of two channels beside each other where single ones are stored in `storage`.
-pub(crate) fn pair_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
-    match storage {
-        wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rg32Float,
-        _ => wgpu::TextureFormat::Rg16Float,
     }
 }
 

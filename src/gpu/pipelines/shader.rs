@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::binding::{Group, Pipeline, Slot, pair_format, ring_format};
+use super::binding::{Group, Pipeline, Slot, ring_format};
 use super::conditions::{chosen, is_override};
 use super::layouts::LAYOUTS;
 use super::pipeline_cache::PipelineCache;
@@ -12,7 +12,7 @@ use super::shader_files::SHADERS;
 use super::variant::Variant;
 use crate::export::ExportError;
 use crate::fault::{self, Fault};
-use crate::gpu::context::{OF_THE_COMPILER, check_room};
+use crate::gpu::context::{OF_THE_COMPILER, check_room, pair_format};
 use crate::gpu::{Context, GpuError};
 
 /// Joins sources and makes pipelines, each once.

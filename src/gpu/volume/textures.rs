@@ -5,7 +5,7 @@ use half::f16;
 
 use super::shapes::{padded, texture_3d};
 use crate::data::{BRICK_EDGE, Volume, VoxelType};
-use crate::gpu::pipelines::binding::pair_format;
+use crate::gpu::context::pair_format;
 use crate::gpu::{Context, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;
 
