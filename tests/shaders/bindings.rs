@@ -38,6 +38,8 @@ fn format(format: naga::StorageFormat) -> TextureFormat {
         naga::StorageFormat::R8Unorm => TextureFormat::R8Unorm,
         naga::StorageFormat::R16Float => TextureFormat::R16Float,
         naga::StorageFormat::R32Float => TextureFormat::R32Float,
+        naga::StorageFormat::Rg16Float => TextureFormat::Rg16Float,
+        naga::StorageFormat::Rg32Float => TextureFormat::Rg32Float,
         naga::StorageFormat::Rgba8Unorm => TextureFormat::Rgba8Unorm,
         naga::StorageFormat::Rgba16Float => TextureFormat::Rgba16Float,
         naga::StorageFormat::Rgba32Float => TextureFormat::Rgba32Float,

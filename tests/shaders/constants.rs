@@ -133,9 +133,11 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("scatter/splat.wgsl", [8, 8, 4]),
         ("volume/downsample.wgsl", [8, 8, 4]),
         ("volume/downsample_materials.wgsl", [8, 8, 4]),
+        ("volume/downsample_present.wgsl", [8, 8, 4]),
         ("volume/gradients.wgsl", [8, 8, 4]),
         ("volume/materials.wgsl", [8, 8, 4]),
         ("volume/prefilter.wgsl", [8, 8, 4]),
+        ("volume/prefilter_present.wgsl", [8, 8, 4]),
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();
     let passes: Vec<_> =

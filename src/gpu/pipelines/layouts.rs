@@ -204,7 +204,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::list(5, "splats", 4, Access::ReadWrite),
                 Slot::list(6, "voxels", 4, Access::Read),
             ],
-            &[GRID, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE],
             LIGHTS,
             &[Slot::uniform::<uniforms::Phase>(0, "bound_phase")],
         ],
@@ -220,7 +220,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::target(4, "ring", Shape::Sheets, Format::Ring),
                 Slot::list(5, "deposits", 16, Access::ReadWrite),
             ],
-            &[GRID, CLAMPED, SCATTER, SHEETS, PRESENCE_TEXTURE],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, PRESENCE_TEXTURE],
         ],
     ),
     (

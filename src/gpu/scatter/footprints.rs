@@ -135,6 +135,7 @@ impl Footprints {
             1,
             &[
                 buffer("bound_grid", &grid),
+                view_of("pyramid_texture", Levels::Finest.choose(&gpu.volume.pyramid_views)),
                 view_of("presence_texture", gpu.presence(Levels::Finest)),
                 buffer("bound_scatter", &slab),
                 buffer("footprint_table", scatterer.footprints()),

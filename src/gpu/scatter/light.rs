@@ -157,6 +157,7 @@ impl LightScatter {
                 1,
                 &[
                     buffer("bound_grid", &grid),
+                    view_of("pyramid_texture", levels.choose(&gpu.volume.pyramid_views)),
                     view_of("presence_texture", gpu.presence(levels)),
                     sampler("clamped", &gpu.volume.clamped),
                     buffer("bound_scatter", &slab),
