@@ -7,8 +7,8 @@ use super::{Camera, Light, LightLock, LightPlace};
 /// Distance of the lights from the middle of the volume: outside its half diagonal of at most √3.
 const DISTANCE: f64 = 3.0;
 
-/// How bright the fill is beside the key: a stop weaker than photographers fill for portraits (1 : 4, ambient light
-/// included), for shadows are what shows shape. With 0.18 shadows darkened a sixth less of what is seen.
+/// How bright the fill is beside the key: with 0.18, shadows darkened a fifth less of what is seen (of thirteen volumes, by
+/// 30 % or more), and nothing was nearly black with either.
 const FILL: f64 = 0.10;
 
 /// A set of lights.
