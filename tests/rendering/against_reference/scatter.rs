@@ -180,21 +180,23 @@ fn single_voxels_reproduce_the_footprint() {
     assert!(worst <= FOOTPRINT, "{worst}");
 }
 
-/// What scatters has no texture of densities to sample: the eye's pass takes normals and rays nearby from the
-/// prefiltered pyramid, but what it classifies is in the sheets.
+/// What scatters has no texture of densities to sample: what it classifies is in the sheets. The eye's pass takes
+/// normals and rays nearby from the prefiltered pyramid; light and footprints only ask it which voxels are there.
 #[test]
 fn scattering_samples_no_density() {
     let shaders =
         chiaroscuro::gpu::shader_bindings(wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float);
-    for name in ["splat", "eye", "light", "reverse", "normalise"] {
+    for name in ["splat", "eye", "light", "reverse", "normalise", "footprints"] {
         let name = format!("scatter/{name}.wgsl");
         let (_, groups) = shaders.iter().find(|(known, _)| *known == name).expect("the shader is there");
         let binds = |texture: &str| groups.iter().flatten().any(|(binding, _)| *binding == texture);
         assert!(!binds("density_texture"), "{name} has densities");
-        assert!(!binds("pyramid_texture") || name == "scatter/eye.wgsl", "{name} has the pyramid");
-        if name == "scatter/eye.wgsl" {
+        if binds("pyramid_texture") {
+            assert!(binds("presence_texture"), "{name} has the pyramid");
             let (_, text) = SHADERS.iter().find(|(known, _)| *known == name).expect("its text is there");
-            assert!(!text.contains("pyramid("), "{name} reads the pyramid");
+            for density in ["pyramid(", " density(", "slab_density(", "density_by_kernel(", "spread("] {
+                assert!(!text.contains(density), "{name} reads the pyramid by {density}");
+            }
         }
     }
 }
