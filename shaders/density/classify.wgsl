@@ -29,24 +29,27 @@ fn slab_spread(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
 struct SlabSample {
     material: vec4f,
     density: f32,
+    // The share that is there, which is in the material's extinction; 1 where there was no need to ask.
+    there: f32,
 }
 
 fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
 #if PRECLASSIFY
     let found = slab_spread(frame, ray, k);
-    return SlabSample(vec4f(found.gba / max(found.r, 1e-20), classified_extinction(found.r)), found.r);
+    return SlabSample(vec4f(found.gba / max(found.r, 1e-20), classified_extinction(found.r)), found.r, 1.0);
 #else
     let density = slab_density(frame, ray, k);
-    var material = classify(density);
+    let material = classify(density);
+    var there = 1.0;
 #if MISSING
     // Most of what is sampled is empty, and to know how much of nothing is there takes fetches.
     if (material.a > 0.0) {
-        material.a *= slab_presence(frame, ray, k);
+        there = slab_presence(frame, ray, k);
     }
 #else
-    material.a *= slab_presence(frame, ray, k);
+    there = slab_presence(frame, ray, k);
 #endif
-    return SlabSample(material, density);
+    return SlabSample(vec4f(material.rgb, material.a * there), density, there);
 #endif
 }
 

@@ -127,7 +127,7 @@ struct Sample {
 // that show something, and mostly find nothing: the search goes on until they do, though all lanes of a vector
 // wait for the slowest. Otherwise that would take longer than shading what is not there.
 fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Sample {
-    var at = Sample(next_seen(walk, first, last), SlabSample(vec4f(0.0), 0.0));
+    var at = Sample(next_seen(walk, first, last), SlabSample(vec4f(0.0), 0.0, 1.0));
     if (STRETCH) {
         loop {
             if (at.k > last) {

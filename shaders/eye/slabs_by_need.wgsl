@@ -39,7 +39,19 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         if (width == THIN_SLABS) {
             let change = 0.5 * CURVED * thick * abs(dot(slope, ray.direction));
             let largest = largest_extinction(found.density - change, found.density + change);
-            let share = t * (1.0 - exp(-largest * thick * ray.obliquity));
+            var share = t * (1.0 - exp(-largest * thick * ray.obliquity));
+#if MISSING
+#if PRECLASSIFY
+            // Voxels that are classified are there by themselves.
+#else
+            // Where voxels are missing the density goes on beside the others, and little or nothing of it is there.
+            if (share > MUCH) {
+                let rise = 0.5 * CURVED * thick * abs(dot(presence_slope(p, level), ray.direction));
+                let there = min(found.there + rise, 1.0);
+                share = t * (1.0 - exp(-there * largest * thick * ray.obliquity));
+            }
+#endif
+#endif
             // So is what ends within the slab.
             let is_whole = start >= inside.x && start + THIN_SLABS - 1 <= inside.y;
             needed = select(1, width, is_whole && share <= MUCH);

@@ -142,9 +142,26 @@ impl Reference<'_> {
         let along = self.scene.scene_from_index.transform_vector3(frame.direction.at(i, j));
         let change = shader.prefiltered_gradient(point, frame.stretch_level(depth)).dot(along).abs();
         let change = 0.5 * CURVED * thickness * change;
-        let largest = table.largest_extinction(density - change, density + change);
+        // Where there is nothing in the middle nobody asks how much of that is there.
+        let is_asked = table.sample(density)[3] > 0.0;
+        let most_there = if is_asked { self.most_there(stack, along, [i, j, middle]) } else { 1.0 };
+        let largest = most_there * table.largest_extinction(density - change, density + change);
         let share = ray.seen[3] * -(-largest * thickness * frame.obliquity(i, j)).exp_m1();
         is_whole && share <= MUCH
+    }
+
+    /// At most so large a share of the undivided slab around `k` is there, where voxels are missing.
+    fn most_there(&self, stack: &Stack<'_>, along: DVec3, [i, j, k]: [f64; 3]) -> f64 {
+        // Voxels that are classified are there by themselves.
+        if self.presence.is_none() || self.classified.is_some() {
+            return 1.0;
+        }
+        let frame = stack.frame;
+        let depth = frame.depth_of(k);
+        let rise =
+            self.missing_gradient(frame.point(i, j, depth), frame.stretch_level(depth)).dot(along).abs();
+        let thickness = f64::from(THIN_SLABS) * frame.slab;
+        (stack.presence_at([i, j, k]) + 0.5 * CURVED * thickness * rise).min(1.0)
     }
 
     /// Composites what a slab shows that is `width` of the stack's thick.

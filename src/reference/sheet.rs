@@ -189,7 +189,7 @@ impl<'r> Stack<'r> {
     }
 
     /// The share of the material of slab `k` that is there.
-    fn presence_at(&self, at: [f64; 3]) -> f64 {
+    pub(super) fn presence_at(&self, at: [f64; 3]) -> f64 {
         let Self { reference, frame, profile, quadrature, .. } = self;
         reference
             .slab_mean_of(frame, *quadrature, at, |point, level| reference.presence(profile, point, level))

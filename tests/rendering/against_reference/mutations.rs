@@ -245,7 +245,7 @@ fn damaged_slabs_by_need_are_noticed() {
         // Sampled at their front.
         ("f32(start) + 0.5 * f32(width - 1)", "f32(start)"),
         // Divided behind what hides them.
-        ("let share = t * (1.0 - exp", "let share = (1.0 - exp"),
+        ("var share = t * (1.0 - exp", "var share = (1.0 - exp"),
         ("const MUCH = 0.125", "const MUCH = 0.25"),
         ("const CURVED = 1.25", "const CURVED = 0.5"),
         // Blind to what lies between this sample and a denser one.
