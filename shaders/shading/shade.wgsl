@@ -4,6 +4,7 @@
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"
+#import "shading/sky_light.wgsl"
 #import "common/space.wgsl"
 #import "sheets/sheet_frame.wgsl"
 #import "density/cut.wgsl"
@@ -38,6 +39,7 @@ struct Eye {
     faces: Cut,
     // What attenuates light.
     shading_cut: Cut,
+    sky: Sky,
     lights: array<Light, MAX_LIGHTS>,
 }
 
@@ -168,6 +170,18 @@ fn lit_through_material(surface: Surface) -> Lit {
     return lit;
 }
 
+// The light of the sky on a sample, as a share of its colour.
+fn lit_by_sky(surface: Surface) -> vec3f {
+#if SKY
+    // In front of a surface, on the side from which light comes.
+    let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
+    let ahead = to_index(eye.space, surface.normal) * (turned * surface.surfaceness * eye.sky.ahead);
+    return reflect_sky(eye.sky, surface, surface.point + ahead, eye.shading.strength);
+#else
+    return vec3f(0.0);
+#endif
+}
+
 // The light from a sample.
 fn shade(found: Sampled, material: vec3f) -> vec3f {
     let s = eye.shading;
@@ -185,7 +199,7 @@ fn shade(found: Sampled, material: vec3f) -> vec3f {
         let direction = to_light(light, surface.position).direction;
         lit = add(lit, reflect_light(s, light, surface, direction, hood_share(light, direction)));
     }
-    return material * (s.emission + s.ambient + s.diffuse * lit.diffuse) + s.specular * lit.specular;
+    return material * (s.emission + s.ambient + lit_by_sky(surface) + s.diffuse * lit.diffuse) + s.specular * lit.specular;
 }
 
 // The gradient in scene space from differences of the sheets: per pixel to the right, per pixel down

@@ -2,6 +2,7 @@
 // transmittance falls, and each keeps in a ring of layers what it will deposit in the light volume.
 #import "sheets/sheet_frame.wgsl"
 #import "density/cut.wgsl"
+#import "common/slab_mean.wgsl"
 
 struct March {
     frame: SheetFrame,
@@ -35,12 +36,6 @@ var<private> march: March;
 
 // P eq. 10 read literally takes the transmittance in front of the slab.
 override DEPOSIT_FRONT: bool = false;
-
-// The mean transmittance over a slab of optical depth tau, over that in front of it: (1 − e^−τ)/τ.
-fn slab_mean(tau: f32) -> f32 {
-    // The series avoids 0/0; at 0.01 its error is τ³/24 = 4e-8.
-    return select((1.0 - exp(-tau)) / tau, 1.0 - tau * (0.5 - tau / 6.0), tau < 0.01);
-}
 
 // What the hood lets through to a pixel: the sheet in front of the first slab.
 fn unattenuated(pixel: vec2f) -> f32 {

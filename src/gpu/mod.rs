@@ -14,6 +14,7 @@ mod pipelines;
 mod readback;
 mod resources;
 mod scatter;
+mod sky;
 mod volume;
 
 pub use self::readback::statistics::LightFigures;

@@ -31,6 +31,7 @@ pub use self::settings::shadows::{
     Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,
     Shadows,
 };
+pub use self::settings::sky::{SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyRadiance};
 pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};

@@ -24,9 +24,10 @@ pub use self::geometry::reach::{
 };
 pub use self::geometry::sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use self::geometry::slice_order::SliceOrder;
+pub use self::geometry::sweep::{SweepFrame, sweep_directions};
 pub use keys::{
     Attenuation, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, LitLight,
-    LitLights, OpacityKey, TablesKey,
+    LitLights, OpacityKey, SkyKey, TablesKey,
 };
 pub use probe::{Arrival, Probe, probe};
 pub use request::{RenderOptions, Request, VolumeKey};

@@ -68,7 +68,7 @@ impl Reference<'_> {
                 bare[channel] += rgb * hood;
             }
         }
-        let reflected = |light: [f64; 3]| light.map(|c| shading.ambient + shading.diffuse * c);
+        let reflected = |light: [f64; 3]| light.map(|c| self.settings.flat_ambient() + shading.diffuse * c);
         let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
         let (shown, unshadowed) = (reflected(fallen), reflected(bare));
         if floor.shadow_only {

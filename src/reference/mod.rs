@@ -16,6 +16,7 @@
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
+//! | the light of a sky | `sky` | [`Reference::openness`], [`Reference::picture`] |
 //! | the floor | `floor` | [`Reference::floor`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
@@ -31,6 +32,7 @@ mod remains;
 mod shade;
 mod shadow_ray;
 mod sheet;
+mod sky;
 #[cfg(test)]
 mod tests;
 
@@ -39,6 +41,7 @@ pub use field::pyramid::Pyramid;
 pub use field::{Field, Rounding};
 pub use kernel::{cubic_b_spline, gaussian, tent};
 pub use light::ViewSheets;
+pub use sky::Openness;
 
 use glam::DVec3;
 

@@ -9,6 +9,7 @@ use super::field::pyramid::MAX_LEVEL;
 use super::kernel::Profile;
 use super::remains::cut::Remaining;
 use super::shadow_ray::ShadowRays;
+use super::sky::Openness;
 use super::{Fault, Reference, gather};
 use crate::model::{
     BakedTransfer, Kernel, Light, LightKind, NearField, Projection, SceneLight, ShadowAlgorithm, Sides,
@@ -26,6 +27,8 @@ pub(super) struct Shader<'r> {
     /// The kernel of what is fetched from the pyramid.
     profile: Profile,
     remaining: Remaining,
+    /// How open to the sky places are, where there is one that material attenuates.
+    openness: Option<Openness>,
     /// See [`sides`]; evenly over densities 0 … 1.
     sides: Vec<f64>,
 }
@@ -102,6 +105,7 @@ impl<'r> Shader<'r> {
             lighting: reference.gathered_table(Side::Lighting),
             profile: reference.profile(Kernel::Prefiltered),
             remaining: reference.shading(),
+            openness: settings.has_sky_volume().then(|| reference.openness()),
             sides: sides(&reference.gathered_table(Side::Eye)),
         }
     }
@@ -120,7 +124,11 @@ impl<'r> Shader<'r> {
         let outward = surface.normal * self.turned(density);
         let place = scene.scene_from_index.transform_point3(point);
         let to_eye = self.towards_eye(place);
-        let mut diffuse = [shading.emission + shading.ambient; 3];
+        let flat = shading.emission + self.reference.settings.flat_ambient();
+        let side_lit = is_one_sided.then_some(side);
+        let openness = self.openness.as_ref();
+        let sky = self.reference.lit_by_sky(openness, point, surface.normal, surface.weight, side_lit);
+        let mut diffuse = sky.map(|light| flat + light);
         let mut specular = [0.0; 3];
         for lamp in &self.lamps {
             let to_light = match lamp.light.kind {

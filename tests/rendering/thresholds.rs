@@ -228,3 +228,11 @@ pub(crate) const TRACED_STANDARD: f64 = 0.04;
 pub(crate) const LIMITS_AGREE: f64 = 0.1;
 /// *Exact* against the limit, likewise: its slabs are a quarter of a voxel, and its numbers have 16 and 32 bits.
 pub(crate) const EXACT_OF_LIMIT: f64 = 0.3;
+
+/// Openness to the sky from 64 directions at full resolution, absolute: what so many directions and blocks of a voxel
+/// leave of integrals over all of them.
+pub(crate) const OPENNESS: f64 = 0.01;
+/// The same beside a wall, whose edge the directions cross one by one: each is 1/64 of the sky.
+pub(crate) const OPENNESS_BESIDE_A_WALL: f64 = 0.03;
+/// Moments of the GPU beside those of the reference: sums over directions of numbers with 11 bits, and stored in such.
+pub(crate) const SAME_OPENNESS: Limit = Limit { max: 2e-3, rmse: 3e-4 };

@@ -77,10 +77,11 @@ fn workgroups_fill_bricks_and_tiles() {
 }
 
 /// Sizes in `common/sizes.wgsl`: their values in Rust, others with as many digits, and shaders that count on them.
-const SIZES: [(&str, usize, usize, &[&str]); 7] = [
+const SIZES: [(&str, usize, usize, &[&str]); 8] = [
     ("BRICK_EDGE", BRICK_EDGE, 4, &["light/backproject", "light/combine", "light/raycast", "scatter/splat"]),
     ("BRICK_EDGE", BRICK_EDGE, 4, &["scatter/eye", "scatter/footprints", "scatter/normalise"]),
     ("CELL_EDGE", CELL_EDGE, 4, &["eye/gather", "light/backproject", "light/march", "light/raycast"]),
+    ("CELL_EDGE", CELL_EDGE, 4, &["sky/blocks"]),
     (
         "LISTED_PER_ROW",
         LISTED_PER_ROW as usize,
@@ -131,6 +132,9 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("scatter/resolve.wgsl", [8, 8, 1]),
         ("scatter/reverse.wgsl", [8, 8, 1]),
         ("scatter/splat.wgsl", [8, 8, 4]),
+        ("sky/blocks.wgsl", [4, 4, 4]),
+        ("sky/moments.wgsl", [4, 4, 4]),
+        ("sky/sweep.wgsl", [8, 8, 1]),
         ("volume/downsample.wgsl", [8, 8, 4]),
         ("volume/downsample_materials.wgsl", [8, 8, 4]),
         ("volume/downsample_present.wgsl", [8, 8, 4]),

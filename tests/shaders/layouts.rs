@@ -179,6 +179,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 seen,
                 faces,
                 shading_cut,
+                sky,
                 lights
             }),
         ),
@@ -213,6 +214,13 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
             }),
         ),
         ("scatter/footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
+        ("eye/gather.wgsl", layout!(Sky { red, green, blue, lookup, ahead })),
+        ("sky/blocks.wgsl", layout!(Blocks { dims, voxel_step, level, offset, edge, pad0, shading_cut })),
+        (
+            "sky/sweep.wgsl",
+            layout!(SkyRays { towards, weight, drift, first, size, axis, rises, step, layer, pad0, pad1 }),
+        ),
+        ("sky/sweep.wgsl", layout!(Sweep { dims, share, block_scale, has_sums, sheet_scale, pad0 })),
         ("light/combine.wgsl", layout!(Combine { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         (
             "eye/floor.wgsl",

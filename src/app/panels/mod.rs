@@ -3,17 +3,15 @@
 mod camera;
 mod compare;
 pub(super) mod controls;
-mod corrections;
 mod cuts;
 mod data;
 mod floor;
 mod labels;
 mod lights;
-mod range;
 mod sampling;
-mod several;
 mod shading;
 mod shadows;
+mod sky;
 
 use eframe::egui;
 
@@ -58,6 +56,7 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
         }
         controls::section(ui, text::sections::LIGHTS, true, |ui| lights::show(ui, panels));
         controls::section(ui, text::sections::SHADOWS, true, |ui| shadows::show(ui, panels));
+        controls::section(ui, text::sections::SKY, false, |ui| sky::show(ui, panels));
         controls::section(ui, text::sections::SHADING, false, |ui| shading::show(ui, panels));
         controls::section(ui, text::sections::CUTS, false, |ui| cuts::show(ui, panels));
         controls::section(ui, text::sections::FLOOR, false, |ui| floor::show(ui, panels));

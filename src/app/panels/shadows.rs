@@ -22,7 +22,7 @@ const ALGORITHMS: [(ShadowAlgorithm, Named); 4] = [
     (ShadowAlgorithm::Direct, text::shadows::DIRECT),
 ];
 
-const RESOLUTIONS: [(Resolution, Named); 3] = [
+pub(super) const RESOLUTIONS: [(Resolution, Named); 3] = [
     (Resolution::Full, text::shadows::FULL),
     (Resolution::Half, text::shadows::HALF),
     (Resolution::Quarter, text::shadows::QUARTER),

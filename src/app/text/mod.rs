@@ -13,7 +13,7 @@ mod windows;
 pub(super) mod work;
 
 pub(super) use self::panels::{
-    camera, corrections, cuts, data, floor, labels, lights, sampling, sections, shading, shadows,
+    camera, corrections, cuts, data, floor, labels, lights, sampling, sections, shading, shadows, sky,
 };
 pub(super) use self::shell::{commands, memory, menu, messages, opening, status};
 pub(super) use self::viewport::{compared, cut_handles, overlay, picture, probe};

@@ -7,7 +7,7 @@ use super::{Bench, WARM_UP};
 use crate::cli::CliError;
 
 /// Share of the value range by which an edit moves all control points: enough for other cells to be seen.
-const EDIT_SHARE: f64 = 0.002;
+pub(super) const EDIT_SHARE: f64 = 0.002;
 
 impl Bench<'_> {
     /// All control points move a little, to and fro: tables, visible cells, light and picture are made anew.

@@ -6,7 +6,7 @@
 //! background does); *load* (from a file to its first picture, stage by stage) and *memory*; *read* (of that only what needs
 //! no adapter); *growth* (light volumes of clouds of growing size, splatted
 //! and by rays, with everything that saves work and without);
-//! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
+//! *sky* (light from all around, in units of one light's); *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
 //! the picture that a volume is opened with).
 
 use std::path::PathBuf;
@@ -20,6 +20,7 @@ mod growth;
 mod load;
 mod paper;
 mod report;
+mod sky;
 
 use report::{Samples, round};
 
@@ -37,7 +38,7 @@ const WARM_UP: usize = 2;
 const STEP_DEG: f64 = 12.0;
 
 /// What there is to be measured.
-const CASES: [&str; 11] = [
+const CASES: [&str; 12] = [
     "orbit",
     "light-drag",
     "light-build",
@@ -48,6 +49,7 @@ const CASES: [&str; 11] = [
     "memory",
     "growth",
     "paper",
+    "sky",
     "first-look",
 ];
 
@@ -74,7 +76,7 @@ pub(super) struct BenchArgs {
     /// Timed frames per case
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
-    /// Only the case of this name; growth, which takes minutes, first-look and read run only when asked for
+    /// Only the case of this name; growth, which takes minutes, first-look, read and sky run only when asked for
     #[arg(long, value_name = "CASE", value_parser = CASES)]
     only: Option<String>,
     /// Allow cases that are not rendered at full resolution and with an exact kernel
@@ -87,7 +89,7 @@ pub(super) struct BenchArgs {
 /// Runs the cases and prints them.
 pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let wants = |case: &str| {
-        args.only.as_deref().map_or(!["growth", "first-look"].contains(&case), |only| only == case)
+        args.only.as_deref().map_or(!["growth", "first-look", "sky"].contains(&case), |only| only == case)
     };
     let mut cases = Vec::new();
     if args.only.as_deref() == Some("read") {
@@ -129,6 +131,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         }
         if wants("paper") {
             bench.paper(&mut cases, &mut found)?;
+        }
+        if wants("sky") {
+            bench.sky(&mut cases, &mut found)?;
         }
         if wants("first-look") {
             bench.first_look(&mut cases)?;

@@ -14,6 +14,7 @@ pub(super) struct Samples {
     light_march_ms: Vec<f64>,
     light_backproject_ms: Vec<f64>,
     light_raycast_ms: Vec<f64>,
+    sky_ms: Vec<f64>,
     bricks_ms: Vec<f64>,
     upload_ms: Vec<f64>,
     eye_gpu_ms: Vec<f64>,
@@ -36,6 +37,7 @@ impl Samples {
         self.light_march_ms.push(report.light_march_ms);
         self.light_backproject_ms.push(report.light_backproject_ms);
         self.light_raycast_ms.push(report.light_raycast_ms);
+        self.sky_ms.push(report.sky_ms);
         self.bricks_ms.push(report.bricks_ms);
         self.upload_ms.push(report.upload_ms);
         self.eye_gpu_ms.extend(report.eye_gpu_ms);
@@ -61,6 +63,11 @@ impl Samples {
         median(&all)
     }
 
+    /// Median of the filling of a sky's volume.
+    pub(super) fn sky(&self) -> f64 {
+        median(&self.sky_ms)
+    }
+
     /// Median of the eye pass.
     pub(super) fn eye(&self) -> f64 {
         median(&self.eye_ms)
@@ -82,6 +89,7 @@ impl Samples {
                 "light_march": round(median(&self.light_march_ms)),
                 "light_backproject": round(median(&self.light_backproject_ms)),
                 "light_raycast": round(median(&self.light_raycast_ms)),
+                "sky": round(median(&self.sky_ms)),
                 "bricks": round(median(&self.bricks_ms)),
                 "upload": round(median(&self.upload_ms)),
             },

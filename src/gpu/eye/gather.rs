@@ -1,13 +1,15 @@
 //! The eye pass: from density and attenuation to linear light.
 
 use crate::gpu::light::combine::CombinedLight;
-use crate::gpu::light::packed::{LightInput, light_bind_group, pack_light};
+use crate::gpu::light::packed::{LightInput, LookedUp, light_bind_group, pack_light, pack_sky};
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{
-    Constants, Ends, LightCount, Reconstruction, ShadingVariant, Variant, deposit_constant, flag, is_cut,
+    Constants, Ends, LightCount, Reconstruction, ShadingVariant, SkyVariant, Variant, deposit_constant, flag,
+    is_cut,
 };
 use crate::gpu::resources::pass;
+use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{Context, GpuError, RenderOptions};
@@ -29,13 +31,13 @@ pub(crate) struct EyePass {
 }
 
 impl EyePass {
-    /// Sets up the pass under some lights, shadowed ones first; those that are combined are not among them.
+    /// Sets up the pass under some lights, shadowed ones first; those that are combined are not among them; and under a
+    /// sky, if any.
     pub(crate) fn new(
         scene: &SceneSpace,
         settings: &Settings,
         window: PixelWindow,
-        lights: &[LightInput<'_>],
-        combined: Option<&CombinedLight>,
+        (lights, combined, sky): (&[LightInput<'_>], Option<&CombinedLight>, Option<&SkyVolume>),
         options: &RenderOptions,
     ) -> Self {
         let frame = picture_frame(settings, scene, window);
@@ -70,6 +72,7 @@ impl EyePass {
             seen: uniforms::Cut::new(&remains.region(scene)),
             faces: uniforms::Cut::new(&remains.region(scene).within(&Bounds::of_grid(scene.dims, 0.0))),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
+            sky: pack_sky(settings, scene, sky),
             lights: packed,
         };
         let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
@@ -135,13 +138,12 @@ impl EyePass {
         self.levels
     }
 
-    /// Draws some rows of the picture. `attenuation` holds the volumes of its lights in their order, or the
-    /// combined one.
+    /// Draws some rows of the picture.
     pub(crate) fn draw(
         &self,
         gpu: Gpu<'_>,
         tables: &Tables,
-        attenuation: &[&wgpu::TextureView],
+        looked_up: LookedUp<'_>,
         picture: &wgpu::TextureView,
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
@@ -170,7 +172,7 @@ impl EyePass {
             ],
         );
         let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels, tables.pyramids(gpu.volume));
-        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
         Ok(())
     }
@@ -238,6 +240,7 @@ impl GatherVariant {
                 is_cut: is_cut(cuts.seen()) || (casts_rays || near_steps > 0) && is_cut(cuts.shading()),
                 sides: shading.sides,
                 classification: sampling.classification,
+                sky: SkyVariant::of(settings),
             },
             rays: casts_rays.then_some(shadows.deposit),
         }
@@ -294,7 +297,7 @@ pub(crate) fn pack_shading(
     let unit = settings.opacity_unit.in_scene(scene).max(1e-9);
     uniforms::Shading {
         emission: shading.emission as f32,
-        ambient: shading.ambient as f32,
+        ambient: settings.flat_ambient() as f32,
         diffuse: shading.diffuse as f32,
         specular: shading.specular as f32,
         shininess: shading.shininess as f32,

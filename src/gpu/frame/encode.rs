@@ -11,6 +11,7 @@ use crate::gpu::GpuError;
 use crate::gpu::eye::floor;
 use crate::gpu::light::backproject::{Schedule, backproject};
 use crate::gpu::light::march::{Sheets, march};
+use crate::gpu::light::packed::LookedUp;
 use crate::gpu::light::raycast::raycast;
 use crate::gpu::output::display::display;
 use crate::gpu::scatter::eye::EyeScatter;
@@ -56,6 +57,8 @@ impl Job<'_> {
             Step::Backproject(light) => self.encode_light(light, Self::backproject_view, encoder),
             Step::Raycast(build, bricks) => self.encode_raycast(*build, bricks, encoder),
             Step::Combine(bricks) => self.encode_combine(bricks, encoder),
+            Step::SkyBlocks => self.encode_sky(None, encoder),
+            Step::SkyBatch(batch) => self.encode_sky(Some(*batch), encoder),
             Step::Eye(rows) => self.encode_eye(rows, encoder),
             Step::ScatterEye(slabs) => self.encode_scatter_eye(slabs, encoder),
             Step::Floor(rows) => {
@@ -104,6 +107,13 @@ impl Job<'_> {
                     let volumes: Vec<_> = self.builds_keys();
                     self.loaded.value.forget_combined(&volumes);
                     self.slots.clear();
+                    self.tools.pool.forget_groups();
+                }
+                Product::Sky => {
+                    if let Some(slot) = self.sky.slot {
+                        self.loaded.value.skies[slot].finish();
+                    }
+                    self.sky.build = None;
                     self.tools.pool.forget_groups();
                 }
                 Product::Picture => target.light.finish(),
@@ -308,7 +318,15 @@ impl Job<'_> {
         let loaded = &self.loaded.value;
         let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
         let picture = &self.targets.get(self.role).light.value.plane.view;
-        self.eye.draw(gpu, tables, &self.looked_up(), picture, rows.clone(), encoder)
+        let sky = self.sky_volume().map(|volume| &volume.view);
+        self.eye.draw(
+            gpu,
+            tables,
+            LookedUp { attenuation: &self.looked_up(), sky },
+            picture,
+            rows.clone(),
+            encoder,
+        )
     }
 
     fn encode_scatter_eye(
@@ -330,8 +348,9 @@ impl Job<'_> {
             fresh
         };
         let picture = &self.targets.get(self.role).light.value.plane.view;
-        let attenuation = self.looked_up();
-        sheets.draw(gpu, scattering, &self.eye, tables, &attenuation, picture, slabs.clone(), encoder)?;
+        let sky = self.sky_volume().map(|volume| &volume.view);
+        let looked_up = LookedUp { attenuation: &self.looked_up(), sky };
+        sheets.draw(gpu, scattering, &self.eye, tables, looked_up, picture, slabs.clone(), encoder)?;
         self.eye_sheets = Some(sheets);
         Ok(())
     }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::light_build::LightBuild;
 use super::loaded::Loaded;
 use super::report::Report;
+use super::sky_cache::PlacedSky;
 use super::step::{Stage, Step, cut_into_bands};
 use super::targets::{Role, Targets};
 use crate::gpu::context::clock::Clock;
@@ -42,6 +43,8 @@ pub struct Job<'r> {
     /// Place of every light's volume among those that are kept.
     pub(super) slots: Vec<Option<usize>>,
     pub(super) builds: Vec<LightBuild>,
+    /// The volume of the sky's visibility.
+    pub(super) sky: PlacedSky,
     /// Shades with the volume of each light, for the combined one to be filled.
     pub(super) combine: Option<EyePass>,
     pub(super) eye: EyePass,

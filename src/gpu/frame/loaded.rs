@@ -7,13 +7,14 @@ use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::scatter::voxels::ScatterVoxels;
+use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::GpuVolume;
 use crate::gpu::volume::materials::Materials;
 use crate::gpu::volume::presence::Presence;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{Context, GpuError};
 use crate::model::{Classification, Settings, SheetOrder};
-use crate::plan::{CombinedKey, LightKey, TablesKey};
+use crate::plan::{CombinedKey, LightKey, SkyKey, TablesKey};
 
 /// A volume on the GPU, and what makes sense only together with it.
 #[derive(Debug)]
@@ -30,6 +31,8 @@ pub(crate) struct Loaded {
     pub lights: Vec<Cached<LightKey, LightVolume>>,
     /// The diffuse light of all of them in one.
     pub combined: Option<Cached<CombinedKey, CombinedLight>>,
+    /// How open to the sky places are.
+    pub skies: Vec<Cached<SkyKey, SkyVolume>>,
     /// Voxels for scattering, once a picture has asked for them.
     pub voxels: Option<Arc<ScatterVoxels>>,
 }
@@ -52,7 +55,16 @@ impl Loaded {
         let tables = Cached::complete(tables_key.clone(), tables);
         let dataset = dataset.clone();
         let materials = Vec::new();
-        Ok(Self { volume, dataset, tables, materials, lights: Vec::new(), combined: None, voxels: None })
+        Ok(Self {
+            volume,
+            dataset,
+            tables,
+            materials,
+            lights: Vec::new(),
+            combined: None,
+            skies: Vec::new(),
+            voxels: None,
+        })
     }
 
     /// Whether it was made from voxels of the type of these: the same numbers of another type are stored otherwise.
@@ -147,6 +159,6 @@ impl Loaded {
     pub(crate) fn bytes(&self) -> u64 {
         let voxels = self.voxels.as_ref().map_or(0, |voxels| voxels.bytes());
         let materials = self.materials.iter().map(|materials| materials.bytes()).sum::<u64>();
-        self.volume.bytes() + materials + voxels + self.light_bytes()
+        self.volume.bytes() + materials + voxels + self.light_bytes() + self.sky_bytes()
     }
 }

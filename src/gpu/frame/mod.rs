@@ -9,6 +9,7 @@ mod loaded;
 mod plan;
 pub(super) mod renderer;
 pub(super) mod report;
+mod sky_cache;
 pub(super) mod step;
 mod targets;
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::job::Job;
 use super::light_cache::{PlacedLights, Wanted};
 use super::loaded::Loaded;
 use super::report::Report;
+use super::sky_cache::PlacedSky;
 use super::step::{Product, Side, Step};
 use super::targets::{Role, shown_key};
 use crate::data::Dataset;
@@ -34,7 +35,8 @@ impl Renderer {
         let role = self.targets.holding(&keys, shape(request, options));
         // A product that comes to be shown beside the eye's picture is asked for here: the compiler sees to that.
         // The eye's key names everything that went into its picture.
-        let FrameKeys { volume: _, tables: _, lights: _, combined: _, eye: _, floor, display: _ } = &keys;
+        let FrameKeys { volume: _, tables: _, lights: _, combined: _, sky: _, eye: _, floor, display: _ } =
+            &keys;
         role.is_some_and(|role| self.targets.get(role).floor.holds(floor))
     }
 
@@ -99,6 +101,7 @@ impl Renderer {
         let loaded = self.loaded.insert(loaded);
 
         let mut placed = PlacedLights::default();
+        let mut sky = PlacedSky::default();
         let mut scattering = None;
         let mut role = self.targets.holding(&keys, shape);
         if role.is_none() || keys.floor.is_some() {
@@ -129,7 +132,8 @@ impl Renderer {
             if placed.builds.is_empty() {
                 self.tools.pool.drop_ring();
             }
-            keys.eye = EyeKey::of(&request, options, &placed.keys, keys.combined.as_ref());
+            sky = loaded.value.place_sky(&self.tools, wanted)?;
+            keys.eye = EyeKey::of(&request, options, &placed.keys, keys.combined.as_ref(), sky.key.as_ref());
             keys.floor = FloorKey::of(&request, &keys.eye);
             // A preview may find that its lights are there at full resolution.
             role = self.targets.holding(&keys, shape);
@@ -142,6 +146,7 @@ impl Renderer {
                 steps.extend(build.steps(at, options.light_parts.max(1)));
             }
             steps.extend(combine_steps(placed.bricks_to_combine));
+            steps.extend(sky.steps());
             if request.settings.scatters() {
                 let voxels = loaded.value.voxels_for(&self.tools.context, &request.settings)?;
                 scattering = Some(Scattering::new(&self.tools.context, voxels));
@@ -153,8 +158,9 @@ impl Renderer {
         let value = &loaded.value;
         let volumes = inputs(&lit, &placed.slots, value);
         let window = options.window(&request);
+        let sky_volume = sky.slot.map(|slot| &value.skies[slot].value);
         let of_lights = |lights: &[LightInput<'_>]| {
-            EyePass::new(&value.volume.scene, &request.settings, window, lights, None, options)
+            EyePass::new(&value.volume.scene, &request.settings, window, (lights, None, sky_volume), options)
         };
         let combine = placed.bricks_to_combine.is_some().then(|| of_lights(&volumes));
         let combined = value.combined.as_ref().filter(|_| keys.combined.is_some());
@@ -162,7 +168,8 @@ impl Renderer {
             Some(combined) => {
                 let unshadowed = inputs_of(lit.unshadowed(), &[], value);
                 let scene = &value.volume.scene;
-                EyePass::new(scene, &request.settings, window, &unshadowed, Some(&combined.value), options)
+                let lights = (&unshadowed[..], Some(&combined.value), sky_volume);
+                EyePass::new(scene, &request.settings, window, lights, options)
             }
             None => of_lights(&volumes),
         };
@@ -209,6 +216,7 @@ impl Renderer {
             lit,
             slots: placed.slots,
             builds: placed.builds,
+            sky,
             combine,
             eye,
             scattering,

@@ -26,6 +26,8 @@ pub struct Report {
     pub light_backproject_ms: f64,
     /// Milliseconds of rays from the voxels of light volumes.
     pub light_raycast_ms: f64,
+    /// Milliseconds of the light of the sky.
+    pub sky_ms: f64,
     /// Milliseconds of the eye pass.
     pub eye_ms: f64,
     /// Milliseconds of the display pass and of reading back.
@@ -59,6 +61,8 @@ pub struct Runs {
     pub light_volumes: u32,
     /// Pieces of the combined light volume.
     pub combined_light: u32,
+    /// Volumes of the sky's visibility whose filling began.
+    pub sky: u32,
     /// Pieces of the eye pass.
     pub eye: u32,
     /// Pieces of the floor pass.
@@ -75,6 +79,7 @@ impl Report {
             Stage::LightMarch => (&mut self.light_march_ms, Some(&mut self.light_gpu_ms)),
             Stage::LightBackproject => (&mut self.light_backproject_ms, Some(&mut self.light_gpu_ms)),
             Stage::LightRaycast => (&mut self.light_raycast_ms, Some(&mut self.light_gpu_ms)),
+            Stage::Sky => (&mut self.sky_ms, Some(&mut self.light_gpu_ms)),
             Stage::Eye => (&mut self.eye_ms, Some(&mut self.eye_gpu_ms)),
             Stage::Display => (&mut self.readback_ms, None),
         };

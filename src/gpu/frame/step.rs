@@ -20,6 +20,8 @@ pub enum Stage {
     LightBackproject,
     /// Rays from the voxels of the light volume.
     LightRaycast,
+    /// Light of the sky.
+    Sky,
     /// The picture.
     Eye,
     /// Display colours of the picture.
@@ -65,6 +67,8 @@ pub(super) enum Product {
     /// The volume that a light build fills.
     Light(usize),
     CombinedLight,
+    /// The volume of the sky's visibility.
+    Sky,
     /// Linear light of the volume.
     Picture,
     Floor,
@@ -90,6 +94,10 @@ pub(super) enum Step {
     Raycast(usize, Range<usize>),
     /// Bricks of the volume in which all lights are combined.
     Combine(Range<usize>),
+    /// What attenuates the light of a sky.
+    SkyBlocks,
+    /// A batch of directions of a sky.
+    SkyBatch(usize),
     /// Rows of the picture.
     Eye(Range<u32>),
     /// Slabs of the eye's scattered sheets.
@@ -110,6 +118,7 @@ impl Step {
             Self::March(..) => Stage::LightMarch,
             Self::Backproject(..) | Self::Combine(_) => Stage::LightBackproject,
             Self::Raycast(..) => Stage::LightRaycast,
+            Self::SkyBlocks | Self::SkyBatch(_) => Stage::Sky,
             Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => Stage::Eye,
             Self::Display => Stage::Display,
             Self::Finish(_) => return None,

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::packed::{LightInput, light_bind_group};
+use super::packed::{LightInput, LookedUp, light_bind_group};
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Ends, ShadingVariant, Variant};
+use crate::gpu::pipelines::variant::{Constants, Ends, ShadingVariant, SkyVariant, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::transfer_tables::Tables;
@@ -89,6 +89,8 @@ impl CombinedLight {
         let attenuation: Vec<_> =
             lights.iter().filter_map(|input| input.volume).map(|volume| &volume.view).collect();
         let Gpu { shaders, volume, .. } = gpu;
+        // The sky is no light that casts shadows.
+        let shading = ShadingVariant { sky: SkyVariant::None, ..shading };
         let pipeline = shaders.pipeline(&CombineVariant { shading, ends: volume.ends_of_all() })?;
         let eye = gpu.uniform("Combine::eye", eye);
         let uniform = uniforms::Combine {
@@ -114,7 +116,7 @@ impl CombinedLight {
             ],
         );
         let of_volume = gpu.bind_pyramid(&pipeline, tables.eye.pyramid(volume));
-        let of_lights = light_bind_group(gpu, &pipeline, &attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, LookedUp { attenuation: &attenuation, sky: None });
         pass::dispatch(
             encoder,
             "Combine::pass",

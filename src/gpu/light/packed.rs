@@ -4,9 +4,10 @@ use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{Pipeline, view_of};
 use crate::gpu::pipelines::layouts::ATTENUATION;
 use crate::gpu::pipelines::uniforms;
+use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::Gpu;
 use crate::math::SceneSpace;
-use crate::model::{LightKind, SceneLight, Settings};
+use crate::model::{LightKind, SKY_AHEAD, SceneLight, Settings, SkyRadiance};
 use crate::plan::LitLight;
 
 /// A light, and the volume that says how much of it is left.
@@ -54,13 +55,40 @@ pub(crate) fn pack_light(
     }
 }
 
-/// Bind group 2 of the passes that shade: the light volumes, in the order of their lights.
+/// What passes that shade look up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LookedUp<'a> {
+    /// The light volumes in the order of their lights, or the combined one.
+    pub attenuation: &'a [&'a wgpu::TextureView],
+    /// How open to the sky places are.
+    pub sky: Option<&'a wgpu::TextureView>,
+}
+
+/// The sky for the shaders; black where there is none.
+pub(crate) fn pack_sky(settings: &Settings, scene: &SceneSpace, volume: Option<&SkyVolume>) -> uniforms::Sky {
+    let radiance = settings.sky.radiance(settings.camera.up);
+    let color = |c: usize| {
+        let of = |sky: &SkyRadiance| sky.slope[c].extend(sky.mean[c]).as_vec4().into();
+        radiance.as_ref().map_or([0.0; 4], of)
+    };
+    uniforms::Sky {
+        red: color(0),
+        green: color(1),
+        blue: color(2),
+        lookup: volume.map_or([0.0; 3], SkyVolume::lookup),
+        ahead: volume.map_or(0.0, |volume| SKY_AHEAD * volume.divisor as f64 * scene.smallest_edge()) as f32,
+    }
+}
+
+/// Bind group 2 of the passes that shade.
 pub(crate) fn light_bind_group(
     gpu: Gpu<'_>,
     pipeline: &Pipeline,
-    attenuation: &[&wgpu::TextureView],
+    LookedUp { attenuation, sky }: LookedUp<'_>,
 ) -> wgpu::BindGroup {
     let of_light = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
-    let views: Vec<_> = (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect();
+    let mut views: Vec<_> =
+        (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect();
+    views.push(view_of("sky_texture", sky.unwrap_or(gpu.placeholder)));
     gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
 }

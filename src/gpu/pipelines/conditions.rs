@@ -8,7 +8,8 @@
 use crate::gpu::GpuError;
 
 /// Names that stand in conditions alone, which drivers are not told.
-const TEXT_ALONE: [&str; 6] = ["FACES", "MISSING", "PRECLASSIFY", "DIRECT", "BY_NEED", "KERNEL_GRADIENTS"];
+const TEXT_ALONE: [&str; 7] =
+    ["FACES", "MISSING", "PRECLASSIFY", "DIRECT", "BY_NEED", "KERNEL_GRADIENTS", "SKY"];
 
 /// Names that are override constants as well.
 const OVERRIDES: [&str; 2] = ["SHADOWED", "NEAR_STEPS"];

@@ -47,7 +47,7 @@ pub(crate) const ATTENUATION: [&str; 8] = [
     "attenuation_7",
 ];
 
-/// The light volumes.
+/// The light volumes, and that of the sky.
 const LIGHTS: &[Slot] = &[
     Slot::sampled(0, ATTENUATION[0], Shape::Volume),
     Slot::sampled(1, ATTENUATION[1], Shape::Volume),
@@ -57,6 +57,7 @@ const LIGHTS: &[Slot] = &[
     Slot::sampled(5, ATTENUATION[5], Shape::Volume),
     Slot::sampled(6, ATTENUATION[6], Shape::Volume),
     Slot::sampled(7, ATTENUATION[7], Shape::Volume),
+    Slot::sampled(8, "sky_texture", Shape::Volume),
 ];
 
 /// A level of the pyramid in the making.
@@ -77,6 +78,9 @@ const SCATTER: Slot = Slot::uniform::<uniforms::Scatter>(5, "bound_scatter");
 const SHEETS: Slot = Slot::list(6, "sheets", 4, Access::ReadWrite);
 const FOOTPRINT_TABLE: Slot = Slot::list(7, "footprint_table", FOOTPRINT_TABLE_BYTES, Access::Read);
 const RAYS: Slot = Slot::list(8, "rays", 16, Access::ReadWrite);
+
+const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
+const DIRECTIONS: Slot = Slot::list(1, "directions", size_of::<uniforms::SkyRays>() as u64, Access::Read);
 
 /// What display passes read; `shown` is what they write.
 const fn display(shown: Format) -> [Slot; 4] {
@@ -268,6 +272,39 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
             ],
             &[SCATTER, SHEETS, FOOTPRINT_TABLE],
         ],
+    ),
+    (
+        "sky/blocks.wgsl",
+        &[
+            &[
+                Slot::uniform::<uniforms::Blocks>(0, "bound_blocks"),
+                TABLE,
+                Slot::sampled(2, "distances", Shape::Volume),
+                Slot::target(3, "extinction", Shape::Volume, Format::Storage),
+            ],
+            VOLUME,
+        ],
+    ),
+    (
+        "sky/moments.wgsl",
+        &[&[
+            SWEEP,
+            DIRECTIONS,
+            Slot::sampled(2, "sheets", Shape::Volume),
+            Slot::sampler(3, "clamped"),
+            Slot::list(4, "sums", 16, Access::ReadWrite),
+            Slot::target(5, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+        ]],
+    ),
+    (
+        "sky/sweep.wgsl",
+        &[&[
+            SWEEP,
+            DIRECTIONS,
+            Slot::sampled(2, "extinction", Shape::Volume),
+            Slot::sampler(3, "clamped"),
+            Slot::target(4, "sheets", Shape::Volume, Format::Storage),
+        ]],
     ),
     ("volume/downsample.wgsl", &[RESAMPLE]),
     (

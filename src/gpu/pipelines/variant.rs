@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use crate::model::{Classification, Deposit, Kernel, Quadrature, Remains, Sides};
+use crate::model::{Classification, Deposit, Kernel, Quadrature, Remains, Settings, Sides};
 
 /// Override constants of a shader, by name.
 pub(crate) type Constants = Vec<(&'static str, f64)>;
@@ -119,6 +119,27 @@ impl LightCount {
     }
 }
 
+/// The sky of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum SkyVariant {
+    None,
+    /// Nothing is in its way.
+    Open,
+    /// A volume says how open to it places are.
+    Looked,
+}
+
+impl SkyVariant {
+    /// That of a look.
+    pub(crate) fn of(settings: &Settings) -> Self {
+        match (settings.sky.is_on(), settings.has_sky_volume()) {
+            (false, _) => Self::None,
+            (true, false) => Self::Open,
+            (true, true) => Self::Looked,
+        }
+    }
+}
+
 /// What tells pipelines apart of passes that shade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ShadingVariant {
@@ -129,6 +150,7 @@ pub(crate) struct ShadingVariant {
     pub sides: Sides,
     /// Before voxels are spread, or after.
     pub classification: Classification,
+    pub sky: SkyVariant,
 }
 
 impl ShadingVariant {
@@ -141,6 +163,7 @@ impl ShadingVariant {
         if self.is_combined {
             constants.push(("COMBINED", 1.0));
         }
+        constants.push(("SKY", f64::from(self.sky as u8)));
         constants
     }
 }

@@ -13,7 +13,7 @@ use crate::gpu::scatter::voxels::Scattering;
 use crate::gpu::volume::Gpu;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::{ImageSpec, Settings};
-use crate::plan::{FARTHEST, MarchTiles, Request, light_views};
+use crate::plan::{FARTHEST, MarchTiles, Request, SkyKey, light_views};
 
 impl Renderer {
     /// Begins a picture, as [`Self::bands`] does, in parts with no more than `edge` samples along an edge, and no
@@ -48,6 +48,24 @@ impl Renderer {
         );
         self.targets.forget();
         true
+    }
+
+    /// How open to the sky each block of voxels is: V₁ along x, y and z of the scene, and V₀.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    pub fn openness(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Vec<[f32; 4]>, GpuError> {
+        let settings = &*settings.as_drawn(dataset.volume());
+        let size = [8, 8];
+        self.draw(dataset, settings, size, &RenderOptions::default())?;
+        let request =
+            Request { volume: dataset.volume().id(), settings: settings.clone(), size, coarse: None };
+        let none = || GpuError::NothingDrawn("sky");
+        let key = SkyKey::of(&request).ok_or_else(none)?;
+        let loaded = &self.loaded.as_ref().ok_or_else(none)?.value;
+        let found = loaded.skies.iter().find(|sky| sky.holds(&key)).ok_or_else(none)?;
+        let floats = read_floats(self.context(), &found.value.texture)?;
+        Ok(floats.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2], texel[3]]).collect())
     }
 
     /// The sheets of one view of a light: the transmittance that each slab deposits, sheet by sheet

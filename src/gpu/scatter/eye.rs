@@ -7,7 +7,7 @@ use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::eye::gather::{EyePass, SamplingVariant};
-use crate::gpu::light::packed::light_bind_group;
+use crate::gpu::light::packed::{LookedUp, light_bind_group};
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::variant::{Constants, Only, ShadingVariant, Variant, flag};
 use crate::gpu::resources::pass;
@@ -104,7 +104,7 @@ impl EyeScatter {
         })
     }
 
-    /// Splats and composites some slabs. `attenuation` as for [`EyePass::draw`].
+    /// Splats and composites some slabs.
     #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
     pub(crate) fn draw(
         &self,
@@ -112,7 +112,7 @@ impl EyeScatter {
         scattering: &Scattering,
         eye: &EyePass,
         tables: &Tables,
-        attenuation: &[&wgpu::TextureView],
+        looked_up: LookedUp<'_>,
         picture: &wgpu::TextureView,
         slabs: Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
@@ -126,7 +126,7 @@ impl EyeScatter {
                 eye,
                 eye_uniform: &uniform,
                 table: &tables.eye.buffer,
-                attenuation,
+                looked_up,
                 rays: &self.rays,
                 clamped: &self.clamped,
             };
@@ -157,7 +157,7 @@ impl EyeScatter {
             ],
         );
         let grid = gpu.uniform("Volume::grid", volume.grid(0));
-        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         for k in slabs {
             // The slabs ahead are there when their neighbours need them.
             let from = if k == 0 { 0 } else { k + self.ahead };

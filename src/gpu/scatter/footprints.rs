@@ -6,7 +6,7 @@ use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::GpuError;
 use crate::gpu::eye::gather::EyePass;
-use crate::gpu::light::packed::light_bind_group;
+use crate::gpu::light::packed::{LookedUp, light_bind_group};
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::uniforms::Phase;
@@ -44,7 +44,7 @@ pub(crate) struct Inputs<'a> {
     /// The eye's transfer function.
     pub table: &'a wgpu::Buffer,
     /// Light volumes in the order of the lights.
-    pub attenuation: &'a [&'a wgpu::TextureView],
+    pub looked_up: LookedUp<'a>,
     /// Colour and opacity so far.
     pub rays: &'a wgpu::Buffer,
     pub clamped: &'a wgpu::Sampler,
@@ -99,7 +99,7 @@ impl Footprints {
         &self,
         gpu: Gpu<'_>,
         scatterer: &Scatterer,
-        Inputs { scattering, eye, eye_uniform, table, attenuation, rays, clamped }: Inputs<'_>,
+        Inputs { scattering, eye, eye_uniform, table, looked_up, rays, clamped }: Inputs<'_>,
         k: u32,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
@@ -143,7 +143,7 @@ impl Footprints {
                 sampler("clamped", clamped),
             ],
         );
-        let of_lights = light_bind_group(gpu, &pipeline, attenuation);
+        let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         for phase in &self.phases {
             let turn =
                 pass::bind(context, "Footprints::phase", &pipeline, 3, &[buffer("bound_phase", phase)]);

@@ -13,6 +13,7 @@ pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod scene_axis;
 pub(super) mod shadows;
+pub(super) mod sky;
 pub(super) mod view;
 
 use std::collections::BTreeMap;
@@ -21,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kernel, LabelTable,
-    Length, Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder,
+    Length, Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder, Sky,
     Slabs, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange};
@@ -56,6 +57,8 @@ pub struct Settings {
     pub shading: Shading,
     /// How light is attenuated on its way to the material.
     pub shadows: Shadows,
+    /// Light from all around.
+    pub sky: Sky,
     /// What of the volume is left out.
     pub cuts: Cuts,
     /// The floor under the volume.
@@ -84,6 +87,7 @@ impl Default for Settings {
             opacity_unit: Length::Voxels(1.0),
             shading: Shading::default(),
             shadows: Shadows::default(),
+            sky: Sky::default(),
             cuts: Cuts::default(),
             floor: Floor::default(),
             sampling: Sampling::default(),
@@ -206,6 +210,17 @@ impl Default for Output {
 }
 
 impl Settings {
+    /// Light from everywhere that nothing attenuates, as a share of the colour of what it meets: where there is a sky,
+    /// none but its.
+    pub fn flat_ambient(&self) -> f64 {
+        if self.sky.is_on() { 0.0 } else { self.shading.ambient }
+    }
+
+    /// Whether material attenuates the light of a sky.
+    pub fn has_sky_volume(&self) -> bool {
+        self.sky.is_on() && self.shadows.algorithm.is_on()
+    }
+
     /// Whether voxels are scattered. Rays from every sample need the volume, so with them the
     /// picture is gathered whatever the engine.
     pub fn scatters(&self) -> bool {

@@ -5,7 +5,7 @@ use crate::data::single_line;
 use crate::model::{
     Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light, MAX_BIAS_VOXELS,
     MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_NAME, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP,
-    MIN_EXPOSURE, Output, Sampling, Settings, Shading, Shadows,
+    MIN_EXPOSURE, Output, SKY_DIRECTIONS, Sampling, Settings, Shading, Shadows, Sky,
 };
 
 impl Settings {
@@ -103,6 +103,24 @@ impl Settings {
         number(radius, 0.1, MAX_FLOOR_RADIUS, default.floor.radius);
         rgb(color);
         number(opacity, 0.0, 1.0, 1.0);
+        let Sky {
+            mode: _,
+            intensity,
+            zenith,
+            horizon,
+            ground,
+            tilt_deg,
+            turn_deg,
+            density_scale,
+            directions,
+            resolution: _,
+        } = &mut self.sky;
+        number(intensity, 0.0, 1e3, default.sky.intensity);
+        [zenith, horizon, ground].into_iter().for_each(rgb);
+        number(tilt_deg, -360.0, 360.0, 0.0);
+        number(turn_deg, -1e6, 1e6, 0.0);
+        number(density_scale, 0.0, 1e3, 1.0);
+        *directions = (*directions).clamp(*SKY_DIRECTIONS.start(), *SKY_DIRECTIONS.end());
         let length = self.opacity_unit.number();
         if !(length.is_finite() && length > 0.0) {
             self.opacity_unit = default.opacity_unit;

@@ -11,3 +11,4 @@ pub(super) mod pixel_window;
 pub(super) mod reach;
 pub(super) mod sheet_frame;
 pub(super) mod slice_order;
+pub(super) mod sweep;

@@ -3,6 +3,7 @@
 use super::light::LightKey;
 use super::lit_lights::{Attenuation, LitLights};
 use super::received::{LightLook, ReceivedLight};
+use super::sky::{SkyKey, SkyLook};
 use super::table::{EyeTableKey, OpacityKey};
 use crate::model::{
     Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
@@ -27,6 +28,9 @@ pub struct EyeKey {
     lights: Vec<EyeLightKey>,
     /// Diffuse light of all shadowed lights, which are not among `lights` then.
     combined: Option<CombinedKey>,
+    /// The sky, and the volume that says how open to it each place is.
+    sky: Option<SkyLook>,
+    sky_volume: Option<SkyKey>,
     /// What rays to lights meet, where samples cast them.
     rays: Option<RaysKey>,
     options: RenderOptions,
@@ -85,12 +89,13 @@ impl RaysKey {
 
 impl EyeKey {
     /// The key of the picture that is made with these light volumes, one for each light of the settings that has
-    /// any, or with their combination.
+    /// any, or with their combination; and with this volume of the sky.
     pub fn of(
         request: &Request,
         options: &RenderOptions,
         volumes: &[Option<LightKey>],
         combined: Option<&CombinedKey>,
+        sky_volume: Option<&SkyKey>,
     ) -> Self {
         let Request { volume: _, settings, size: _, coarse: _ } = request;
         let Settings {
@@ -106,6 +111,7 @@ impl EyeKey {
             opacity_unit,
             shading,
             shadows,
+            sky: _,
             cuts,
             floor: _,
             sampling: _,
@@ -135,6 +141,8 @@ impl EyeKey {
             received: ReceivedLight::of(settings),
             lights: lights.collect(),
             combined: combined.cloned(),
+            sky: SkyLook::of(settings),
+            sky_volume: sky_volume.cloned(),
             rays: casts_rays.then(|| RaysKey::of(settings)),
             options: computing(options),
         }

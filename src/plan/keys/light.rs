@@ -66,6 +66,7 @@ impl LightKey {
             opacity_unit: _,
             shading: _,
             shadows,
+            sky: _,
             cuts,
             floor: _,
             sampling:

@@ -9,6 +9,7 @@ mod eye;
 mod light;
 mod lit_lights;
 mod received;
+mod sky;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -18,6 +19,7 @@ pub use display::DisplayKey;
 pub use eye::{EyeKey, FloorKey};
 pub use light::LightKey;
 pub use lit_lights::{Attenuation, LitLight, LitLights};
+pub use sky::SkyKey;
 pub use table::{EyeTableKey, OpacityKey, TablesKey};
 
 use super::{RenderOptions, Request, VolumeKey};
@@ -34,6 +36,8 @@ pub struct FrameKeys {
     pub lights: Vec<Option<LightKey>>,
     /// The diffuse light of all of them in one volume, where the settings ask for it.
     pub combined: Option<CombinedKey>,
+    /// How open to the sky each place is, where there is one.
+    pub sky: Option<SkyKey>,
     /// Linear light of the volume.
     pub eye: EyeKey,
     /// Linear light on the floor, if there is one.
@@ -48,7 +52,8 @@ impl FrameKeys {
         let lights: Vec<_> =
             (0..request.settings.lights.len()).map(|index| LightKey::of(request, index)).collect();
         let combined = CombinedKey::of(request, options);
-        let eye = EyeKey::of(request, options, &lights, combined.as_ref());
+        let sky = SkyKey::of(request);
+        let eye = EyeKey::of(request, options, &lights, combined.as_ref(), sky.as_ref());
         Self {
             volume: request.shown_volume(),
             tables: TablesKey::of(request),
@@ -56,6 +61,7 @@ impl FrameKeys {
             display: DisplayKey::of(request, options),
             lights,
             combined,
+            sky,
             eye,
         }
     }

@@ -5,8 +5,8 @@ use serde_json::Value;
 use super::*;
 use crate::data::{Shown, ValueRange, ValueRanges, VolumeId};
 use crate::model::{
-    Camera, ControlPoint, LabelLook, Light, LightKind, LightLock, Settings, TransferFunction, apply_path,
-    to_json,
+    Camera, ControlPoint, LabelLook, Light, LightKind, LightLock, Settings, Sky, SkyMode, TransferFunction,
+    apply_path, to_json,
 };
 
 fn request() -> Request {
@@ -18,6 +18,7 @@ fn request() -> Request {
             Light { kind: LightKind::Perspective, ..Light::default() },
         ],
         transfer: TransferFunction { points: vec![point(0.0, 0.0), point(1.0, 0.5)], ..Default::default() },
+        sky: Sky { mode: SkyMode::Gradient, ..Sky::default() },
         ..Settings::default()
     };
     let ranges = ValueRanges { all: ValueRange::new(-9.0, 9.0), robust: ValueRange::UNIT };
@@ -43,6 +44,8 @@ enum Effect {
     Display,
     Floor,
     Eye,
+    /// What is open of it is found anew.
+    Sky,
     OneLight,
     AllLights,
 }
@@ -51,6 +54,7 @@ fn effect(before: &FrameKeys, after: &FrameKeys) -> Effect {
     match after.lights_missing_in(before) {
         1 => Effect::OneLight,
         n if n > 1 => Effect::AllLights,
+        _ if after.sky.is_some() && after.sky != before.sky => Effect::Sky,
         _ if after.eye != before.eye => Effect::Eye,
         _ if after.floor != before.floor => Effect::Floor,
         _ if after.display != before.display => Effect::Display,
@@ -128,6 +132,17 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.storage", "combined", Effect::Eye),
         ("shadows.reverse_kernel", "forward", Effect::AllLights),
         ("shadows.near_field", "long", Effect::Eye),
+        ("sky.mode", "off", Effect::Eye),
+        ("sky.mode", "white", Effect::Eye),
+        ("sky.intensity", "0.1", Effect::Eye),
+        ("sky.zenith", "[1,0,0]", Effect::Eye),
+        ("sky.horizon", "[1,0,0]", Effect::Eye),
+        ("sky.ground", "[1,0,0]", Effect::Eye),
+        ("sky.tilt_deg", "30", Effect::Eye),
+        ("sky.turn_deg", "30", Effect::Eye),
+        ("sky.density_scale", "0.5", Effect::Sky),
+        ("sky.directions", "14", Effect::Sky),
+        ("sky.resolution", "full", Effect::Sky),
         ("transfer.mixing", "seen", Effect::Eye),
         ("lighting.curve.mixing", "seen", Effect::Nothing),
         ("cuts.crop", r#"{"on": true}"#, Effect::Nothing),

@@ -17,6 +17,7 @@ mod limit;
 mod mutations;
 mod presence;
 mod scatter;
+mod sky;
 
 const SIZE: [u32; 2] = [96, 80];
 

@@ -19,6 +19,8 @@ enum Cost {
     Floor,
     /// The picture, but no light volume.
     Eye,
+    /// What is open of the sky, and the picture.
+    Sky,
     /// So many light volumes, and the picture.
     Lights(u32),
     /// Everything, from the upload on.
@@ -30,7 +32,8 @@ fn cost(runs: Runs) -> Cost {
         Runs { volume: 1.., tables: 2, light_volumes: 3, eye: 1.., .. } => Cost::Volume,
         Runs { volume: 1.., .. } => panic!("the volume is there: {runs:?}"),
         Runs { light_volumes, eye: 1.., .. } if light_volumes > 0 => Cost::Lights(light_volumes),
-        Runs { light_volumes: 0, eye: 1.., .. } => Cost::Eye,
+        Runs { light_volumes: 0, sky: 1, eye: 1.., .. } => Cost::Sky,
+        Runs { light_volumes: 0, sky: 0, eye: 1.., .. } => Cost::Eye,
         Runs { light_volumes: 0, eye: 0, floor: 1.., display: 1, .. } => Cost::Floor,
         Runs { light_volumes: 0, eye: 0, floor: 0, display: 1, tables: 0, .. } => Cost::Display,
         runs if runs == Runs::default() => Cost::Nothing,
@@ -146,6 +149,38 @@ fn every_setting_costs_what_it_should() {
     let bench = Bench::new();
     for (path, value, expected) in table {
         assert_eq!(bench.cost_of(path, value), expected, "{path} = {value}");
+    }
+}
+
+/// What is open of the sky is found anew where something else is in its way, and never because of what the sky, the
+/// camera or other lights look like.
+#[test]
+fn a_sky_costs_a_picture_unless_something_else_is_in_its_way() {
+    let bench = Bench::new();
+    let lit = apply_path(&home(), "sky.mode", "gradient").expect("a setting");
+    let lit = apply_path(&lit, "sky.directions", "6").expect("a setting");
+    for (path, value, expected, filled) in [
+        ("camera.azimuth_deg", "10", Cost::Eye, 0),
+        ("camera.up", "plus_y", Cost::Eye, 0),
+        ("sky.mode", "white", Cost::Eye, 0),
+        ("sky.mode", "off", Cost::Eye, 0),
+        ("sky.intensity", "0.1", Cost::Eye, 0),
+        ("sky.zenith", "[1,0,0]", Cost::Eye, 0),
+        ("sky.tilt_deg", "90", Cost::Eye, 0),
+        ("lights.1.color", "[1,0,0]", Cost::Eye, 0),
+        ("lights.1.position", "[0,6,1]", Cost::Lights(1), 0),
+        ("transfer.points.0.color", "[1,0,0]", Cost::Eye, 0),
+        ("shadows.strength", "0.5", Cost::Eye, 0),
+        ("shadows.algorithm", "off", Cost::Eye, 0),
+        ("sky.directions", "14", Cost::Sky, 1),
+        ("sky.resolution", "quarter", Cost::Sky, 1),
+        ("sky.density_scale", "2", Cost::Sky, 1),
+        ("transfer.points.1.opacity", "0.4", Cost::Lights(3), 1),
+        ("cuts.plane", r#"{"on": true, "offset": 0.1}"#, Cost::Lights(3), 1),
+    ] {
+        let changed = apply_path(&lit, path, value).expect("a setting");
+        let runs = bench.runs(&lit, &changed, &RenderOptions::default());
+        assert_eq!((cost(runs), runs.sky), (expected, filled), "{path} = {value}");
     }
 }
 

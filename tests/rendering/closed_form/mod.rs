@@ -13,6 +13,7 @@ mod labels;
 mod lights;
 mod path_tracer;
 mod presence;
+mod sky;
 
 pub(crate) fn renderer() -> Renderer {
     Renderer::new(&context().with_full_precision()).expect("a renderer")

@@ -2,9 +2,9 @@
 
 use eframe::egui::{self, DragValue, Ui};
 
-use super::super::text::{self, Named};
-use super::controls::{reset, row, short, spacing as spacing_in_words, unlabelled};
+use super::super::controls::{reset, row, short, spacing as spacing_in_words, unlabelled};
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text::{self, Named};
 use crate::data::{
     AxisOrder, Corrections, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale, Volume,
 };

@@ -1,12 +1,16 @@
 //! Section "Data": what the volume is, and the length to which opacities refer.
 
+mod corrections;
+mod range;
+mod several;
+
 use eframe::egui::{self, Ui};
 
-use super::super::text::{self, Named};
+use super::Panels;
 use super::controls::{row, short, spacing};
-use super::{Panels, corrections, range, several};
 use crate::app::common::commands::{Command, THINNINGS};
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text::{self, Named};
 use crate::data::{KindName, ValueRange, plain};
 use crate::model::{Length, Settings};
 

@@ -2,9 +2,9 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::text::{self, Named};
-use super::controls::{choice, row, short, unlabelled};
+use super::super::controls::{choice, row, short, unlabelled};
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text::{self, Named};
 use crate::data::{ValueRange, ValueRanges};
 use crate::model::{DensityRange, Settings};
 

@@ -2,11 +2,11 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::text;
-use super::controls::{row, unlabelled};
+use super::super::controls::{row, unlabelled};
 use crate::app::common::aspect::Alternatives;
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text;
 use crate::data::load::Aspect;
 
 /// Points of a button that takes the next one.

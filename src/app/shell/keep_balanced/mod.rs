@@ -219,6 +219,7 @@ fn brightness(settings: &Settings) -> Settings {
         opacity_unit,
         shading,
         shadows,
+        sky,
         cuts,
         floor: _,
         sampling,
@@ -241,6 +242,7 @@ fn brightness(settings: &Settings) -> Settings {
         opacity_unit: *opacity_unit,
         shading: shading.clone(),
         shadows: Shadows { keep_balanced: true, ..shadows.clone() },
+        sky: sky.clone(),
         cuts: cuts.clone(),
         // Both engines make the same picture.
         sampling: Sampling { engine: Engine::Gather, ..sampling.clone() },

@@ -11,3 +11,4 @@ pub(in crate::app) mod sampling;
 pub(in crate::app) mod sections;
 pub(in crate::app) mod shading;
 pub(in crate::app) mod shadows;
+pub(in crate::app) mod sky;

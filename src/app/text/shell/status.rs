@@ -26,6 +26,7 @@ fn name_of(stage: Stage) -> &'static str {
         Stage::Upload => "uploading the volume",
         Stage::Pyramid => "preparing the volume",
         Stage::LightMarch | Stage::LightBackproject | Stage::LightRaycast => "filling the light volume",
+        Stage::Sky => "following the light of the sky",
         Stage::Eye | Stage::Display => "drawing the picture",
     }
 }

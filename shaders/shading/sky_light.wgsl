@@ -1,0 +1,56 @@
+// Light from all around (src/model/settings/sky.rs): radiance that is linear in the direction, L(ω) = l₀ + l₁·ω, through
+// what is open of the sky. SKY: 1 nothing is in its way, 2 a volume says what is.
+#import "density/volume.wgsl"
+#import "shading/lights.wgsl"
+
+// V₁ in rgb, V₀ in a: see sky/moments.wgsl.
+@group(2) @binding(8) var sky_texture: texture_3d<f32>;
+
+struct Sky {
+    // For each colour the slope l₁, in scene space, and the mean l₀.
+    red: vec4f,
+    green: vec4f,
+    blue: vec4f,
+    // Index space to texture coordinates of the volume.
+    lookup: vec3f,
+    // How far in front of a surface it is looked up, in scene units: what is closer is the surface itself.
+    ahead: f32,
+}
+
+// The moments at an index-space point.
+fn openness(sky: Sky, p: vec3f, strength: f32) -> vec4f {
+#if SKY > 1
+    let stored = textureSampleLevel(sky_texture, clamped, (p + 0.5) * sky.lookup, 0.0);
+    return mix(vec4f(0.0, 0.0, 0.0, 1.0), stored, strength);
+#else
+    return vec4f(0.0, 0.0, 0.0, 1.0);
+#endif
+}
+
+// Of one colour: what matter without a surface receives, and the irradiance over π of surfaces that face along the normal
+// and against it. A₀ = l₀ V₀ + l₁ · V₁, A₁ = l₀ V₁ + l₁ V₀ / 3, E/π = A₀ ± 2 n · A₁.
+fn sky_on(color: vec4f, open: vec4f, normal: vec3f) -> vec3f {
+    let mean = color.a * open.a + dot(color.rgb, open.rgb);
+    let facing = 2.0 * dot(normal, color.a * open.rgb + color.rgb * (open.a / 3.0));
+    return max(vec3f(mean, mean + facing, mean - facing), vec3f(0.0));
+}
+
+// What a surface gives back of it, as a share of its colour.
+fn reflect_sky(sky: Sky, surface: Surface, p: vec3f, strength: f32) -> vec3f {
+    let open = openness(sky, p, strength);
+    // A surface of two sides takes the brighter.
+    let along = select(1.0, 0.5 + 0.5 * surface.side, ONE_SIDED);
+    let shares = vec3f(1.0 - surface.surfaceness, surface.surfaceness * along, surface.surfaceness * (1.0 - along));
+    let red = sky_on(sky.red, open, surface.normal);
+    let green = sky_on(sky.green, open, surface.normal);
+    let blue = sky_on(sky.blue, open, surface.normal);
+    if (ONE_SIDED) {
+        return vec3f(dot(red, shares), dot(green, shares), dot(blue, shares));
+    }
+    let brighter = vec2f(shares.x, shares.y + shares.z);
+    return vec3f(
+        dot(vec2f(red.x, max(red.y, red.z)), brighter),
+        dot(vec2f(green.x, max(green.y, green.z)), brighter),
+        dot(vec2f(blue.x, max(blue.y, blue.z)), brighter),
+    );
+}

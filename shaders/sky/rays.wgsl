@@ -1,0 +1,54 @@
+// Parallel rays through blocks of voxels, and where blocks lie among them (src/plan/geometry/sweep.rs).
+
+struct SkyRays {
+    // Unit vector towards where the light comes from, in scene space.
+    towards: vec3f,
+    // 1, or 0 where a batch has fewer.
+    weight: f32,
+    // Blocks that rays get further from slice to slice, along the axes that follow that of the slices.
+    drift: vec2f,
+    // Where ray (0, 0) crosses the first slice.
+    first: vec2f,
+    size: vec2u,
+    // The slices lie across it.
+    axis: u32,
+    // 1 where light goes up the axis.
+    rises: u32,
+    // Shortest edges of a voxel from slice to slice.
+    step: f32,
+    // Layer of its first slice.
+    layer: u32,
+    pad0: f32,
+    pad1: f32,
+}
+
+struct Sweep {
+    // Blocks.
+    dims: vec3u,
+    // The mean over all directions up to this batch, from their sum.
+    share: f32,
+    // Of the textures of blocks, with those around the grid, and of sheets: one over their sizes.
+    block_scale: vec3f,
+    // 0 in the first batch.
+    has_sums: f32,
+    sheet_scale: vec3f,
+    pad0: f32,
+}
+
+@group(0) @binding(0) var<uniform> bound_sweep: Sweep;
+var<private> sweep: Sweep;
+@group(0) @binding(1) var<storage, read> directions: array<SkyRays>;
+
+fn slices_of(rays: SkyRays) -> f32 {
+    return f32(select(select(sweep.dims.x, sweep.dims.y, rays.axis == 1u), sweep.dims.z, rays.axis == 2u));
+}
+
+// The components of a block, or of the grid's size: along the axis of the slices, and the two that follow.
+fn turned_to(rays: SkyRays, block: vec3f) -> vec3f {
+    return select(select(block, block.yzx, rays.axis == 1u), block.zxy, rays.axis == 2u);
+}
+
+// And back.
+fn turned_from(rays: SkyRays, turned: vec3f) -> vec3f {
+    return select(select(turned, turned.zxy, rays.axis == 1u), turned.yzx, rays.axis == 2u);
+}

@@ -1,0 +1,21 @@
+//! The section of the sky.
+
+use crate::app::text::{Named, named};
+
+pub(crate) const MODE: Named =
+    named("Light from all around", "Soft light that hollows and undersides keep out");
+pub(crate) const OFF: Named = named("Off", "The same everywhere: the ambient light of the shading");
+pub(crate) const WHITE: Named = named("White", "Ambient occlusion: hollows are darker than what stands out");
+pub(crate) const GRADIENT: Named =
+    named("Sky", "Other colours from above than from the horizon and from below");
+pub(crate) const INTENSITY: Named = named("Brightness", "What an open white surface gives back of it");
+pub(crate) const ZENITH: Named = named("Above", "Colour of the sky overhead");
+pub(crate) const HORIZON: Named = named("Horizon", "Colour all around");
+pub(crate) const GROUND: Named = named("Below", "Colour that comes from the ground");
+pub(crate) const TILT: Named =
+    named("Lean", "How far its brightest side leans from overhead: 90° is a large window");
+pub(crate) const TURN: Named = named("Turn", "To which side it leans, about the vertical");
+pub(crate) const DENSITY: Named =
+    named("Density", "How much of this light material takes away, compared with other light");
+pub(crate) const DIRECTIONS: Named =
+    named("Directions", "From how many sides light is followed: more is smoother, and takes longer");

@@ -1,0 +1,100 @@
+//! What the light of a sky takes, beside that of one light.
+
+use serde_json::{Map, Value, json};
+
+use super::edit::EDIT_SHARE;
+use super::report::{Samples, round};
+use super::{Bench, STEP_DEG, WARM_UP};
+use crate::cli::CliError;
+use crate::model::{Kernel, Resolution, ReverseKernel, Settings, SkyMode};
+
+/// Directions and resolutions that are timed.
+const BUILDS: [(u32, Resolution); 6] = [
+    (6, Resolution::Quarter),
+    (14, Resolution::Quarter),
+    (6, Resolution::Half),
+    (26, Resolution::Half),
+    (64, Resolution::Half),
+    (14, Resolution::Full),
+];
+
+impl Bench<'_> {
+    /// Fillings of the sky's volume in units of B, the filling of one parallel light with the B-spline both ways; an orbit
+    /// and an edit with a sky over those without. In turn, so that a busy machine slows all of them.
+    pub(super) fn sky(
+        &mut self,
+        cases: &mut Vec<Value>,
+        ratios: &mut Map<String, Value>,
+    ) -> Result<(), CliError> {
+        let mut lit = self.settings.clone();
+        lit.lights.truncate(1);
+        lit.shadows.kernel = Kernel::BSpline;
+        lit.shadows.reverse_kernel = ReverseKernel::Forward;
+        let under_a_sky = |directions: u32, resolution: Resolution| {
+            let mut settings = lit.clone();
+            settings.sky.mode = SkyMode::Gradient;
+            (settings.sky.directions, settings.sky.resolution) = (directions, resolution);
+            settings
+        };
+        let mut one_light = Samples::default();
+        let mut builds: Vec<_> = BUILDS.iter().map(|_| Samples::default()).collect();
+        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+            let timed = frame >= WARM_UP;
+            let scale = 1.0 + 0.01 * (frame % 7) as f64;
+            let mut denser = lit.clone();
+            denser.lights.iter_mut().for_each(|light| light.density_scale *= scale);
+            self.frame(&denser, timed.then_some(&mut one_light))?;
+            for ((directions, resolution), samples) in BUILDS.into_iter().zip(&mut builds) {
+                let mut denser = under_a_sky(directions, resolution);
+                denser.sky.density_scale *= scale;
+                self.frame(&denser, timed.then_some(samples))?;
+            }
+        }
+        let unit = one_light.light_build();
+        ratios.insert("one_light_ms".to_owned(), json!(round(unit)));
+        for ((directions, resolution), samples) in BUILDS.into_iter().zip(&builds) {
+            let divisor = resolution.divisor();
+            let bound =
+                if divisor == 1 { 1.3 } else { 2.0 } * f64::from(directions) / (divisor as f64).powi(3);
+            ratios.insert(
+                format!("sky_{directions}_directions_at_1/{divisor}"),
+                json!({ "measured": round(samples.sky() / unit), "bound": round(bound) }),
+            );
+        }
+        let pair = [lit.clone(), under_a_sky(26, Resolution::Half)];
+        let turned =
+            |settings: &mut Settings, frame: usize| settings.camera.azimuth_deg += STEP_DEG * frame as f64;
+        let [without, with] = self.in_turn(&pair, turned)?;
+        ratios.insert("orbit_under_a_sky_over_orbit".to_owned(), json!(round(with.cost() / without.cost())));
+        cases.push(self.case("orbit-one-light", &without, 0));
+        cases.push(self.case("orbit-sky", &with, 0));
+        let span = self.loaded.volume().shown_range().span();
+        let edited = |settings: &mut Settings, frame: usize| {
+            let step = (frame % 7) as f64 - 3.0;
+            settings.transfer.points.iter_mut().for_each(|point| point.value += step * EDIT_SHARE * span);
+        };
+        let pair = [lit.clone(), under_a_sky(6, Resolution::Quarter)];
+        let [without, with] = self.in_turn(&pair, edited)?;
+        ratios.insert("edit_under_a_sky_over_edit".to_owned(), json!(round(with.cost() / without.cost())));
+        cases.push(self.case("tf-edit-one-light", &without, 0));
+        cases.push(self.case("tf-edit-sky", &with, 0));
+        Ok(())
+    }
+
+    /// Frames of two looks in turn, each changed by `change` from frame to frame.
+    fn in_turn(
+        &mut self,
+        looks: &[Settings; 2],
+        change: impl Fn(&mut Settings, usize),
+    ) -> Result<[Samples; 2], CliError> {
+        let mut samples = [Samples::default(), Samples::default()];
+        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+            for (look, samples) in looks.iter().zip(&mut samples) {
+                let mut settings = look.clone();
+                change(&mut settings, frame);
+                self.frame(&settings, (frame >= WARM_UP).then_some(samples))?;
+            }
+        }
+        Ok(samples)
+    }
+}

@@ -1,0 +1,105 @@
+//! Which volume of the sky's visibility a picture needs, and which are kept.
+
+use super::light_cache::Wanted;
+use super::loaded::Loaded;
+use super::step::{Product, Step};
+use crate::gpu::resources::cached::Cached;
+use crate::gpu::resources::tools::Tools;
+use crate::gpu::sky::sweep::SkyBuild;
+use crate::gpu::sky::volume::SkyVolume;
+use crate::gpu::volume::Gpu;
+use crate::gpu::{GpuError, RenderOptions};
+use crate::plan::SkyKey;
+
+/// Volumes that are kept: that of the picture, that of its previews, and one that undoing a change finds again.
+const MOST_KEPT: usize = 3;
+
+/// The sky of a picture: where its volume is, and what must be done before.
+#[derive(Debug, Default)]
+pub(super) struct PlacedSky {
+    /// What the volume is made from; `None` without one.
+    pub key: Option<SkyKey>,
+    /// Its place among those that are kept.
+    pub slot: Option<usize>,
+    /// Its filling, if it must be filled first.
+    pub build: Option<SkyBuild>,
+}
+
+impl PlacedSky {
+    /// The steps that fill it.
+    pub(super) fn steps(&self) -> Vec<Step> {
+        let Some(build) = &self.build else { return Vec::new() };
+        let mut steps = vec![Step::SkyBlocks];
+        steps.extend((0..build.batches()).map(Step::SkyBatch));
+        steps.push(Step::Finish(Product::Sky));
+        steps
+    }
+}
+
+impl Loaded {
+    /// Finds or makes room for the volume that a picture or preview needs.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(super) fn place_sky(&mut self, tools: &Tools, wanted: Wanted<'_>) -> Result<PlacedSky, GpuError> {
+        let Wanted { context, request, keys, now, .. } = wanted;
+        let known = self.skies.len();
+        self.skies.retain(Cached::is_complete);
+        if self.skies.len() < known {
+            tools.pool.forget_groups();
+        }
+        let Some(full) = &keys.sky else { return Ok(PlacedSky::default()) };
+        let coarse = request.coarse.map(|_| full.coarse());
+        let find = |key: &SkyKey| self.skies.iter().position(|known| known.holds(key));
+        let found = find(full).or_else(|| coarse.as_ref().and_then(find));
+        if let Some(slot) = found {
+            self.skies[slot].value.last_used = now;
+            let key = self.skies[slot].key().clone();
+            return Ok(PlacedSky { key: Some(key), slot: Some(slot), build: None });
+        }
+        let key = coarse.unwrap_or_else(|| full.clone());
+        if self.skies.len() >= MOST_KEPT {
+            let oldest = (0..self.skies.len()).min_by_key(|&at| self.skies[at].value.last_used);
+            oldest.map(|at| self.skies.swap_remove(at));
+            tools.pool.forget_groups();
+        }
+        let mut fresh = SkyVolume::new(context, self.volume.volume.dims(), key.resolution())?;
+        fresh.last_used = now;
+        let slot = self.skies.len();
+        let build = SkyBuild::new(Gpu::new(tools, &self.volume), &key, &fresh)?;
+        self.skies.push(Cached::unfilled(key.clone(), fresh));
+        Ok(PlacedSky { key: Some(key), slot: Some(slot), build: Some(build) })
+    }
+
+    /// Bytes of all volumes of visibility.
+    pub(crate) fn sky_bytes(&self) -> u64 {
+        self.skies.iter().map(|sky| sky.value.bytes()).sum()
+    }
+}
+
+impl super::job::Job<'_> {
+    /// The volume that the picture looks up.
+    pub(super) fn sky_volume(&self) -> Option<&SkyVolume> {
+        Some(&self.loaded.value.skies.get(self.sky.slot?)?.value)
+    }
+
+    /// Records a step of the filling: blocks first, or a batch of directions.
+    pub(super) fn encode_sky(
+        &mut self,
+        batch: Option<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let loaded = &self.loaded.value;
+        let Some(build) = &self.sky.build else { return Ok(()) };
+        let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
+        self.report.runs.sky += u32::from(batch.is_none());
+        let Some(volume) = self.sky_volume() else { return Ok(()) };
+        let gpu = Gpu::new(self.tools, &loaded.volume);
+        let Some(batch) = batch else {
+            let (settings, options): (_, &RenderOptions) = (&self.request.settings, &self.options);
+            return build.fill_blocks(gpu, &loaded.tables.value, settings, options, volume, encoder);
+        };
+        build.fill_batch(gpu, volume, batch, encoder)
+    }
+}

@@ -1,0 +1,273 @@
+//! The march of a sky's light, direction by direction.
+
+use std::ops::Range;
+
+use super::volume::SkyVolume;
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{Constants, Ends, Variant, flag, is_cut};
+use crate::gpu::resources::pass;
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::volume::{Gpu, Levels, texture_3d};
+use crate::gpu::{Context, GpuError, RenderOptions};
+use crate::model::{Classification, Settings};
+use crate::plan::{SkyKey, SweepFrame, stretch_reach, sweep_directions};
+
+/// Blocks times directions of a batch: some 0.2 s on a software adapter.
+const BATCH_BLOCKS: usize = 1 << 22;
+
+/// Most directions of a batch.
+const BATCH_DIRECTIONS: usize = 8;
+
+/// Most layers of a 3D texture everywhere.
+const MOST_LAYERS: usize = 2048;
+
+/// The filling of a volume of the sky's visibility.
+#[derive(Debug)]
+pub(crate) struct SkyBuild {
+    /// Rays from every direction, in the order in which they are followed.
+    frames: Vec<SweepFrame>,
+    /// Directions of a batch.
+    each: usize,
+    /// What multiplies the extinction.
+    density_scale: f64,
+    textures: Textures,
+}
+
+/// What only the filling needs.
+#[derive(Debug)]
+struct Textures {
+    /// Optical depth of blocks, with one of nothing around the grid.
+    blocks: wgpu::TextureView,
+    /// What rays deposit: columns and rows of rays, and a layer for each slice of each direction.
+    sheets: wgpu::TextureView,
+    sheet_size: [usize; 3],
+    /// Moments so far.
+    sums: wgpu::Buffer,
+    bytes: u64,
+}
+
+impl SkyBuild {
+    /// Lays out the filling of a volume.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(gpu: Gpu<'_>, key: &SkyKey, volume: &SkyVolume) -> Result<Self, GpuError> {
+        let scene = &gpu.volume.scene;
+        let frames: Vec<_> = sweep_directions(key.directions())
+            .into_iter()
+            .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
+            .collect();
+        let blocks: usize = volume.dims.iter().product();
+        let slices = volume.dims.into_iter().max().unwrap_or(1);
+        let each = (BATCH_BLOCKS / blocks.max(1)).min(MOST_LAYERS / slices).clamp(1, BATCH_DIRECTIONS);
+        let textures = Textures::new(gpu.context, volume.dims, &frames, each)?;
+        Ok(Self { frames, each, density_scale: key.density_scale(), textures })
+    }
+
+    /// Batches of directions.
+    pub(crate) fn batches(&self) -> usize {
+        self.frames.len().div_ceil(self.each)
+    }
+
+    /// Bytes that only the filling needs.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.textures.bytes
+    }
+
+    /// Fills the blocks with what attenuates light.
+    pub(crate) fn fill_blocks(
+        &self,
+        gpu: Gpu<'_>,
+        tables: &Tables,
+        settings: &Settings,
+        options: &RenderOptions,
+        volume: &SkyVolume,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let scene = &gpu.volume.scene;
+        let shading = settings.cuts.shading();
+        // Eight places, each as large as an eighth of a block; a voxel is one place.
+        let level = (volume.divisor as f64 / 2.0).max(1.0).log2();
+        let variant = BlocksVariant {
+            ends: gpu.volume.ends_of_all(),
+            is_cut: is_cut(shading),
+            classification: settings.sampling.classification,
+        };
+        let pipeline = gpu.shaders.pipeline(&variant)?;
+        let uniform = uniforms::Blocks {
+            dims: volume.dims.map(|n| n as u32),
+            voxel_step: volume.divisor as f32,
+            level: level as f32,
+            offset: if volume.divisor == 1 { 0.0 } else { volume.divisor as f32 / 4.0 },
+            edge: (scene.smallest_edge() * self.density_scale) as f32,
+            pad0: 0.0,
+            shading_cut: uniforms::Cut::new(&shading.region(scene)),
+        };
+        let uniform = gpu.uniform("Sky::blocks", uniform);
+        let own = gpu.bind(
+            "Sky::blocks",
+            &pipeline,
+            0,
+            &[
+                buffer("bound_blocks", &uniform),
+                buffer("table", tables.lighting.gathered()),
+                view_of("distances", &tables.light_distances),
+                view_of("extinction", &self.textures.blocks),
+            ],
+        );
+        // Places of a block lie at most as many cells from that of its middle as it has voxels in half its edge.
+        let seen = i32::from(stretch_reach(level)) + volume.divisor as i32 / 2;
+        let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
+        let of_volume =
+            gpu.bind_volume(&pipeline, dilation, Levels::All, tables.lighting_pyramids(gpu.volume));
+        let groups = volume.dims.map(|n| (n as u32 + 2).div_ceil(4));
+        pass::dispatch(encoder, "Sky::blocks", &pipeline, &[&own, &of_volume], groups);
+        Ok(())
+    }
+
+    /// Follows light from the directions of a batch, and adds what arrives to what came before.
+    pub(crate) fn fill_batch(
+        &self,
+        gpu: Gpu<'_>,
+        volume: &SkyVolume,
+        batch: usize,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Textures { blocks, sheets, sheet_size, sums, .. } = &self.textures;
+        let edge = gpu.volume.scene.smallest_edge();
+        let taken: Range<usize> = batch * self.each..((batch + 1) * self.each).min(self.frames.len());
+        let frames = &self.frames[taken.clone()];
+        let slices = volume.dims.into_iter().max().unwrap_or(1);
+        let mut rays: Vec<_> =
+            frames.iter().enumerate().map(|(at, frame)| pack(frame, edge, at * slices)).collect();
+        // Of no weight, and without rays.
+        rays.resize_with(self.each, bytemuck::Zeroable::zeroed);
+        let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
+        let uniform = uniforms::Sweep {
+            dims: volume.dims.map(|n| n as u32),
+            share: 1.0 / taken.end as f32,
+            block_scale: reciprocal(volume.dims.map(|n| n + 2)),
+            has_sums: if batch == 0 { 0.0 } else { 1.0 },
+            sheet_scale: reciprocal(*sheet_size),
+            pad0: 0.0,
+        };
+        let uniform = gpu.uniform("Sky::sweep", uniform);
+        let directions = gpu.list("Sky::directions", &rays);
+
+        let sweep =
+            gpu.shaders.pipeline(&SweepVariant { shader: "sky/sweep.wgsl", directions: self.each })?;
+        let clamped = || sampler("clamped", &gpu.volume.clamped);
+        let shared = || [buffer("bound_sweep", &uniform), buffer("directions", &directions)];
+        let mut entries = shared().to_vec();
+        entries.extend([view_of("extinction", blocks), clamped(), view_of("sheets", sheets)]);
+        let own = gpu.bind("Sky::sweep", &sweep, 0, &entries);
+        let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);
+        let groups = [across(0), across(1), frames.len() as u32];
+        pass::dispatch(encoder, "Sky::sweep", &sweep, &[&own], groups);
+
+        let gather =
+            gpu.shaders.pipeline(&SweepVariant { shader: "sky/moments.wgsl", directions: self.each })?;
+        let mut entries = shared().to_vec();
+        entries.extend([
+            view_of("sheets", sheets),
+            clamped(),
+            buffer("sums", sums),
+            view_of("moments", &volume.view),
+        ]);
+        let own = gpu.bind("Sky::moments", &gather, 0, &entries);
+        let groups = volume.dims.map(|n| (n as u32).div_ceil(4));
+        pass::dispatch(encoder, "Sky::moments", &gather, &[&own], groups);
+        Ok(())
+    }
+}
+
+impl Textures {
+    fn new(
+        context: &Context,
+        dims: [usize; 3],
+        frames: &[SweepFrame],
+        each: usize,
+    ) -> Result<Self, GpuError> {
+        let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
+        let format = context.storage_format;
+        let slices = dims.into_iter().max().unwrap_or(1);
+        let across = |side: usize| frames.iter().map(|frame| frame.size[side] as usize).max().unwrap_or(1);
+        let sheet_size = [across(0), across(1), slices * each];
+        let block_size = dims.map(|n| n + 2);
+        let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
+        let sheets = context.texture(&texture_3d("Sky::sheets", sheet_size, format, usages))?;
+        let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
+        let sums = vec![[0.0_f32; 4]; dims.iter().product()];
+        let sums = context.buffer("Sky::sums", &sums, wgpu::BufferUsages::STORAGE);
+        let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self {
+            blocks: view(&blocks),
+            sheets: view(&sheets),
+            sheet_size,
+            sums,
+            bytes: texel * (texels(block_size) + texels(sheet_size)) + 16 * texels(dims),
+        })
+    }
+}
+
+/// The rays of a direction for the shaders; `edge` is that of a voxel.
+fn pack(frame: &SweepFrame, edge: f64, layer: usize) -> uniforms::SkyRays {
+    uniforms::SkyRays {
+        towards: frame.towards.as_vec3().into(),
+        weight: 1.0,
+        drift: frame.drift.as_vec2().into(),
+        first: frame.first.map(|at| at as f32),
+        size: frame.size,
+        axis: frame.axis as u32,
+        rises: u32::from(frame.rises),
+        step: (frame.step / edge) as f32,
+        layer: layer as u32,
+        pad0: 0.0,
+        pad1: 0.0,
+    }
+}
+
+/// What tells one pipeline that fills blocks from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct BlocksVariant {
+    ends: Ends,
+    is_cut: bool,
+    classification: Classification,
+}
+
+impl Variant for BlocksVariant {
+    fn shader(&self) -> &'static str {
+        "sky/blocks.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.ends.constants().to_vec();
+        constants.push(flag("CUT", self.is_cut));
+        constants.push(flag("PRECLASSIFY", self.classification == Classification::Pre));
+        // What places are fetched from is the pyramid.
+        constants.extend([("KERNEL", 2.0), ("STRETCH", 1.0)]);
+        constants
+    }
+}
+
+/// What tells one pipeline of the two halves of a sweep from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct SweepVariant {
+    shader: &'static str,
+    directions: usize,
+}
+
+impl Variant for SweepVariant {
+    fn shader(&self) -> &'static str {
+        self.shader
+    }
+
+    fn constants(&self) -> Constants {
+        match self.shader {
+            "sky/moments.wgsl" => vec![("DIRECTIONS", self.directions as f64)],
+            _ => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The volume of the sky's visibility.
+
+use crate::gpu::volume::texture_3d;
+use crate::gpu::{Context, GpuError};
+use crate::model::Resolution;
+
+/// Most texels that the rays of one direction may take: 128 MiB of sheets.
+const MOST_TEXELS: u64 = 1 << 26;
+
+/// How open to the sky each block of voxels is.
+#[derive(Debug)]
+pub(crate) struct SkyVolume {
+    /// Blocks along x, y and z.
+    pub dims: [usize; 3],
+    /// Voxels along the edge of a block.
+    pub divisor: usize,
+    /// V₁ in rgb, V₀ in a.
+    pub texture: wgpu::Texture,
+    /// A view of all of it.
+    pub view: wgpu::TextureView,
+    /// Counts up with every use; the least recently used goes first.
+    pub last_used: u64,
+}
+
+impl SkyVolume {
+    /// Makes the texture; nothing is filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(context: &Context, grid: [usize; 3], resolution: Resolution) -> Result<Self, GpuError> {
+        let divisor = divisor_for(grid, resolution);
+        let dims = grid.map(|n| n.div_ceil(divisor));
+        let texture = context.texture(&texture_3d(
+            "SkyVolume::texture",
+            dims,
+            wgpu::TextureFormat::Rgba16Float,
+            wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+        ))?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self { dims, divisor, texture, view, last_used: 0 })
+    }
+
+    /// Index space to texture coordinates: (p + ½) × lookup.
+    pub(crate) fn lookup(&self) -> [f32; 3] {
+        self.dims.map(|n| 1.0 / (n * self.divisor) as f32)
+    }
+
+    /// Bytes of its texture.
+    pub(crate) fn bytes(&self) -> u64 {
+        8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
+    }
+}
+
+/// Voxels along the edge of a block: those of a resolution, or more where the rays of one direction would take too much
+/// memory.
+fn divisor_for(grid: [usize; 3], resolution: Resolution) -> usize {
+    let mut divisor = resolution.divisor();
+    let texels = |divisor: usize| {
+        let [x, y, z] = grid.map(|n| n.div_ceil(divisor) as u64);
+        // Rays drift by a block per slice at most.
+        [[x, y, z], [y, z, x], [z, x, y]].map(|[a, b, c]| a * (a + b) * (a + c)).into_iter().max()
+    };
+    while texels(divisor) > Some(MOST_TEXELS) {
+        divisor *= 2;
+    }
+    divisor
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_volumes_are_followed_in_larger_blocks() {
+        let of = |n: usize, resolution| divisor_for([n; 3], resolution);
+        assert_eq!(of(256, Resolution::Full), 1);
+        assert_eq!(of(257, Resolution::Full), 2);
+        assert_eq!(of(512, Resolution::Half), 2);
+        assert_eq!(of(1024, Resolution::Half), 4);
+        assert_eq!(of(2048, Resolution::Quarter), 8);
+        assert_eq!(divisor_for([4096, 1, 1], Resolution::Full), 1024);
+    }
+}

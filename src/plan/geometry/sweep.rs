@@ -1,0 +1,171 @@
+//! Directions from which the light of a sky comes, and the rays that follow it through a grid.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+use crate::math::SceneSpace;
+
+/// Unit vectors towards `count` parts of the sky of equal size.
+///
+/// A Fibonacci sphere, zᵢ = 1 − (2i + 1)/K at the angle iπ(3 − √5), in an order in which each is as far as can be from all before it, so that the first few are a fair set, too.
+pub fn sweep_directions(count: u32) -> Vec<DVec3> {
+    let golden = PI * (3.0 - 5f64.sqrt());
+    let direction = |i: u32| {
+        let z = 1.0 - f64::from(2 * i + 1) / f64::from(count);
+        let (sin, cos) = (golden * f64::from(i)).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        DVec3::new(across * cos, across * sin, z)
+    };
+    let mut left: Vec<DVec3> = (0..count).map(direction).collect();
+    let mut ordered: Vec<DVec3> = Vec::with_capacity(left.len());
+    while !left.is_empty() {
+        // The largest cosine to any before: the smaller, the farther.
+        let nearest = |of: &DVec3| ordered.iter().map(|known| known.dot(*of)).fold(-1.0, f64::max);
+        let farthest = (0..left.len()).min_by(|&a, &b| nearest(&left[a]).total_cmp(&nearest(&left[b])));
+        ordered.extend(farthest.map(|at| left.remove(at)));
+    }
+    ordered
+}
+
+/// Parallel rays through a grid of blocks of voxels, which cross its slices along one axis of the grid in their middles: a
+/// place in every slice is between the same four rays all along a step.
+///
+/// In block units; slices are counted as the light meets them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepFrame {
+    /// Unit vector towards where the light comes from, in scene space.
+    pub towards: DVec3,
+    /// The axis of the grid that the slices lie across: that along which the light goes fastest.
+    pub axis: usize,
+    /// Whether light goes up that axis.
+    pub rises: bool,
+    /// Blocks along x, y and z.
+    pub dims: [usize; 3],
+    /// How far a ray gets from slice to slice along the two axes that follow `axis`, in turn.
+    pub drift: DVec2,
+    /// Where ray (0, 0) crosses the first slice, along those.
+    pub first: [i32; 2],
+    /// Rays along those.
+    pub size: [u32; 2],
+    /// Scene units of a ray between two slices.
+    pub step: f64,
+}
+
+impl SweepFrame {
+    /// The rays from a direction through blocks of `divisor`³ voxels.
+    pub fn new(scene: &SceneSpace, divisor: usize, towards: DVec3) -> Self {
+        let dims = scene.dims.map(|n| n.div_ceil(divisor));
+        // Blocks per scene unit of the way, against the light.
+        let speed = scene.index_from_scene.transform_vector3(towards) / divisor as f64;
+        let along = speed.to_array();
+        let axis =
+            (0..3).fold(0, |best, axis| if along[axis].abs() > along[best].abs() { axis } else { best });
+        let step = 1.0 / along[axis].abs();
+        let across = [(axis + 1) % 3, (axis + 2) % 3];
+        let drift = across.map(|axis| -along[axis] * step);
+        let last = dims[axis] as f64 - 1.0;
+        // A place x of slice n lies at x − n · drift among the rays.
+        let first = drift.map(|drift| (-last * drift).min(0.0).floor() as i32);
+        let size = [0, 1].map(|side| {
+            let end = dims[across[side]] as f64 - 1.0 + (-last * drift[side]).max(0.0);
+            // One more to interpolate with.
+            (end.ceil() as i32 - first[side] + 2) as u32
+        });
+        Self { towards, axis, rises: along[axis] < 0.0, dims, drift: drift.into(), first, size, step }
+    }
+
+    /// Slices.
+    pub fn slices(&self) -> usize {
+        self.dims[self.axis]
+    }
+
+    /// The block at a place of a slice: [slice, across, across].
+    pub fn block(&self, slice: f64, across: DVec2) -> DVec3 {
+        let last = self.slices() as f64 - 1.0;
+        let mut at = [0.0; 3];
+        at[self.axis] = if self.rises { slice } else { last - slice };
+        at[(self.axis + 1) % 3] = across.x;
+        at[(self.axis + 2) % 3] = across.y;
+        at.into()
+    }
+
+    /// The slice of a block, and its place among the rays there.
+    pub fn place(&self, block: [usize; 3]) -> (usize, DVec2) {
+        let along = block[self.axis];
+        let slice = if self.rises { along } else { self.slices() - 1 - along };
+        let across = DVec2::new(block[(self.axis + 1) % 3] as f64, block[(self.axis + 2) % 3] as f64);
+        (slice, across - self.drift * slice as f64 - DVec2::new(self.first[0].into(), self.first[1].into()))
+    }
+
+    /// Where a ray crosses a slice, along the two axes that follow `axis`.
+    pub fn crossing(&self, ray: [u32; 2], slice: usize) -> DVec2 {
+        let ray = DVec2::new(
+            f64::from(ray[0]) + f64::from(self.first[0]),
+            f64::from(ray[1]) + f64::from(self.first[1]),
+        );
+        ray + self.drift * slice as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine3;
+
+    use super::*;
+    use crate::math::SceneSpace;
+
+    #[test]
+    fn directions_are_even_however_few_are_taken() {
+        for count in [6, 14, 26, 64] {
+            let all = sweep_directions(count);
+            assert_eq!(all.len(), count as usize);
+            let mean = all.iter().sum::<DVec3>() / f64::from(count);
+            assert!(mean.length() < 0.03, "{count}: {mean}");
+        }
+        let all = sweep_directions(64);
+        for taken in 6..=64 {
+            let some = &all[..taken];
+            let mean = some.iter().sum::<DVec3>().length() / taken as f64;
+            assert!(mean < 0.25, "{taken}: {mean}");
+            // Nowhere is farther from all of them than 80°.
+            let farthest = all.iter().map(|a| some.iter().map(|b| a.dot(*b)).fold(-1.0, f64::max));
+            assert!(farthest.fold(1.0, f64::min) > 80f64.to_radians().cos(), "{taken}");
+        }
+    }
+
+    #[test]
+    fn every_block_lies_between_rays_that_there_are() {
+        let scene = SceneSpace::new([13, 20, 7], DAffine3::from_scale(DVec3::new(1.0, 0.7, 2.0)));
+        for divisor in [1, 2, 4] {
+            for towards in sweep_directions(26) {
+                let frame = SweepFrame::new(&scene, divisor, towards);
+                assert!(frame.drift.abs().max_element() <= 1.0 + 1e-12, "{frame:?}");
+                let [nx, ny, nz] = frame.dims;
+                for block in (0..nx * ny * nz).map(|at| [at % nx, at / nx % ny, at / (nx * ny)]) {
+                    let (slice, ray) = frame.place(block);
+                    assert!(ray.min_element() >= -1e-9, "{ray}");
+                    let next = ray.floor() + 1.0;
+                    assert!(next.x < f64::from(frame.size[0]) && next.y < f64::from(frame.size[1]), "{ray}");
+                    // There and back.
+                    let nearest = [ray.x.floor() as u32, ray.y.floor() as u32];
+                    let across = frame.crossing(nearest, slice) + ray.fract();
+                    let found = frame.block(slice as f64, across);
+                    let wanted = DVec3::from(block.map(|at| at as f64));
+                    assert!((found - wanted).length() < 1e-9, "{found} {wanted}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_is_as_long_as_the_way_between_slices() {
+        let scene = SceneSpace::new([16, 16, 16], DAffine3::IDENTITY);
+        let slanting = DVec3::new(3.0, 0.0, 4.0).normalize();
+        let frame = SweepFrame::new(&scene, 2, slanting);
+        assert_eq!((frame.axis, frame.rises), (2, false));
+        // Two voxels are a quarter of half the edge.
+        assert!((frame.step - 0.25 / 0.8).abs() < 1e-12, "{}", frame.step);
+        assert!((frame.drift - DVec2::new(-0.75, 0.0)).length() < 1e-12, "{}", frame.drift);
+    }
+}

@@ -1,0 +1,80 @@
+//! What the volume is made from that says how open to the sky each place is.
+
+use super::table::OpacityKey;
+use crate::model::{Classification, Remains, Resolution, Settings, SkyMode};
+use crate::plan::{Request, VolumeKey};
+
+/// Everything that the volume of the sky's visibility is made from: no colours, no brightness, no turn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SkyKey {
+    volume: VolumeKey,
+    opacity: OpacityKey,
+    classification: Classification,
+    shading_cut: Remains,
+    density_scale: f64,
+    directions: u32,
+    resolution: Resolution,
+}
+
+/// Previews follow light from so many directions.
+const PREVIEW_DIRECTIONS: u32 = 6;
+
+impl SkyKey {
+    /// The key of the volume that a picture needs; `None` where nothing attenuates a sky.
+    pub fn of(request: &Request) -> Option<Self> {
+        let settings = &request.settings;
+        settings.has_sky_volume().then(|| Self {
+            volume: request.shown_volume(),
+            opacity: OpacityKey::of(settings),
+            classification: settings.classification(),
+            shading_cut: settings.cuts.shading(),
+            density_scale: settings.sky.density_scale,
+            directions: settings.sky.directions,
+            resolution: settings.sky.resolution,
+        })
+    }
+
+    /// The key of a preview's volume.
+    #[must_use]
+    pub fn coarse(&self) -> Self {
+        Self { directions: PREVIEW_DIRECTIONS, resolution: Resolution::Quarter, ..self.clone() }
+    }
+
+    /// From how many directions light is followed.
+    pub fn directions(&self) -> u32 {
+        self.directions
+    }
+
+    /// How finely.
+    pub fn resolution(&self) -> Resolution {
+        self.resolution
+    }
+
+    /// What multiplies the extinction.
+    pub fn density_scale(&self) -> f64 {
+        self.density_scale
+    }
+}
+
+/// A sky as samples see it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SkyLook {
+    mode: SkyMode,
+    intensity: f64,
+    colors: [[f32; 3]; 3],
+    lean_deg: [f64; 2],
+}
+
+impl SkyLook {
+    /// What samples see; `None` where there is no sky.
+    pub(super) fn of(settings: &Settings) -> Option<Self> {
+        let sky = &settings.sky;
+        let is_plain = sky.mode == SkyMode::White;
+        sky.is_on().then_some(Self {
+            mode: sky.mode,
+            intensity: sky.intensity,
+            colors: if is_plain { [[1.0; 3]; 3] } else { [sky.zenith, sky.horizon, sky.ground] },
+            lean_deg: if is_plain { [0.0; 2] } else { [sky.tilt_deg, sky.turn_deg] },
+        })
+    }
+}

@@ -1,0 +1,180 @@
+//! Light from all around: how open to the sky each block of voxels is.
+//!
+//! Stored are moments over directions ω of the transmittance T from there to beyond the volume: V₀ = ⟨T⟩ and V₁ = ⟨T ω⟩.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::Reference;
+use super::field::classified::Side;
+use super::field::trilinear;
+use crate::model::{Kernel, SKY_AHEAD};
+use crate::plan::{SweepFrame, sweep_directions};
+
+/// Moments of what is open of the sky.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Openness {
+    /// Blocks along x, y and z.
+    pub dims: [usize; 3],
+    /// Voxels along the edge of a block.
+    pub divisor: usize,
+    /// V₀ of each block, x fastest.
+    pub mean: Vec<f64>,
+    /// V₁ along x, y and z of the scene.
+    pub first: [Vec<f64>; 3],
+}
+
+impl Openness {
+    /// V₀ and V₁ between blocks.
+    pub(super) fn at(&self, point: DVec3) -> (f64, DVec3) {
+        let place = (point + 0.5) / self.divisor as f64 - 0.5;
+        let of = |values: &[f64]| trilinear(self.dims, values, place);
+        (of(&self.mean), DVec3::from(self.first.each_ref().map(|values| of(values))))
+    }
+}
+
+impl Reference<'_> {
+    /// How open to the sky places are, from as many directions and as finely as the settings say.
+    pub fn openness(&self) -> Openness {
+        let sky = &self.settings.sky;
+        self.openness_from(&sweep_directions(sky.directions), sky.resolution.divisor())
+    }
+
+    /// The same from some directions, in blocks of so many voxels along an edge.
+    pub fn openness_from(&self, directions: &[DVec3], divisor: usize) -> Openness {
+        let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
+        let extinction = self.blocks(dims, divisor);
+        let count: usize = dims.iter().product();
+        let mut sums = vec![[0.0; 4]; count];
+        for &towards in directions {
+            let frame = SweepFrame::new(&self.scene, divisor, towards);
+            let deposits = march(&frame, &extinction);
+            sums.par_iter_mut().enumerate().for_each(|(at, sum)| {
+                let block = [at % dims[0], at / dims[0] % dims[1], at / (dims[0] * dims[1])];
+                let passed = between_rays(&frame, &deposits, block);
+                let moments = towards.extend(1.0) * passed;
+                sum.iter_mut().zip(moments.to_array()).for_each(|(sum, moment)| *sum += moment);
+            });
+        }
+        let mean_of =
+            |moment: usize| sums.iter().map(|sum| sum[moment] / directions.len() as f64).collect::<Vec<_>>();
+        Openness { dims, divisor, mean: mean_of(3), first: [mean_of(0), mean_of(1), mean_of(2)] }
+    }
+
+    /// The mean extinction of eight places in each block, or of the one voxel that it is.
+    fn blocks(&self, dims: [usize; 3], divisor: usize) -> Vec<f64> {
+        let table = self.gathered_table(Side::Lighting);
+        let pyramid = self.gathered_pyramid(Side::Lighting);
+        let profile = self.profile(Kernel::Prefiltered);
+        let remaining = self.shading();
+        let level = (divisor as f64 / 2.0).max(1.0).log2();
+        let offset = if divisor == 1 { 0.0 } else { divisor as f64 / 4.0 };
+        let at = |point: DVec3| {
+            table.sample(pyramid.fetch(point + self.kernel_shift(), level))[3]
+                * self.gathered_presence(&profile, point, level)
+                * self.share_that_shades(&remaining, point)
+        };
+        let of_block = |block: usize| {
+            let place = [block % dims[0], block / dims[0] % dims[1], block / (dims[0] * dims[1])];
+            let middle = DVec3::from(place.map(|at| (at as f64 + 0.5) * divisor as f64 - 0.5));
+            let corners = (0..8).map(|corner| {
+                let side = |axis: usize| if corner >> axis & 1 == 0 { -offset } else { offset };
+                at(middle + DVec3::new(side(0), side(1), side(2)))
+            });
+            self.settings.sky.density_scale * corners.sum::<f64>() / 8.0
+        };
+        (0..dims.iter().product()).into_par_iter().map(of_block).collect()
+    }
+
+    /// The light of a sky on a surface, as a share of its colour; `weight` says how much of one it is, and `side` to which
+    /// side it looks, 1 along the normal and −1 against it. `None` of a surface with two sides.
+    ///
+    /// For each colour, A₀ = l₀ V₀ + l₁ · V₁ arrives on the mean, A₁ = l₀ V₁ + l₁ V₀ / 3 is its first moment, and the
+    /// irradiance of a surface is π (A₀ + 2 n · A₁): exact for an open hemisphere under a sky of one colour.
+    pub(super) fn lit_by_sky(
+        &self,
+        openness: Option<&Openness>,
+        point: DVec3,
+        normal: DVec3,
+        weight: f64,
+        side: Option<f64>,
+    ) -> [f64; 3] {
+        let Some(radiance) = self.settings.sky.radiance(self.settings.camera.up) else { return [0.0; 3] };
+        let strength = self.settings.shadows.strength;
+        let (v0, v1) = openness.map_or((1.0, DVec3::ZERO), |openness| {
+            let turned = if side.is_some_and(|side| side < 0.0) { -1.0 } else { 1.0 };
+            let ahead = SKY_AHEAD * openness.divisor as f64 * self.scene.smallest_edge();
+            let ahead = self.scene.index_from_scene.transform_vector3(normal * (turned * weight * ahead));
+            let (v0, v1) = openness.at(point + ahead);
+            (1.0 - strength * (1.0 - v0), v1 * strength)
+        });
+        std::array::from_fn(|c| {
+            let (l0, l1) = (radiance.mean[c], radiance.slope[c]);
+            let a0 = l0 * v0 + l1.dot(v1);
+            let facing = 2.0 * normal.dot(l0 * v1 + l1 * (v0 / 3.0));
+            let (along, against) = ((a0 + facing).max(0.0), (a0 - facing).max(0.0));
+            let surface = side.map_or(along.max(against), |side| {
+                let rising = 0.5 + 0.5 * side;
+                rising * along + (1.0 - rising) * against
+            });
+            weight * surface + (1.0 - weight) * a0.max(0.0)
+        })
+    }
+}
+
+/// What each ray deposits in each slice: the mean transmittance over it.
+fn march(frame: &SweepFrame, extinction: &[f64]) -> Vec<f64> {
+    let [width, height] = frame.size;
+    let slices = frame.slices();
+    let of_ray = |ray: usize| {
+        let ray = [ray as u32 % width, ray as u32 / width];
+        let mut transmittance = 1.0;
+        let mut deposits = Vec::with_capacity(slices);
+        for slice in 0..slices {
+            let block = frame.block(slice as f64, frame.crossing(ray, slice));
+            let depth = bordered(frame.dims, extinction, block) * frame.step;
+            // (1 − e^−τ)/τ.
+            let mean = if depth < 1e-12 { 1.0 } else { -(-depth).exp_m1() / depth };
+            deposits.push(transmittance * mean);
+            transmittance *= (-depth).exp();
+        }
+        deposits
+    };
+    (0..(width * height) as usize).into_par_iter().flat_map_iter(of_ray).collect()
+}
+
+/// Between blocks, and to nothing within a block of the grid.
+fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
+    let low = at.floor();
+    let share = at - low;
+    let corner = |corner: usize| {
+        let mut weight = 1.0;
+        let mut index = 0;
+        let mut stride = 1;
+        for axis in 0..3 {
+            let is_far = corner >> axis & 1 == 1;
+            weight *= if is_far { share[axis] } else { 1.0 - share[axis] };
+            let place = low[axis] as i64 + i64::from(is_far);
+            if place < 0 || place >= dims[axis] as i64 {
+                return 0.0;
+            }
+            index += place as usize * stride;
+            stride *= dims[axis];
+        }
+        weight * values[index]
+    };
+    (0..8).map(corner).sum()
+}
+
+/// Between the four rays around the middle of a block.
+fn between_rays(frame: &SweepFrame, deposits: &[f64], block: [usize; 3]) -> f64 {
+    let (slice, place) = frame.place(block);
+    let low = place.floor().max(DVec2::ZERO);
+    let share = place - low;
+    let at = |i: f64, j: f64| {
+        let ray = (low.x + i) as usize + (low.y + j) as usize * frame.size[0] as usize;
+        deposits[ray * frame.slices() + slice]
+    };
+    let row = |j: f64| at(0.0, j) * (1.0 - share.x) + at(1.0, j) * share.x;
+    row(0.0) * (1.0 - share.y) + row(1.0) * share.y
+}

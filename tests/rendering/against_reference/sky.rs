@@ -1,0 +1,147 @@
+//! Light from all around against the reference: what is open of the sky, and pictures under it.
+
+use chiaroscuro::data::{Dataset, Volume};
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{
+    Classification, CropBox, CutEffect, Engine, LightStorage, Resolution, Settings, ShadowAlgorithm, Sides,
+    Sky, SkyMode,
+};
+use chiaroscuro::reference::{Fault, Openness, Options, Reference};
+use glam::DVec3;
+
+use super::check_volume;
+use super::presence::{two_lobes, waves};
+use crate::common::context;
+use crate::compare::{compare, flat32};
+use crate::scenes;
+use crate::thresholds::SAME_OPENNESS;
+
+const N: usize = 22;
+
+/// A sky with colours that leans to one side.
+fn under_a_sky(settings: Settings) -> Settings {
+    let sky = Sky {
+        mode: SkyMode::Gradient,
+        intensity: 0.9,
+        zenith: [0.7, 0.8, 1.0],
+        horizon: [0.9, 0.8, 0.7],
+        ground: [0.3, 0.2, 0.1],
+        tilt_deg: 35.0,
+        turn_deg: 120.0,
+        directions: 14,
+        ..Sky::default()
+    };
+    Settings { sky, ..settings }
+}
+
+fn creature() -> Volume {
+    scenes::creature(N, DVec3::new(1.0, 1.0, 1.4))
+}
+
+fn cut() -> Settings {
+    let mut settings = under_a_sky(scenes::look());
+    settings.cuts.crop =
+        CropBox { on: true, low: [0.0, 0.2, 0.0], high: [0.6, 1.0, 0.9], effect: CutEffect::Removed };
+    settings
+}
+
+/// The moments of a reference as the GPU lays them out.
+fn flat(openness: &Openness) -> Vec<f64> {
+    let [x, y, z] = &openness.first;
+    let of = |at: usize| [x[at], y[at], z[at], openness.mean[at]];
+    (0..openness.mean.len()).flat_map(of).collect()
+}
+
+fn moments(volume: &Volume, settings: &Settings) -> Vec<f64> {
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    flat32(&renderer.openness(&Dataset::new(volume.clone()), settings).expect("moments are read back"))
+}
+
+#[test]
+fn what_is_open_of_the_sky_is_what_the_reference_says() {
+    for (what, volume, settings) in [
+        ("creature", creature(), under_a_sky(scenes::look())),
+        ("cut", creature(), cut()),
+        ("missing voxels", waves(N, DVec3::ONE, true), under_a_sky(two_lobes())),
+    ] {
+        for resolution in [Resolution::Full, Resolution::Half, Resolution::Quarter] {
+            for classification in [Classification::Post, Classification::Pre] {
+                let mut settings = settings.clone();
+                settings.sky.resolution = resolution;
+                settings.sampling.classification = classification;
+                let expected = Reference::new(&volume, &settings, Options::default()).openness();
+                let what = format!("{what}, {resolution:?}, {classification:?}");
+                compare(&what, &moments(&volume, &settings), &flat(&expected), SAME_OPENNESS)
+                    .expect("the same");
+            }
+        }
+    }
+}
+
+#[test]
+fn mistakes_in_it_are_noticed() {
+    let (volume, settings) = (creature(), under_a_sky(scenes::look()));
+    let right = moments(&volume, &settings);
+    let of = |settings: &Settings, fault: Fault| {
+        let options = Options { fault, ..Options::default() };
+        flat(&Reference::new(&volume, settings, options).openness())
+    };
+    let differs = |what: &str, wrong: &[f64]| {
+        assert!(compare(what, &right, wrong, SAME_OPENNESS).is_err(), "{what} is not noticed");
+    };
+    differs("shifted by half a voxel", &of(&settings, Fault::ShiftedKernel));
+    let mut denser = settings.clone();
+    denser.sky.density_scale = 1.05;
+    differs("5 % denser", &of(&denser, Fault::None));
+    let mut cut = settings.clone();
+    cut.cuts.crop = CropBox { on: true, high: [0.8, 1.0, 1.0], ..CropBox::default() };
+    differs("not cut", &of(&cut, Fault::None));
+    let mut fewer = settings.clone();
+    fewer.sky.directions = 13;
+    differs("a direction less", &of(&fewer, Fault::None));
+    let mirrored: Vec<f64> =
+        of(&settings, Fault::None).chunks(4).flat_map(|m| [-m[0], -m[1], -m[2], m[3]]).collect();
+    differs("light from the other side", &mirrored);
+}
+
+#[test]
+fn pictures_under_a_sky() {
+    let check = |what: &str, settings: &Settings| check_volume(what, creature(), settings, None);
+    let lit = under_a_sky(scenes::look());
+    check("under a sky", &lit);
+    check("cut", &cut());
+    let mut white = lit.clone();
+    white.sky.mode = SkyMode::White;
+    white.shading.sides = Sides::Two;
+    white.shadows.strength = 0.7;
+    check("white, both sides", &white);
+    let mut open = lit.clone();
+    open.shadows.algorithm = ShadowAlgorithm::Off;
+    check("nothing in its way", &open);
+    let mut direct = lit.clone();
+    direct.shadows.algorithm = ShadowAlgorithm::Direct;
+    check("rays to the light", &direct);
+    let mut quarter = lit.clone();
+    (quarter.sky.resolution, quarter.lights[0].on) = (Resolution::Quarter, false);
+    check("coarse, and no other light", &quarter);
+    let mut scattered = lit.clone();
+    scattered.sampling.engine = Engine::Scatter;
+    check("scattered", &scattered);
+    check_volume("missing voxels", waves(N, DVec3::ONE, true), &under_a_sky(two_lobes()), None);
+}
+
+/// Lights in one volume of colours have the sky beside it.
+#[test]
+fn combined_lights_keep_the_sky() {
+    let mut settings = under_a_sky(scenes::look());
+    settings.shading.specular = 0.0;
+    settings.lights[0].intensity = 1e-6;
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let dataset = Dataset::new(creature());
+    let mut picture = |storage| {
+        settings.shadows.storage = storage;
+        flat32(&crate::common::render(&mut renderer, &dataset, &settings, super::SIZE).light)
+    };
+    let (own, combined) = (picture(LightStorage::PerLight), picture(LightStorage::Combined));
+    compare("combined", &combined, &own, crate::thresholds::SAME_WEIGHTS).expect("the same");
+}
