@@ -35,6 +35,9 @@ struct Floor {
     // Runs of rows of tiles (sheets/tiles.wgsl).
     runs: u32,
     pad0: u32,
+    // Light of an open sky on it.
+    sky: vec3f,
+    pad1: f32,
     lights: array<Light, MAX_LIGHTS>,
 }
 
@@ -117,9 +120,10 @@ fn main(
             bare += one.bare;
         }
         let s = floor_disc.shading;
-        let shown = s.ambient + s.diffuse * floor_disc.light_share * light;
+        let everywhere = s.ambient + floor_disc.sky;
+        let shown = everywhere + s.diffuse * floor_disc.light_share * light;
         let luminance = vec3f(0.2126, 0.7152, 0.0722);
-        let unshadowed = dot(luminance, s.ambient + s.diffuse * floor_disc.light_share * bare);
+        let unshadowed = dot(luminance, everywhere + s.diffuse * floor_disc.light_share * bare);
         let missing = clamp(1.0 - dot(luminance, shown) / max(unshadowed, 1e-6), 0.0, 1.0);
         let whole = vec4f(floor_disc.color * shown, 1.0);
         let shadow = vec4f(0.0, 0.0, 0.0, missing);

@@ -2,11 +2,11 @@
 // direction, V₁, gathered from the rays of a batch around its middle, and added to those of the batches before.
 #import "sky/rays.wgsl"
 
-@group(0) @binding(2) var sheets: texture_3d<f32>;
-@group(0) @binding(3) var clamped: sampler;
-@group(0) @binding(4) var<storage, read_write> sums: array<vec4f>;
+@group(0) @binding(1) var sheets: texture_3d<f32>;
+@group(0) @binding(2) var clamped: sampler;
+@group(0) @binding(3) var<storage, read_write> sums: array<vec4f>;
 // V₁ in rgb, V₀ in a.
-@group(0) @binding(5) var moments: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(4) var moments: texture_storage_3d<rgba16float, write>;
 
 // Directions of a batch.
 override DIRECTIONS: u32 = 4u;
@@ -20,7 +20,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let at = (id.z * sweep.dims.y + id.y) * sweep.dims.x + id.x;
     var sum = sums[at] * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
-        let rays = directions[i];
+        let rays = bound_sweep.rays[i];
         let turned = turned_to(rays, vec3f(id));
         let n = select(slices_of(rays) - 1.0 - turned.x, turned.x, rays.rises == 1u);
         let ray = turned.yz - rays.drift * n - rays.first;

@@ -1,5 +1,8 @@
 // Parallel rays through blocks of voxels, and where blocks lie among them (src/plan/geometry/sweep.rs).
 
+// Most directions of a batch.
+const MAX_SKY_RAYS = 8;
+
 struct SkyRays {
     // Unit vector towards where the light comes from, in scene space.
     towards: vec3f,
@@ -33,11 +36,11 @@ struct Sweep {
     has_sums: f32,
     sheet_scale: vec3f,
     pad0: f32,
+    rays: array<SkyRays, MAX_SKY_RAYS>,
 }
 
 @group(0) @binding(0) var<uniform> bound_sweep: Sweep;
 var<private> sweep: Sweep;
-@group(0) @binding(1) var<storage, read> directions: array<SkyRays>;
 
 fn slices_of(rays: SkyRays) -> f32 {
     return f32(select(select(sweep.dims.x, sweep.dims.y, rays.axis == 1u), sweep.dims.z, rays.axis == 2u));

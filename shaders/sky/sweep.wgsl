@@ -3,9 +3,9 @@
 #import "sky/rays.wgsl"
 #import "common/slab_mean.wgsl"
 
-@group(0) @binding(2) var extinction: texture_3d<f32>;
-@group(0) @binding(3) var clamped: sampler;
-@group(0) @binding(4) var sheets: texture_storage_3d<STORAGE_FORMAT, write>;
+@group(0) @binding(1) var extinction: texture_3d<f32>;
+@group(0) @binding(2) var clamped: sampler;
+@group(0) @binding(3) var sheets: texture_storage_3d<STORAGE_FORMAT, write>;
 
 // Slices in which a ray is less than a block from the grid, along one axis across them: first, and last.
 fn slices_near(start: f32, drift: f32, blocks: f32, last: f32) -> vec2f {
@@ -18,7 +18,8 @@ fn slices_near(start: f32, drift: f32, blocks: f32, last: f32) -> vec2f {
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     sweep = bound_sweep;
-    let rays = directions[id.z];
+    // Not from the copy: an index that varies would keep that as an array in memory.
+    let rays = bound_sweep.rays[id.z];
     if (any(id.xy >= rays.size)) {
         return;
     }

@@ -68,7 +68,10 @@ impl Reference<'_> {
                 bare[channel] += rgb * hood;
             }
         }
-        let reflected = |light: [f64; 3]| light.map(|c| self.settings.flat_ambient() + shading.diffuse * c);
+        let sky = self.settings.sky_on_floor();
+        let reflected = |light: [f64; 3]| {
+            [0, 1, 2].map(|c| self.settings.flat_ambient() + sky[c] + shading.diffuse * light[c])
+        };
         let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
         let (shown, unshadowed) = (reflected(fallen), reflected(bare));
         if floor.shadow_only {

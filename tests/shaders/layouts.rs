@@ -220,7 +220,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
             "sky/sweep.wgsl",
             layout!(SkyRays { towards, weight, drift, first, size, axis, rises, step, layer, pad0, pad1 }),
         ),
-        ("sky/sweep.wgsl", layout!(Sweep { dims, share, block_scale, has_sums, sheet_scale, pad0 })),
+        ("sky/sweep.wgsl", layout!(Sweep { dims, share, block_scale, has_sums, sheet_scale, pad0, rays })),
         ("light/combine.wgsl", layout!(Combine { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         (
             "eye/floor.wgsl",
@@ -242,6 +242,8 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 end_row,
                 runs,
                 pad0,
+                sky,
+                pad1,
                 lights
             }),
         ),

@@ -92,6 +92,10 @@ fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
         words.push('\n');
         words.push_str(&text::probe::of_light(&light.name, &reason(light, arrival)));
     }
+    if let Some(open) = found.sky {
+        words.push('\n');
+        words.push_str(&text::probe::of_light(text::sections::SKY, &text::probe::open(open)));
+    }
     words
 }
 

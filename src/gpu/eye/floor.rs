@@ -133,6 +133,8 @@ fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLigh
         end_row: frame.size[1],
         runs: 1,
         pad0: 0,
+        sky: settings.sky_on_floor().map(|c| c as f32),
+        pad1: 0.0,
         lights: packed,
     }
 }

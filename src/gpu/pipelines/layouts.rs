@@ -80,7 +80,6 @@ const FOOTPRINT_TABLE: Slot = Slot::list(7, "footprint_table", FOOTPRINT_TABLE_B
 const RAYS: Slot = Slot::list(8, "rays", 16, Access::ReadWrite);
 
 const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
-const DIRECTIONS: Slot = Slot::list(1, "directions", size_of::<uniforms::SkyRays>() as u64, Access::Read);
 
 /// What display passes read; `shown` is what they write.
 const fn display(shown: Format) -> [Slot; 4] {
@@ -289,21 +288,19 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
         "sky/moments.wgsl",
         &[&[
             SWEEP,
-            DIRECTIONS,
-            Slot::sampled(2, "sheets", Shape::Volume),
-            Slot::sampler(3, "clamped"),
-            Slot::list(4, "sums", 16, Access::ReadWrite),
-            Slot::target(5, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            Slot::sampled(1, "sheets", Shape::Volume),
+            Slot::sampler(2, "clamped"),
+            Slot::list(3, "sums", 16, Access::ReadWrite),
+            Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
         ]],
     ),
     (
         "sky/sweep.wgsl",
         &[&[
             SWEEP,
-            DIRECTIONS,
-            Slot::sampled(2, "extinction", Shape::Volume),
-            Slot::sampler(3, "clamped"),
-            Slot::target(4, "sheets", Shape::Volume, Format::Storage),
+            Slot::sampled(1, "extinction", Shape::Volume),
+            Slot::sampler(2, "clamped"),
+            Slot::target(3, "sheets", Shape::Volume, Format::Storage),
         ]],
     ),
     ("volume/downsample.wgsl", &[RESAMPLE]),

@@ -355,6 +355,9 @@ pub struct Blocks {
     pub shading_cut: Cut,
 }
 
+/// Most directions of a batch, as `sky/rays.wgsl` has it.
+pub const MAX_SKY_RAYS: usize = 8;
+
 /// `sky/rays.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -382,6 +385,7 @@ pub struct Sweep {
     pub has_sums: f32,
     pub sheet_scale: [f32; 3],
     pub pad0: f32,
+    pub rays: [SkyRays; MAX_SKY_RAYS],
 }
 
 /// `eye/floor.wgsl`.
@@ -405,6 +409,8 @@ pub struct Floor {
     pub end_row: u32,
     pub runs: u32,
     pub pad0: u32,
+    pub sky: [f32; 3],
+    pub pad1: f32,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 

@@ -14,10 +14,7 @@ use crate::model::{Classification, Settings};
 use crate::plan::{SkyKey, SweepFrame, stretch_reach, sweep_directions};
 
 /// Blocks times directions of a batch: some 0.2 s on a software adapter.
-const BATCH_BLOCKS: usize = 1 << 22;
-
-/// Most directions of a batch.
-const BATCH_DIRECTIONS: usize = 8;
+const BATCH_BLOCKS: usize = 1 << 23;
 
 /// Most layers of a 3D texture everywhere.
 const MOST_LAYERS: usize = 2048;
@@ -60,7 +57,7 @@ impl SkyBuild {
             .collect();
         let blocks: usize = volume.dims.iter().product();
         let slices = volume.dims.into_iter().max().unwrap_or(1);
-        let each = (BATCH_BLOCKS / blocks.max(1)).min(MOST_LAYERS / slices).clamp(1, BATCH_DIRECTIONS);
+        let each = (BATCH_BLOCKS / blocks.max(1)).min(MOST_LAYERS / slices).clamp(1, uniforms::MAX_SKY_RAYS);
         let textures = Textures::new(gpu.context, volume.dims, &frames, each)?;
         Ok(Self { frames, each, density_scale: key.density_scale(), textures })
     }
@@ -139,10 +136,11 @@ impl SkyBuild {
         let taken: Range<usize> = batch * self.each..((batch + 1) * self.each).min(self.frames.len());
         let frames = &self.frames[taken.clone()];
         let slices = volume.dims.into_iter().max().unwrap_or(1);
-        let mut rays: Vec<_> =
-            frames.iter().enumerate().map(|(at, frame)| pack(frame, edge, at * slices)).collect();
-        // Of no weight, and without rays.
-        rays.resize_with(self.each, bytemuck::Zeroable::zeroed);
+        // What is left over has no weight, and no rays.
+        let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
+        for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
+            *slot = pack(frame, edge, at * slices);
+        }
         let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
         let uniform = uniforms::Sweep {
             dims: volume.dims.map(|n| n as u32),
@@ -151,16 +149,15 @@ impl SkyBuild {
             has_sums: if batch == 0 { 0.0 } else { 1.0 },
             sheet_scale: reciprocal(*sheet_size),
             pad0: 0.0,
+            rays,
         };
         let uniform = gpu.uniform("Sky::sweep", uniform);
-        let directions = gpu.list("Sky::directions", &rays);
 
         let sweep =
             gpu.shaders.pipeline(&SweepVariant { shader: "sky/sweep.wgsl", directions: self.each })?;
         let clamped = || sampler("clamped", &gpu.volume.clamped);
-        let shared = || [buffer("bound_sweep", &uniform), buffer("directions", &directions)];
-        let mut entries = shared().to_vec();
-        entries.extend([view_of("extinction", blocks), clamped(), view_of("sheets", sheets)]);
+        let shared = buffer("bound_sweep", &uniform);
+        let entries = [shared.clone(), view_of("extinction", blocks), clamped(), view_of("sheets", sheets)];
         let own = gpu.bind("Sky::sweep", &sweep, 0, &entries);
         let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);
         let groups = [across(0), across(1), frames.len() as u32];
@@ -168,13 +165,13 @@ impl SkyBuild {
 
         let gather =
             gpu.shaders.pipeline(&SweepVariant { shader: "sky/moments.wgsl", directions: self.each })?;
-        let mut entries = shared().to_vec();
-        entries.extend([
+        let entries = [
+            shared,
             view_of("sheets", sheets),
             clamped(),
             buffer("sums", sums),
             view_of("moments", &volume.view),
-        ]);
+        ];
         let own = gpu.bind("Sky::moments", &gather, 0, &entries);
         let groups = volume.dims.map(|n| (n as u32).div_ceil(4));
         pass::dispatch(encoder, "Sky::moments", &gather, &[&own], groups);

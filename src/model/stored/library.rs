@@ -1,8 +1,9 @@
 //! Presets that come with the program: transfer functions and materials by domain.
 //!
 //! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the range that the
-//! look chooses (`"_values": "relative"`). Those of the paper also say how shadows and sheets are made, as the paper has
-//! it, and that of the benchmarks says everything; by all others camera, lights, shadows and sampling stay as they are.
+//! look chooses (`"_values": "relative"`). Those of light are for any data: they have a sky, and mostly no other light.
+//! Those of the paper also say how shadows and sheets are made, as the paper has it, and that of the benchmarks says
+//! everything; by all others camera, lights, shadows and sampling stay as they are.
 
 use serde_json::Value;
 
@@ -24,7 +25,7 @@ macro_rules! presets {
 }
 
 /// All of them, domain by domain.
-pub const PRESETS: [Preset; 15] = presets![
+pub const PRESETS: [Preset; 19] = presets![
     "ct/bone",
     "ct/muscle_and_skin",
     "ct/angiography",
@@ -36,6 +37,10 @@ pub const PRESETS: [Preset; 15] = presets![
     "simulation/fuel",
     "simulation/cloud",
     "simulation/signed",
+    "light/studio",
+    "light/overcast",
+    "light/window",
+    "light/hollows",
     "paper/lobster",
     "paper/fuel",
     "paper/chair",
@@ -65,6 +70,7 @@ impl Preset {
             "mr" => ["MR", "Magnetic resonance"],
             "microscopy" => ["Microscopy"; 2],
             "simulation" => ["Simulation"; 2],
+            "light" => ["Light", "Light, for any data"],
             "paper" => ["Paper", "Splatting with shadows"],
             other => [other; 2],
         }

@@ -8,6 +8,7 @@ use glam::DVec3;
 use self::rays::Rays;
 use crate::data::Volume;
 use crate::model::{LightKind, Settings, Sides};
+use crate::plan::sweep_directions;
 
 /// What is seen somewhere in the picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +25,8 @@ pub struct Probe {
     pub opacity: f64,
     /// What gets there, for every light of the settings.
     pub lights: Vec<Arrival>,
+    /// How open it is to the sky, if there is one: 1 for a place or a surface with nothing in the way.
+    pub sky: Option<f64>,
 }
 
 /// What of a light arrives at a point.
@@ -37,6 +40,9 @@ pub struct Arrival {
     /// `None` where nothing is a surface.
     pub facing: Option<f64>,
 }
+
+/// Rays to the sky: a few milliseconds.
+const PROBED_DIRECTIONS: u32 = 64;
 
 /// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
@@ -58,6 +64,20 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     let turned = if falls { -1.0 } else { 1.0 };
     let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
     let shading_cut = settings.cuts.shading().region(scene);
+    let sky = settings.sky.is_on().then(|| {
+        if !settings.has_sky_volume() {
+            return 1.0;
+        }
+        let left = |towards: DVec3| {
+            let depth = rays.optical_depth(&lighting, &shading_cut, point, towards, f64::INFINITY);
+            (-depth * settings.sky.density_scale).exp()
+        };
+        // Of a surface, the share of the half of the sky that it faces, each direction by its cosine.
+        let facing = |towards: DVec3| if normal == DVec3::ZERO { 1.0 } else { normal.dot(towards).max(0.0) };
+        let directions = sweep_directions(PROBED_DIRECTIONS);
+        let open: f64 = directions.iter().map(|&towards| facing(towards) * left(towards)).sum();
+        open / directions.into_iter().map(facing).sum::<f64>().max(1e-9)
+    });
     let lights = settings
         .lights
         .iter()
@@ -92,6 +112,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         value,
         opacity: settings.transfer.opacity_at(range.at(volume.density_of(value))),
         lights,
+        sky,
     })
 }
 
@@ -99,7 +120,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
 mod tests {
     use super::*;
     use crate::data::Samples;
-    use crate::model::{ControlPoint, Length, Light, TransferFunction};
+    use crate::model::{ControlPoint, Length, Light, ShadowAlgorithm, SkyMode, TransferFunction};
 
     /// A slab of stuff at z = 10 … 13 over a block at z = 0 … 5.
     fn slab_over_block() -> (Volume, Settings) {
@@ -127,6 +148,23 @@ mod tests {
             ..Settings::default()
         };
         (volume, settings)
+    }
+
+    #[test]
+    fn what_lies_under_something_is_less_open_to_the_sky() {
+        let (volume, mut settings) = slab_over_block();
+        let open = |settings: &Settings, from: DVec3| {
+            probe(&volume, settings, from, (DVec3::ZERO - from).normalize()).unwrap().sky
+        };
+        assert_eq!(open(&settings, DVec3::new(0.0, 0.0, 3.0)), None);
+        settings.sky.mode = SkyMode::White;
+        let above = open(&settings, DVec3::new(0.0, 0.0, 3.0)).unwrap();
+        assert!(above > 0.9, "{above}");
+        // Between the layers, from the side: the top of the block.
+        let between = open(&settings, DVec3::new(-3.0, 0.0, 0.6)).unwrap();
+        assert!((0.02..0.6).contains(&between), "{between}");
+        settings.shadows.algorithm = ShadowAlgorithm::Off;
+        assert_eq!(open(&settings, DVec3::new(-3.0, 0.0, 0.6)), Some(1.0));
     }
 
     #[test]

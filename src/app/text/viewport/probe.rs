@@ -38,6 +38,11 @@ pub(crate) fn arrives(share: f64) -> String {
     format!("{:.0} % arrives", 100.0 * share)
 }
 
+/// How open a place is to the sky, as a share.
+pub(crate) fn open(share: f64) -> String {
+    format!("{:.0} % open", 100.0 * share)
+}
+
 /// How much of a light gets there, and at what angle.
 pub(crate) fn arrival(through: &str, angle_deg: Option<f64>) -> String {
     angle_deg.map_or_else(|| through.to_owned(), |angle| format!("{through}, at {angle:.0}° to the surface"))
