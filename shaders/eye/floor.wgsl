@@ -5,6 +5,7 @@
 #import "density/table.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
+#import "shading/sky.wgsl"
 #import "common/space.wgsl"
 #import "sheets/tiles.wgsl"
 
@@ -35,9 +36,10 @@ struct Floor {
     // Runs of rows of tiles (sheets/tiles.wgsl).
     runs: u32,
     pad0: u32,
-    // Light of an open sky on it.
-    sky: vec3f,
-    pad1: f32,
+    sky: Sky,
+    // From scene space to texture coordinates of the map of what it sees of the sky: vectors, and what is added.
+    map_x: vec4f,
+    map_y: vec4f,
     lights: array<Light, MAX_LIGHTS>,
 }
 
@@ -47,6 +49,9 @@ var<private> floor_disc: Floor;
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var picture: texture_2d<f32>;
 @group(0) @binding(4) var floor_light: texture_storage_2d<rgba16float, write>;
+
+// C₁ in rgb, C₀ in a: see sky/floor_map.wgsl.
+@group(0) @binding(5) var sky_map: texture_3d<f32>;
 
 // Lights that are on; those that material attenuates come first.
 override LIGHTS: u32 = 1u;
@@ -88,6 +93,33 @@ fn fallen(light: Light, p: vec3f, place: vec3f, shadowed: bool) -> Fallen {
     return Fallen(bare * select(hood, received(s, left * hood), shadowed), bare * hood);
 }
 
+// What an open floor sees of the sky: moments over a hemisphere.
+fn bare_sky() -> vec4f {
+    return vec4f(floor_disc.up * (2.0 / 3.0), 1.0);
+}
+
+// What it sees of it at a place.
+fn open_sky(place: vec3f) -> vec4f {
+#if SKY > 1
+    // The map is one layer of a volume, for which there is something else to bind where there is none.
+    let at = vec3f(
+        dot(floor_disc.map_x, vec4f(place, 1.0)),
+        dot(floor_disc.map_y, vec4f(place, 1.0)),
+        0.5,
+    );
+    let stored = textureSampleLevel(sky_map, clamped, at, 0.0);
+    return mix(bare_sky(), stored, floor_disc.shading.strength);
+#else
+    return bare_sky();
+#endif
+}
+
+// The sky's light on it, as a share of its colour.
+fn fallen_from_sky(open: vec4f) -> vec3f {
+    let sky = floor_disc.sky;
+    return max(vec3f(dot(sky.red, open), dot(sky.green, open), dot(sky.blue, open)), vec3f(0.0));
+}
+
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3u,
@@ -120,10 +152,11 @@ fn main(
             bare += one.bare;
         }
         let s = floor_disc.shading;
-        let everywhere = s.ambient + floor_disc.sky;
+        let open = open_sky(place);
+        let everywhere = s.ambient + fallen_from_sky(open);
         let shown = everywhere + s.diffuse * floor_disc.light_share * light;
         let luminance = vec3f(0.2126, 0.7152, 0.0722);
-        let unshadowed = dot(luminance, everywhere + s.diffuse * floor_disc.light_share * bare);
+        let unshadowed = dot(luminance, s.ambient + fallen_from_sky(bare_sky()) + s.diffuse * floor_disc.light_share * bare);
         let missing = clamp(1.0 - dot(luminance, shown) / max(unshadowed, 1e-6), 0.0, 1.0);
         let whole = vec4f(floor_disc.color * shown, 1.0);
         let shadow = vec4f(0.0, 0.0, 0.0, missing);

@@ -2,20 +2,10 @@
 // what is open of the sky. SKY: 1 nothing is in its way, 2 a volume says what is.
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"
+#import "shading/sky.wgsl"
 
 // V₁ in rgb, V₀ in a: see sky/moments.wgsl.
 @group(2) @binding(8) var sky_texture: texture_3d<f32>;
-
-struct Sky {
-    // For each colour the slope l₁, in scene space, and the mean l₀.
-    red: vec4f,
-    green: vec4f,
-    blue: vec4f,
-    // Index space to texture coordinates of the volume.
-    lookup: vec3f,
-    // How far in front of a surface it is looked up, in scene units: what is closer is the surface itself.
-    ahead: f32,
-}
 
 // The moments at an index-space point.
 fn openness(sky: Sky, p: vec3f, strength: f32) -> vec4f {

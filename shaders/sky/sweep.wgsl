@@ -1,19 +1,12 @@
 // The march of a sky's light along parallel rays: one thread per ray walks slices of blocks, and stores for each the
 // transmittance that it deposits there, as the light pass does (sheets/march.wgsl).
 #import "sky/rays.wgsl"
+#import "sky/near.wgsl"
 #import "common/slab_mean.wgsl"
 
 @group(0) @binding(1) var extinction: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var sheets: texture_storage_3d<STORAGE_FORMAT, write>;
-
-// Slices in which a ray is less than a block from the grid, along one axis across them: first, and last.
-fn slices_near(start: f32, drift: f32, blocks: f32, last: f32) -> vec2f {
-    let speed = select(drift, 1e-6, abs(drift) < 1e-6);
-    let a = (-1.0 - start) / speed;
-    let b = (blocks - start) / speed;
-    return clamp(vec2f(floor(min(a, b)), ceil(max(a, b))), vec2f(0.0, -1.0), vec2f(last + 1.0, last));
-}
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -26,11 +19,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let size = turned_to(rays, vec3f(sweep.dims));
     let last = size.x - 1.0;
     let start = vec2f(id.xy) + rays.first;
-    let near_u = slices_near(start.x, rays.drift.x, size.y, last);
-    let near_v = slices_near(start.y, rays.drift.y, size.z, last);
-    let end = min(near_u.y, near_v.y);
+    let span = slices_of_ray(rays, start, size);
     var t = 1.0;
-    for (var n = max(near_u.x, near_v.x); n <= end; n += 1.0) {
+    for (var n = span.x; n <= span.y; n += 1.0) {
         let slice = select(last - n, n, rays.rises == 1u);
         let block = turned_from(rays, vec3f(slice, start + rays.drift * n));
         let tau = textureSampleLevel(extinction, clamped, (block + 1.5) * sweep.block_scale, 0.0).r * rays.step;

@@ -27,7 +27,7 @@ pub use self::geometry::slice_order::SliceOrder;
 pub use self::geometry::sweep::{SweepFrame, sweep_directions};
 pub use keys::{
     Attenuation, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, LitLight,
-    LitLights, OpacityKey, SkyKey, TablesKey,
+    LitLights, OpacityKey, SkyFloor, SkyKey, TablesKey,
 };
 pub use probe::{Arrival, Probe, probe};
 pub use request::{RenderOptions, Request, VolumeKey};

@@ -7,6 +7,7 @@ use super::Reference;
 use super::shade::linear_from_srgb;
 use super::shadow_ray::ShadowRays;
 use crate::model::{LightKind, Projection, SceneLight, ShadowAlgorithm};
+use crate::plan::SweepFrame;
 
 impl Reference<'_> {
     /// The floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
@@ -24,12 +25,13 @@ impl Reference<'_> {
                 )
             })
             .collect();
+        let sky = self.sky_rays();
         let [width, height] = size.map(f64::from);
         let camera = &settings.camera;
         let pixel = |at: u32| {
             let (i, j) = (f64::from(at % size[0]) + 0.5, f64::from(at / size[0]) + 0.5);
             let (eye, direction) = camera.ray_through(i, j, width, height);
-            self.floor_along(eye, direction, &lamps)
+            self.floor_along(eye, direction, &lamps, &sky)
         };
         (0..size[0] * size[1]).into_par_iter().map(pixel).collect()
     }
@@ -39,6 +41,7 @@ impl Reference<'_> {
         eye: DVec3,
         direction: DVec3,
         lamps: &[(SceneLight, Option<ShadowRays<'_>>)],
+        sky: &[(SweepFrame, Vec<f64>)],
     ) -> [f64; 4] {
         let (floor, shading) = (&self.settings.floor, &self.settings.shading);
         let up = self.settings.camera.up.direction();
@@ -68,12 +71,12 @@ impl Reference<'_> {
                 bare[channel] += rgb * hood;
             }
         }
-        let sky = self.settings.sky_on_floor();
-        let reflected = |light: [f64; 3]| {
+        let [sky, open_sky] = self.sky_on_floor(sky, index);
+        let reflected = |sky: [f64; 3], light: [f64; 3]| {
             [0, 1, 2].map(|c| self.settings.flat_ambient() + sky[c] + shading.diffuse * light[c])
         };
         let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
-        let (shown, unshadowed) = (reflected(fallen), reflected(bare));
+        let (shown, unshadowed) = (reflected(sky, fallen), reflected(open_sky, bare));
         if floor.shadow_only {
             let missing = (1.0 - luminance(shown) / luminance(unshadowed).max(1e-6)).clamp(0.0, 1.0);
             return [0.0, 0.0, 0.0, presence * missing];

@@ -61,6 +61,46 @@ impl Reference<'_> {
         Openness { dims, divisor, mean: mean_of(3), first: [mean_of(0), mean_of(1), mean_of(2)] }
     }
 
+    /// Rays from as many directions and as fine as the settings say, and what they deposit; none where nothing attenuates
+    /// a sky.
+    pub(super) fn sky_rays(&self) -> Vec<(SweepFrame, Vec<f64>)> {
+        let sky = &self.settings.sky;
+        if !self.settings.has_sky_volume() {
+            return Vec::new();
+        }
+        let divisor = sky.resolution.divisor();
+        let extinction = self.blocks(self.scene.dims.map(|n| n.div_ceil(divisor)), divisor);
+        let of = |towards| {
+            let frame = SweepFrame::new(&self.scene, divisor, towards);
+            let deposits = march(&frame, &extinction);
+            (frame, deposits)
+        };
+        sweep_directions(sky.directions).into_iter().map(of).collect()
+    }
+
+    /// The light of the sky on a floor that faces up, at an index-space point, as a share of its colour: E/π = Σ L(ω) T
+    /// max(ω · up, 0) over Σ max(ω · up, 0), with what is left of the light of each direction; and the same of an open
+    /// floor under a sky of infinitely many: l₀ + ⅔ l₁ · up.
+    pub(super) fn sky_on_floor(&self, rays: &[(SweepFrame, Vec<f64>)], point: DVec3) -> [[f64; 3]; 2] {
+        let up = self.settings.camera.up.direction();
+        let Some(sky) = self.settings.sky.radiance(self.settings.camera.up) else { return [[0.0; 3]; 2] };
+        let bare = [0, 1, 2].map(|c| sky.mean[c] + sky.slope[c].dot(up) * 2.0 / 3.0);
+        let strength = self.settings.shadows.strength;
+        let weights: f64 = rays.iter().map(|(frame, _)| frame.towards.dot(up).max(0.0)).sum();
+        if weights == 0.0 {
+            return [bare; 2];
+        }
+        let place = (point + 0.5) / self.settings.sky.resolution.divisor() as f64 - 0.5;
+        let seen = [0, 1, 2].map(|c| {
+            let from = |(frame, deposits): &(SweepFrame, Vec<f64>)| {
+                let radiance = sky.mean[c] + sky.slope[c].dot(frame.towards);
+                radiance * frame.towards.dot(up).max(0.0) * passed(frame, deposits, place)
+            };
+            rays.iter().map(from).sum::<f64>() / weights
+        });
+        [[0, 1, 2].map(|c| (bare[c] + strength * (seen[c] - bare[c])).max(0.0)), bare]
+    }
+
     /// The mean extinction of eight places in each block, or of the one voxel that it is.
     fn blocks(&self, dims: [usize; 3], divisor: usize) -> Vec<f64> {
         let table = self.gathered_table(Side::Lighting);
@@ -164,6 +204,29 @@ fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
         weight * values[index]
     };
     (0..8).map(corner).sum()
+}
+
+/// What of the light gets to a place in block units, which may lie beside or behind the grid: between the four rays around
+/// it, each as far as it has come there.
+fn passed(frame: &SweepFrame, deposits: &[f64], place: DVec3) -> f64 {
+    let along = place[frame.axis];
+    let last = frame.slices() as f64 - 1.0;
+    let n = if frame.rises { along } else { last - along };
+    let across = DVec2::new(place[(frame.axis + 1) % 3], place[(frame.axis + 2) % 3]);
+    let ray = across - frame.drift * n - DVec2::new(frame.first[0].into(), frame.first[1].into());
+    let low = ray.floor();
+    let share = ray - low;
+    let at = |i: f64, j: f64| {
+        let (i, j) = (low.x + i, low.y + j);
+        let is_ray = i >= 0.0 && j >= 0.0 && i < f64::from(frame.size[0]) && j < f64::from(frame.size[1]);
+        if !is_ray || n < 0.0 {
+            return 1.0;
+        }
+        let slice = (n + 0.5).floor().min(last) as usize;
+        deposits[(i as usize + j as usize * frame.size[0] as usize) * frame.slices() + slice]
+    };
+    let row = |j: f64| at(0.0, j) * (1.0 - share.x) + at(1.0, j) * share.x;
+    row(0.0) * (1.0 - share.y) + row(1.0) * share.y
 }
 
 /// Between the four rays around the middle of a block.

@@ -229,6 +229,9 @@ pub(crate) const LIMITS_AGREE: f64 = 0.1;
 /// *Exact* against the limit, likewise: its slabs are a quarter of a voxel, and its numbers have 16 and 32 bits.
 pub(crate) const EXACT_OF_LIMIT: f64 = 0.3;
 
+/// A floor under a sky: its map has a texel for 0.03 scene units, where light of one direction ends within two voxels.
+pub(crate) const FLOOR_UNDER_A_SKY: Limit = Limit { max: 0.01, rmse: 5e-4 };
+
 /// Openness to the sky from 64 directions at full resolution, absolute: what so many directions and blocks of a voxel
 /// leave of integrals over all of them.
 pub(crate) const OPENNESS: f64 = 0.01;

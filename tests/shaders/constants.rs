@@ -133,6 +133,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("scatter/reverse.wgsl", [8, 8, 1]),
         ("scatter/splat.wgsl", [8, 8, 4]),
         ("sky/blocks.wgsl", [4, 4, 4]),
+        ("sky/floor_map.wgsl", [8, 8, 1]),
         ("sky/moments.wgsl", [4, 4, 4]),
         ("sky/sweep.wgsl", [8, 8, 1]),
         ("volume/downsample.wgsl", [8, 8, 4]),

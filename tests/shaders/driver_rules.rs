@@ -15,7 +15,10 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
         body.lines().map(str::trim).take_while(|line| line.contains(" = bound_")).collect();
     let declared = code.split("var<uniform> ").skip(1).filter_map(|rest| rest.split(':').next());
     // Of an array whose index varies there is no copy.
-    let reads = |name: &str| code.replace(&format!("{name}.lights[i]"), "").matches(name).count();
+    let reads = |name: &str| {
+        let arrays = [".lights[i]", ".rays[i]", ".rays[id.z]"].map(|of| format!("{name}{of}"));
+        arrays.iter().fold(code.clone(), |code, of| code.replace(of, "")).matches(name).count()
+    };
     let is_late = |name: &&str| {
         let copy = name.strip_prefix("bound_").map(|own| format!("{own} = {name};"));
         !copy.is_some_and(|copy| copies.contains(copy.as_str())) || reads(name) != 2

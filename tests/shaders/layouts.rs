@@ -216,6 +216,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ("scatter/footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
         ("eye/gather.wgsl", layout!(Sky { red, green, blue, lookup, ahead })),
         ("sky/blocks.wgsl", layout!(Blocks { dims, voxel_step, level, offset, edge, pad0, shading_cut })),
+        ("sky/floor_map.wgsl", layout!(FloorMap { origin, share, along_x, size, along_y, pad0, up, pad1 })),
         (
             "sky/sweep.wgsl",
             layout!(SkyRays { towards, weight, drift, first, size, axis, rises, step, layer, pad0, pad1 }),
@@ -243,7 +244,8 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 runs,
                 pad0,
                 sky,
-                pad1,
+                map_x,
+                map_y,
                 lights
             }),
         ),

@@ -5,14 +5,15 @@ use crate::gpu::light::packed::pack_light;
 use crate::gpu::light::raycast::RaycastVariant;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Ends, LightCount, Variant};
+use crate::gpu::pipelines::variant::{Constants, Ends, LightCount, SkyVariant, Variant};
 use crate::gpu::resources::pass;
+use crate::gpu::sky::floor_map::FloorMap;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{Floor, MAX_LIGHTS, Settings, linear_from_srgb};
-use crate::plan::{LitLights, ray_reach};
+use crate::plan::{LitLights, SkyFloor, ray_reach};
 
 /// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
 /// from the eye.
@@ -26,12 +27,14 @@ pub(crate) struct FloorInputs<'a> {
     pub lit: &'a LitLights,
     pub settings: &'a Settings,
     pub options: &'a RenderOptions,
+    /// What it sees of the sky.
+    pub sky: Option<&'a FloorMap>,
 }
 
 /// Draws some rows of the floor, where the volume in `picture` does not cover it.
 pub(crate) fn draw(
     gpu: Gpu<'_>,
-    FloorInputs { tables, eye, lit, settings, options }: FloorInputs<'_>,
+    FloorInputs { tables, eye, lit, settings, options, sky }: FloorInputs<'_>,
     picture: &wgpu::TextureView,
     floor_light: &wgpu::TextureView,
     rows: std::ops::Range<u32>,
@@ -64,6 +67,7 @@ pub(crate) fn draw(
             view_of("distances", &tables.light_distances),
             view_of("picture", picture),
             view_of("floor_light", floor_light),
+            view_of("sky_map", sky.map_or(gpu.placeholder, |map| &map.view)),
         ],
     );
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest, tables.lighting_pyramids(volume));
@@ -76,12 +80,13 @@ pub(crate) fn draw(
 pub(crate) struct FloorVariant {
     rays: RaycastVariant,
     lights: LightCount,
+    sky: SkyVariant,
 }
 
 impl FloorVariant {
     /// The floor under so many lights.
     pub(crate) fn of(settings: &Settings, lights: LightCount) -> Self {
-        Self { rays: RaycastVariant::of(settings), lights }
+        Self { rays: RaycastVariant::of(settings), lights, sky: SkyVariant::of(settings) }
     }
 
     /// The floor under what ends there.
@@ -98,6 +103,7 @@ impl Variant for FloorVariant {
     fn constants(&self) -> Constants {
         let mut constants = self.rays.constants();
         constants.extend(self.lights.constants());
+        constants.push(self.sky.constant());
         constants
     }
 }
@@ -111,6 +117,7 @@ fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLigh
     let [a, b, c] = scene.scene_from_index.matrix3.transpose().mul_vec3(up).as_vec3().to_array();
     let offset = scene.scene_from_index.translation.dot(up) as f32;
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
+    let [map_x, map_y] = SkyFloor::of(settings).map_or([[0.0; 4]; 2], FloorMap::lookup);
     let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
     for (slot, light) in packed.iter_mut().zip(lit.all()) {
         *slot = pack_light(&light.light, None, scene, settings);
@@ -133,8 +140,9 @@ fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLigh
         end_row: frame.size[1],
         runs: 1,
         pad0: 0,
-        sky: settings.sky_on_floor().map(|c| c as f32),
-        pad1: 0.0,
+        sky: eye.uniform().sky,
+        map_x,
+        map_y,
         lights: packed,
     }
 }

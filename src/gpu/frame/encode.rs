@@ -72,6 +72,7 @@ impl Job<'_> {
                     lit: &self.lit,
                     settings: &self.request.settings,
                     options: &self.options,
+                    sky: self.sky_volume().and_then(|volume| volume.floor.as_ref()),
                 };
                 floor::draw(gpu, inputs, picture, floor, rows.clone(), encoder)
             }

@@ -138,6 +138,14 @@ impl Renderer {
             // A preview may find that its lights are there at full resolution.
             role = self.targets.holding(&keys, shape);
         }
+        let is_floor_drawn = role.is_some_and(|role| self.targets.get(role).floor.holds(&keys.floor));
+        if role.is_some() && !is_floor_drawn && keys.floor.is_some() {
+            // The floor sees the sky, too, where all else is drawn.
+            let now = self.pictures;
+            let wanted =
+                Wanted { context: &self.tools.context, request: &request, options, keys: &keys, now };
+            sky = loaded.value.place_sky(&self.tools, wanted)?;
+        }
         let is_drawn = role.is_some();
         let role = if let Some(role) = role {
             role
@@ -146,7 +154,6 @@ impl Renderer {
                 steps.extend(build.steps(at, options.light_parts.max(1)));
             }
             steps.extend(combine_steps(placed.bricks_to_combine));
-            steps.extend(sky.steps());
             if request.settings.scatters() {
                 let voxels = loaded.value.voxels_for(&self.tools.context, &request.settings)?;
                 scattering = Some(Scattering::new(&self.tools.context, voxels));
@@ -154,6 +161,7 @@ impl Renderer {
             self.targets.fit_back(&self.tools, shape)?;
             Role::Back
         };
+        steps.extend(sky.steps());
 
         let value = &loaded.value;
         let volumes = inputs(&lit, &placed.slots, value);

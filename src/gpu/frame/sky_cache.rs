@@ -9,7 +9,7 @@ use crate::gpu::sky::sweep::SkyBuild;
 use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::Gpu;
 use crate::gpu::{GpuError, RenderOptions};
-use crate::plan::SkyKey;
+use crate::plan::{SkyFloor, SkyKey};
 
 /// Volumes that are kept: that of the picture, that of its previews, and one that undoing a change finds again.
 const MOST_KEPT: usize = 3;
@@ -50,7 +50,12 @@ impl Loaded {
         }
         let Some(full) = &keys.sky else { return Ok(PlacedSky::default()) };
         let coarse = request.coarse.map(|_| full.coarse());
-        let find = |key: &SkyKey| self.skies.iter().position(|known| known.holds(key));
+        // What a floor sees is found together with all else.
+        let floor = SkyFloor::of(&request.settings);
+        let has_floor =
+            |known: &SkyVolume| floor.is_none() || known.floor.as_ref().map(|map| map.place) == floor;
+        let find =
+            |key: &SkyKey| self.skies.iter().position(|known| known.holds(key) && has_floor(&known.value));
         let found = find(full).or_else(|| coarse.as_ref().and_then(find));
         if let Some(slot) = found {
             self.skies[slot].value.last_used = now;
@@ -58,12 +63,13 @@ impl Loaded {
             return Ok(PlacedSky { key: Some(key), slot: Some(slot), build: None });
         }
         let key = coarse.unwrap_or_else(|| full.clone());
+        self.skies.retain(|known| !known.holds(&key));
         if self.skies.len() >= MOST_KEPT {
             let oldest = (0..self.skies.len()).min_by_key(|&at| self.skies[at].value.last_used);
             oldest.map(|at| self.skies.swap_remove(at));
-            tools.pool.forget_groups();
         }
-        let mut fresh = SkyVolume::new(context, self.volume.volume.dims(), key.resolution())?;
+        tools.pool.forget_groups();
+        let mut fresh = SkyVolume::new(context, self.volume.volume.dims(), key.resolution(), floor)?;
         fresh.last_used = now;
         let slot = self.skies.len();
         let build = SkyBuild::new(Gpu::new(tools, &self.volume), &key, &fresh)?;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::packed::{LightInput, LookedUp, light_bind_group};
+use super::packed::{LightInput, light_entries};
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
@@ -116,7 +116,7 @@ impl CombinedLight {
             ],
         );
         let of_volume = gpu.bind_pyramid(&pipeline, tables.eye.pyramid(volume));
-        let of_lights = light_bind_group(gpu, &pipeline, LookedUp { attenuation: &attenuation, sky: None });
+        let of_lights = gpu.bind("Combine::lights", &pipeline, 2, &light_entries(gpu, &attenuation));
         pass::dispatch(
             encoder,
             "Combine::pass",

@@ -1,7 +1,7 @@
 //! Lights as the passes that shade take them: packed for uniforms, and their volumes bound.
 
 use super::volume::LightVolume;
-use crate::gpu::pipelines::binding::{Pipeline, view_of};
+use crate::gpu::pipelines::binding::{Named, Pipeline, view_of};
 use crate::gpu::pipelines::layouts::ATTENUATION;
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::sky::volume::SkyVolume;
@@ -80,15 +80,19 @@ pub(crate) fn pack_sky(settings: &Settings, scene: &SceneSpace, volume: Option<&
     }
 }
 
-/// Bind group 2 of the passes that shade.
+/// The light volumes in the order of their lights, as shaders name them; something in place of those that are not there.
+pub(crate) fn light_entries<'a>(gpu: Gpu<'a>, attenuation: &[&'a wgpu::TextureView]) -> Vec<Named<'a>> {
+    let of_light = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
+    (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect()
+}
+
+/// Bind group 2 of the passes that shade what the eye sees.
 pub(crate) fn light_bind_group(
     gpu: Gpu<'_>,
     pipeline: &Pipeline,
     LookedUp { attenuation, sky }: LookedUp<'_>,
 ) -> wgpu::BindGroup {
-    let of_light = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
-    let mut views: Vec<_> =
-        (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect();
-    views.push(view_of("sky_texture", sky.unwrap_or(gpu.placeholder)));
-    gpu.bind("LightVolume::bind_group", pipeline, 2, &views)
+    let mut entries = light_entries(gpu, attenuation);
+    entries.push(view_of("sky_texture", sky.unwrap_or(gpu.placeholder)));
+    gpu.bind("LightVolume::bind_group", pipeline, 2, &entries)
 }

@@ -47,7 +47,7 @@ pub(crate) const ATTENUATION: [&str; 8] = [
     "attenuation_7",
 ];
 
-/// The light volumes, and that of the sky.
+/// The light volumes.
 const LIGHTS: &[Slot] = &[
     Slot::sampled(0, ATTENUATION[0], Shape::Volume),
     Slot::sampled(1, ATTENUATION[1], Shape::Volume),
@@ -57,6 +57,18 @@ const LIGHTS: &[Slot] = &[
     Slot::sampled(5, ATTENUATION[5], Shape::Volume),
     Slot::sampled(6, ATTENUATION[6], Shape::Volume),
     Slot::sampled(7, ATTENUATION[7], Shape::Volume),
+];
+
+/// The same, and the volume of what is open of the sky.
+const LIGHTS_AND_SKY: &[Slot] = &[
+    LIGHTS[0],
+    LIGHTS[1],
+    LIGHTS[2],
+    LIGHTS[3],
+    LIGHTS[4],
+    LIGHTS[5],
+    LIGHTS[6],
+    LIGHTS[7],
     Slot::sampled(8, "sky_texture", Shape::Volume),
 ];
 
@@ -108,6 +120,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::sampled(2, "distances", Shape::Volume),
                 Slot::loaded(3, "picture", Shape::Picture),
                 Slot::target(4, "floor_light", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+                Slot::sampled(5, "sky_map", Shape::Volume),
             ],
             VOLUME,
         ],
@@ -125,7 +138,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 GRADIENTS,
             ],
             VOLUME_AND_LIGHTING,
-            LIGHTS,
+            LIGHTS_AND_SKY,
         ],
     ),
     (
@@ -193,7 +206,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
         &[
             &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume), LIGHTING_TABLE, GRADIENTS],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS, PRESENCE_TEXTURE, LIGHTING_PYRAMID],
-            LIGHTS,
+            LIGHTS_AND_SKY,
         ],
     ),
     (
@@ -208,7 +221,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::list(6, "voxels", 4, Access::Read),
             ],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE],
-            LIGHTS,
+            LIGHTS_AND_SKY,
             &[Slot::uniform::<uniforms::Phase>(0, "bound_phase")],
         ],
     ),
@@ -283,6 +296,16 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
             ],
             VOLUME,
         ],
+    ),
+    (
+        "sky/floor_map.wgsl",
+        &[&[
+            SWEEP,
+            Slot::uniform::<uniforms::FloorMap>(1, "bound_map"),
+            Slot::loaded(2, "sheets", Shape::Volume),
+            Slot::list(3, "sums", 16, Access::ReadWrite),
+            Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+        ]],
     ),
     (
         "sky/moments.wgsl",

@@ -388,6 +388,20 @@ pub struct Sweep {
     pub rays: [SkyRays; MAX_SKY_RAYS],
 }
 
+/// `sky/floor_map.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct FloorMap {
+    pub origin: [f32; 3],
+    pub share: f32,
+    pub along_x: [f32; 3],
+    pub size: u32,
+    pub along_y: [f32; 3],
+    pub pad0: f32,
+    pub up: [f32; 3],
+    pub pad1: f32,
+}
+
 /// `eye/floor.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -409,8 +423,9 @@ pub struct Floor {
     pub end_row: u32,
     pub runs: u32,
     pub pad0: u32,
-    pub sky: [f32; 3],
-    pub pad1: f32,
+    pub sky: Sky,
+    pub map_x: [f32; 4],
+    pub map_y: [f32; 4],
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 

@@ -138,6 +138,11 @@ impl SkyVariant {
             (true, true) => Self::Looked,
         }
     }
+
+    /// `SKY`.
+    pub(crate) fn constant(self) -> (&'static str, f64) {
+        ("SKY", f64::from(self as u8))
+    }
 }
 
 /// What tells pipelines apart of passes that shade.
@@ -163,7 +168,7 @@ impl ShadingVariant {
         if self.is_combined {
             constants.push(("COMBINED", 1.0));
         }
-        constants.push(("SKY", f64::from(self.sky as u8)));
+        constants.push(self.sky.constant());
         constants
     }
 }

@@ -64,7 +64,7 @@ impl Renderer {
         let key = SkyKey::of(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.value;
         let found = loaded.skies.iter().find(|sky| sky.holds(&key)).ok_or_else(none)?;
-        let floats = read_floats(self.context(), &found.value.texture)?;
+        let floats = read_floats(self.context(), found.value.view.texture())?;
         Ok(floats.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2], texel[3]]).collect())
     }
 

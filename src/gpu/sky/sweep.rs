@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::floor_map::MAP_EDGE;
 use super::volume::SkyVolume;
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
@@ -15,6 +16,9 @@ use crate::plan::{SkyKey, SweepFrame, stretch_reach, sweep_directions};
 
 /// Blocks times directions of a batch: some 0.2 s on a software adapter.
 const BATCH_BLOCKS: usize = 1 << 23;
+
+/// Bytes of four sums.
+const SUM_BYTES: u64 = 16;
 
 /// Most layers of a 3D texture everywhere.
 const MOST_LAYERS: usize = 2048;
@@ -41,6 +45,8 @@ struct Textures {
     sheet_size: [usize; 3],
     /// Moments so far.
     sums: wgpu::Buffer,
+    /// The same of the floor's map.
+    floor_sums: Option<wgpu::Buffer>,
     bytes: u64,
 }
 
@@ -58,7 +64,7 @@ impl SkyBuild {
         let blocks: usize = volume.dims.iter().product();
         let slices = volume.dims.into_iter().max().unwrap_or(1);
         let each = (BATCH_BLOCKS / blocks.max(1)).min(MOST_LAYERS / slices).clamp(1, uniforms::MAX_SKY_RAYS);
-        let textures = Textures::new(gpu.context, volume.dims, &frames, each)?;
+        let textures = Textures::new(gpu.context, volume, &frames, each)?;
         Ok(Self { frames, each, density_scale: key.density_scale(), textures })
     }
 
@@ -175,6 +181,34 @@ impl SkyBuild {
         let own = gpu.bind("Sky::moments", &gather, 0, &entries);
         let groups = volume.dims.map(|n| (n as u32).div_ceil(4));
         pass::dispatch(encoder, "Sky::moments", &gather, &[&own], groups);
+        self.fill_floor(gpu, volume, &uniform, taken.end, encoder)
+    }
+
+    /// Adds what the floor sees of a batch of directions, the last before `taken`, to what came before.
+    fn fill_floor(
+        &self,
+        gpu: Gpu<'_>,
+        volume: &SkyVolume,
+        sweep: &wgpu::Buffer,
+        taken: usize,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let (Some(floor), Some(sums)) = (&volume.floor, &self.textures.floor_sums) else { return Ok(()) };
+        let up = floor.place.up.direction();
+        let open: f64 = self.frames[..taken].iter().map(|frame| frame.towards.dot(up).max(0.0)).sum();
+        let uniform = floor.uniform(&gpu.volume.scene, volume, 1.0 / open.max(1e-9));
+        let uniform = gpu.uniform("Sky::floor_map", uniform);
+        let variant = SweepVariant { shader: "sky/floor_map.wgsl", directions: self.each };
+        let pipeline = gpu.shaders.pipeline(&variant)?;
+        let entries = [
+            buffer("bound_sweep", sweep),
+            buffer("bound_map", &uniform),
+            view_of("sheets", &self.textures.sheets),
+            buffer("sums", sums),
+            view_of("moments", &floor.view),
+        ];
+        let own = gpu.bind("Sky::floor_map", &pipeline, 0, &entries);
+        pass::dispatch(encoder, "Sky::floor_map", &pipeline, &[&own], pass::tiles([MAP_EDGE; 2]));
         Ok(())
     }
 }
@@ -182,10 +216,11 @@ impl SkyBuild {
 impl Textures {
     fn new(
         context: &Context,
-        dims: [usize; 3],
+        volume: &SkyVolume,
         frames: &[SweepFrame],
         each: usize,
     ) -> Result<Self, GpuError> {
+        let dims = volume.dims;
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = context.storage_format;
         let slices = dims.into_iter().max().unwrap_or(1);
@@ -195,16 +230,25 @@ impl Textures {
         let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
         let sheets = context.texture(&texture_3d("Sky::sheets", sheet_size, format, usages))?;
         let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
-        let sums = vec![[0.0_f32; 4]; dims.iter().product()];
-        let sums = context.buffer("Sky::sums", &sums, wgpu::BufferUsages::STORAGE);
+        let sums = |label, count: u64| {
+            context.empty_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: SUM_BYTES * count,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            })
+        };
+        let floor = volume.floor.as_ref().map(|_| u64::from(MAP_EDGE * MAP_EDGE));
         let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self {
             blocks: view(&blocks),
             sheets: view(&sheets),
             sheet_size,
-            sums,
-            bytes: texel * (texels(block_size) + texels(sheet_size)) + 16 * texels(dims),
+            sums: sums("Sky::sums", texels(dims)),
+            floor_sums: floor.map(|texels| sums("Sky::floor_sums", texels)),
+            bytes: texel * (texels(block_size) + texels(sheet_size))
+                + SUM_BYTES * (texels(dims) + floor.unwrap_or(0)),
         })
     }
 }
@@ -263,7 +307,7 @@ impl Variant for SweepVariant {
 
     fn constants(&self) -> Constants {
         match self.shader {
-            "sky/moments.wgsl" => vec![("DIRECTIONS", self.directions as f64)],
+            "sky/moments.wgsl" | "sky/floor_map.wgsl" => vec![("DIRECTIONS", self.directions as f64)],
             _ => Vec::new(),
         }
     }

@@ -1,8 +1,10 @@
 //! The volume of the sky's visibility.
 
+use super::floor_map::FloorMap;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 use crate::model::Resolution;
+use crate::plan::SkyFloor;
 
 /// Most texels that the rays of one direction may take: 128 MiB of sheets.
 const MOST_TEXELS: u64 = 1 << 26;
@@ -15,9 +17,9 @@ pub(crate) struct SkyVolume {
     /// Voxels along the edge of a block.
     pub divisor: usize,
     /// V₁ in rgb, V₀ in a.
-    pub texture: wgpu::Texture,
-    /// A view of all of it.
     pub view: wgpu::TextureView,
+    /// What the floor sees of the sky, where there was one when it was filled.
+    pub floor: Option<FloorMap>,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
 }
@@ -27,7 +29,12 @@ impl SkyVolume {
     ///
     /// # Errors
     /// When memory is out.
-    pub(crate) fn new(context: &Context, grid: [usize; 3], resolution: Resolution) -> Result<Self, GpuError> {
+    pub(crate) fn new(
+        context: &Context,
+        grid: [usize; 3],
+        resolution: Resolution,
+        floor: Option<SkyFloor>,
+    ) -> Result<Self, GpuError> {
         let divisor = divisor_for(grid, resolution);
         let dims = grid.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(
@@ -39,7 +46,8 @@ impl SkyVolume {
                 | wgpu::TextureUsages::COPY_SRC,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { dims, divisor, texture, view, last_used: 0 })
+        let floor = floor.map(|place| FloorMap::new(context, place)).transpose()?;
+        Ok(Self { dims, divisor, view, floor, last_used: 0 })
     }
 
     /// Index space to texture coordinates: (p + ½) × lookup.
@@ -49,7 +57,8 @@ impl SkyVolume {
 
     /// Bytes of its texture.
     pub(crate) fn bytes(&self) -> u64 {
-        8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
+        let map = if self.floor.is_some() { FloorMap::bytes() } else { 0 };
+        map + 8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
 }
 

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kernel, LabelTable,
     Length, Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder, Sky,
-    SkyRadiance, Slabs, TransferFunction,
+    Slabs, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
@@ -214,14 +214,6 @@ impl Settings {
     /// none but its.
     pub fn flat_ambient(&self) -> f64 {
         if self.sky.is_on() { 0.0 } else { self.shading.ambient }
-    }
-
-    /// What an open floor gives back of the sky's light, as a share of its colour: linear RGB.
-    pub fn sky_on_floor(&self) -> [f64; 3] {
-        let up = self.camera.up.direction();
-        // Radiance that is linear in the direction, over a hemisphere: l₀ + ⅔ l₁ · n.
-        let open = |sky: SkyRadiance| [0, 1, 2].map(|c| sky.mean[c] + sky.slope[c].dot(up) * 2.0 / 3.0);
-        self.sky.radiance(self.camera.up).map_or([0.0; 3], open)
     }
 
     /// Whether material attenuates the light of a sky.

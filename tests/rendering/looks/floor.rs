@@ -3,15 +3,15 @@
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
     Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, ObjectTurn, Projection,
-    SceneAxis, Settings, ShadowAlgorithm, ToneMap,
+    SceneAxis, Settings, ShadowAlgorithm, Sky, SkyMode, ToneMap, linear_from_srgb,
 };
 use chiaroscuro::reference::{Options, Reference};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};
-use crate::compare::compare;
+use crate::compare::{Limit, compare};
 use crate::scenes::{self, linear_extinction, straight};
-use crate::thresholds::{EIGHT_BITS, F16_STEP, FLOOR_EDGE, FLOOR_SHADOW, SAME_WEIGHTS};
+use crate::thresholds::{EIGHT_BITS, F16_STEP, FLOOR_EDGE, FLOOR_SHADOW, FLOOR_UNDER_A_SKY, SAME_WEIGHTS};
 
 const SIZE: [u32; 2] = [96, 80];
 const NARROW: [u32; 2] = [48, 128];
@@ -22,10 +22,25 @@ fn on(settings: Settings) -> Settings {
 
 /// What is seen of the floor past the volume, by both sides.
 fn check(name: &str, size: [u32; 2], spacing_mm: DVec3, settings: &Settings) {
+    check_within(name, size, spacing_mm, settings, SAME_WEIGHTS);
+}
+
+fn check_within(name: &str, size: [u32; 2], spacing_mm: DVec3, settings: &Settings, limit: Limit) {
+    check_against(size, spacing_mm, [settings; 2], name, limit);
+}
+
+/// The floor of the GPU with one look, and of the reference with another.
+fn check_against(
+    size: [u32; 2],
+    spacing_mm: DVec3,
+    [settings, of_reference]: [&Settings; 2],
+    name: &str,
+    limit: Limit,
+) {
     let loaded = Dataset::new(scenes::creature(40, spacing_mm));
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { rounding: Some(rounding), ..Options::default() };
-    let reference = Reference::new(loaded.volume(), settings, options);
+    let reference = Reference::new(loaded.volume(), of_reference, options);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let picture = render(&mut renderer, &loaded, settings, size);
     let floor = renderer.read_floor().expect("a floor");
@@ -38,7 +53,7 @@ fn check(name: &str, size: [u32; 2], spacing_mm: DVec3, settings: &Settings) {
     let expected: Vec<f64> =
         reference.floor(size).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
     assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
-    compare(name, &found, &expected, SAME_WEIGHTS).unwrap_or_else(|err| panic!("{err}"));
+    compare(name, &found, &expected, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
 #[test]
@@ -64,6 +79,60 @@ fn floor_and_shadows_as_in_the_reference() {
     settings.lights[0].casts_shadows = true;
     settings.cuts.plane.on = true;
     check("shadow alone, and cut", SIZE, DVec3::ONE, &settings);
+}
+
+/// A map of what the floor sees is interpolated, and the reference asks at every pixel.
+#[test]
+fn it_takes_the_light_of_a_sky() {
+    let mut settings = on(scenes::look());
+    settings.sky = Sky {
+        mode: SkyMode::Gradient,
+        intensity: 0.9,
+        zenith: [0.6, 0.8, 1.0],
+        ground: [0.4, 0.2, 0.1],
+        tilt_deg: 30.0,
+        turn_deg: 200.0,
+        directions: 14,
+        ..Sky::default()
+    };
+    check_within("under a sky", SIZE, DVec3::new(1.0, 0.9, 1.2), &settings, FLOOR_UNDER_A_SKY);
+    settings.floor.shadow_only = true;
+    settings.shadows.strength = 0.8;
+    check_within("shadow alone", SIZE, DVec3::ONE, &settings, FLOOR_UNDER_A_SKY);
+    settings.shadows.algorithm = ShadowAlgorithm::Off;
+    settings.floor.shadow_only = false;
+    check("nothing in its way", SIZE, DVec3::ONE, &settings);
+    // It is no other picture.
+    settings.shadows.algorithm = ShadowAlgorithm::Splat;
+    let dark = Settings { sky: Sky { intensity: 0.5, ..settings.sky.clone() }, ..settings.clone() };
+    let found = std::panic::catch_unwind(|| {
+        check_against(SIZE, DVec3::ONE, [&settings, &dark], "another sky", FLOOR_UNDER_A_SKY);
+    });
+    assert!(found.is_err(), "half as bright a sky is noticed");
+}
+
+/// A place beside what hides a quarter of the sky at most is as bright as the sky says, and one under it darker.
+#[test]
+fn it_is_dark_below_and_bright_beside_the_object() {
+    let loaded =
+        Dataset::new(scenes::block(32, |[x, y, z]| (8..24).contains(&x) && (8..24).contains(&y) && z > 3));
+    let mut settings = on(scenes::look());
+    settings.transfer = scenes::linear_extinction(3.0);
+    settings.lights.clear();
+    settings.floor.radius = 20.0;
+    settings.sky = Sky { mode: SkyMode::White, intensity: 0.8, directions: 64, ..Sky::default() };
+    settings.camera.elevation_deg = 40.0;
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    render(&mut renderer, &loaded, &settings, SIZE);
+    let floor = renderer.read_floor().expect("a floor");
+    let open = 0.8 * linear_from_srgb(f64::from(settings.floor.color[0]));
+    let reds: Vec<f64> =
+        floor.iter().filter(|texel| texel[3] > 0.0).map(|texel| f64::from(texel[0] / texel[3])).collect();
+    let (least, most) =
+        reds.iter().fold((f64::INFINITY, 0f64), |(least, most), &red| (least.min(red), most.max(red)));
+    println!("{least} … {most} of {open}");
+    assert!((most / open - 1.0).abs() < 0.02, "{most} of {open}");
+    assert!(least < 0.4 * open, "{least} of {open}");
 }
 
 /// The floor lies under the object, and looks up, whichever axis that is along.
