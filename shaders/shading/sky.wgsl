@@ -1,4 +1,4 @@
-// A sky whose radiance is linear in the direction (src/model/settings/sky.rs): L(ω) = l₀ + l₁·ω.
+// A sky whose radiance is linear in the direction (src/model/settings/light/sky.rs): L(ω) = l₀ + l₁·ω.
 struct Sky {
     // For each colour the slope l₁, in scene space, and the mean l₀.
     red: vec4f,

@@ -1,4 +1,4 @@
-// Light from all around (src/model/settings/sky.rs): radiance that is linear in the direction, L(ω) = l₀ + l₁·ω, through
+// Light from all around (src/model/settings/light/sky.rs): radiance that is linear in the direction, through
 // what is open of the sky. SKY: 1 nothing is in its way, 2 a volume says what is.
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"

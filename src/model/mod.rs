@@ -20,6 +20,7 @@ pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFF
 pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::labels::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::length::Length;
+pub use self::settings::light::sky::{SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyRadiance};
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, SceneLight};
 pub use self::settings::quality::Quality;
 pub use self::settings::range::DensityRange;
@@ -31,7 +32,6 @@ pub use self::settings::shadows::{
     Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,
     Shadows,
 };
-pub use self::settings::sky::{SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyRadiance};
 pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};

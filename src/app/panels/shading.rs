@@ -16,11 +16,13 @@ const SIDES: [(Sides, Named); 2] =
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
+    // A sky takes the place of the ambient light.
+    let is_flat = !panels.settings.sky.is_on();
     let (shading, defaults) = (&mut panels.settings.shading, &panels.defaults.shading);
     let emission = Number::new(text::shading::EMISSION, 0.0..=2.0);
     emission.show(ui, &mut shading.emission, defaults.emission);
     let ambient = Number::new(text::shading::AMBIENT, 0.0..=1.0);
-    ambient.show(ui, &mut shading.ambient, defaults.ambient);
+    ui.add_enabled_ui(is_flat, |ui| ambient.show(ui, &mut shading.ambient, defaults.ambient));
     let diffuse = Number::new(text::shading::DIFFUSE, 0.0..=2.0);
     diffuse.show(ui, &mut shading.diffuse, defaults.diffuse);
     let specular = Number::new(text::shading::SPECULAR, 0.0..=2.0);

@@ -16,6 +16,7 @@ use crate::gpu::light::raycast::raycast;
 use crate::gpu::output::display::display;
 use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::scatter::light::LightScatter;
+use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::listed_bricks::listed;
 use crate::gpu::volume::transfer_tables::EVERYWHERE;
 use crate::gpu::volume::{Gpu, gradients, prefilter};
@@ -354,5 +355,30 @@ impl Job<'_> {
         sheets.draw(gpu, scattering, &self.eye, tables, looked_up, picture, slabs.clone(), encoder)?;
         self.eye_sheets = Some(sheets);
         Ok(())
+    }
+
+    /// The volume that the picture looks up.
+    pub(super) fn sky_volume(&self) -> Option<&SkyVolume> {
+        Some(&self.loaded.value.skies.get(self.sky.slot?)?.value)
+    }
+
+    /// Records a step of the filling: blocks first, or a batch of directions.
+    pub(super) fn encode_sky(
+        &mut self,
+        batch: Option<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let loaded = &self.loaded.value;
+        let Some(build) = &self.sky.build else { return Ok(()) };
+        let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
+        self.report.runs.sky += u32::from(batch.is_none());
+        let Some(volume) = self.sky_volume() else { return Ok(()) };
+        let gpu = Gpu::new(self.tools, &loaded.volume);
+        let Some(batch) = batch else {
+            let (settings, options) = (&self.request.settings, &self.options);
+            return build.fill_blocks(gpu, &loaded.tables.value, settings, options, volume, encoder);
+        };
+        build.fill_batch(gpu, volume, batch, encoder)
     }
 }

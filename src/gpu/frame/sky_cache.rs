@@ -3,12 +3,12 @@
 use super::light_cache::Wanted;
 use super::loaded::Loaded;
 use super::step::{Product, Step};
+use crate::gpu::GpuError;
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::resources::tools::Tools;
 use crate::gpu::sky::sweep::SkyBuild;
 use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::Gpu;
-use crate::gpu::{GpuError, RenderOptions};
 use crate::plan::{SkyFloor, SkyKey};
 
 /// Volumes that are kept: that of the picture, that of its previews, and one that undoing a change finds again.
@@ -80,32 +80,5 @@ impl Loaded {
     /// Bytes of all volumes of visibility.
     pub(crate) fn sky_bytes(&self) -> u64 {
         self.skies.iter().map(|sky| sky.value.bytes()).sum()
-    }
-}
-
-impl super::job::Job<'_> {
-    /// The volume that the picture looks up.
-    pub(super) fn sky_volume(&self) -> Option<&SkyVolume> {
-        Some(&self.loaded.value.skies.get(self.sky.slot?)?.value)
-    }
-
-    /// Records a step of the filling: blocks first, or a batch of directions.
-    pub(super) fn encode_sky(
-        &mut self,
-        batch: Option<usize>,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let loaded = &self.loaded.value;
-        let Some(build) = &self.sky.build else { return Ok(()) };
-        let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();
-        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
-        self.report.runs.sky += u32::from(batch.is_none());
-        let Some(volume) = self.sky_volume() else { return Ok(()) };
-        let gpu = Gpu::new(self.tools, &loaded.volume);
-        let Some(batch) = batch else {
-            let (settings, options): (_, &RenderOptions) = (&self.request.settings, &self.options);
-            return build.fill_blocks(gpu, &loaded.tables.value, settings, options, volume, encoder);
-        };
-        build.fill_batch(gpu, volume, batch, encoder)
     }
 }

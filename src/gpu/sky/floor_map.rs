@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::volume::SkyVolume;
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
@@ -42,9 +41,9 @@ impl FloorMap {
         8 * MAP_EDGE as u64 * MAP_EDGE as u64
     }
 
-    /// For the shader that fills it: `share` is one over what an open floor's moment is a sum of.
-    pub(crate) fn uniform(&self, scene: &SceneSpace, volume: &SkyVolume, share: f64) -> uniforms::FloorMap {
-        let divisor = volume.divisor as f64;
+    /// For the shader that fills it from blocks of so many voxels along an edge: `share` is one over what an open floor's moment is a sum of.
+    pub(crate) fn uniform(&self, scene: &SceneSpace, divisor: usize, share: f64) -> uniforms::FloorMap {
+        let divisor = divisor as f64;
         let block = |place: DVec3| (scene.index_from_scene.transform_point3(place) + 0.5) / divisor - 0.5;
         let [right, front, up] = self.axes();
         let texel = 2.0 * REACH / f64::from(MAP_EDGE);

@@ -196,7 +196,7 @@ impl SkyBuild {
         let (Some(floor), Some(sums)) = (&volume.floor, &self.textures.floor_sums) else { return Ok(()) };
         let up = floor.place.up.direction();
         let open: f64 = self.frames[..taken].iter().map(|frame| frame.towards.dot(up).max(0.0)).sum();
-        let uniform = floor.uniform(&gpu.volume.scene, volume, 1.0 / open.max(1e-9));
+        let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / open.max(1e-9));
         let uniform = gpu.uniform("Sky::floor_map", uniform);
         let variant = SweepVariant { shader: "sky/floor_map.wgsl", directions: self.each };
         let pipeline = gpu.shaders.pipeline(&variant)?;

@@ -13,7 +13,6 @@ pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod scene_axis;
 pub(super) mod shadows;
-pub(super) mod sky;
 pub(super) mod view;
 
 use std::collections::BTreeMap;

@@ -4,8 +4,10 @@ use crate::app::text::{Named, named};
 
 pub(crate) const EMISSION: Named =
     named("Emission", "Light that material gives off by itself; for glowing data");
-pub(crate) const AMBIENT: Named =
-    named("Ambient", "Light from everywhere, never shadowed: too much of it flattens the shape");
+pub(crate) const AMBIENT: Named = named(
+    "Ambient",
+    "Light from everywhere, never shadowed: too much of it flattens the shape; a sky takes its place",
+);
 pub(crate) const DIFFUSE: Named =
     named("Diffuse", "Light that a surface scatters evenly: shows how it is turned");
 pub(crate) const SPECULAR: Named = named("Specular", "Highlights; for surfaces that should look polished");

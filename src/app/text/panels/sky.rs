@@ -2,8 +2,7 @@
 
 use crate::app::text::{Named, named};
 
-pub(crate) const MODE: Named =
-    named("Light from all around", "Soft light that hollows and undersides keep out");
+pub(crate) const MODE: Named = named("Soft light", "From all around: hollows and undersides keep it out");
 pub(crate) const OFF: Named = named("Off", "The same everywhere: the ambient light of the shading");
 pub(crate) const WHITE: Named = named("White", "Ambient occlusion: hollows are darker than what stands out");
 pub(crate) const GRADIENT: Named =

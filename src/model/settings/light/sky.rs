@@ -3,9 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::scene_axis::SceneAxis;
-use super::shadows::Resolution;
-use crate::model::linear_from_srgb;
+use crate::model::{Resolution, SceneAxis, linear_from_srgb};
 
 /// What the sky looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -65,7 +63,7 @@ impl Default for Sky {
             tilt_deg: 0.0,
             turn_deg: 0.0,
             density_scale: 1.0,
-            directions: 26,
+            directions: 64,
             resolution: Resolution::Half,
         }
     }

@@ -1,5 +1,7 @@
 //! Lights, in scene space.
 
+pub(in crate::model) mod sky;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
