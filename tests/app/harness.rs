@@ -21,7 +21,7 @@ pub(crate) const SCENE: &str = "builtin:chair:32";
 /// The window of the tests. It is taller than wide panels need, so that nothing is scrolled away.
 pub(crate) fn window() -> Harness<'static, App> {
     let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    window_with(options, Vec2::new(760.0, 1100.0))
+    window_with(options, Vec2::new(760.0, 1140.0))
 }
 
 /// A window of some size, in points. Unless the options say something of the first look, its balance is not kept:
@@ -40,7 +40,7 @@ pub(crate) fn window_with(mut options: Options, size: Vec2) -> Harness<'static, 
 
 /// A window that does with the first look all that it does by itself; its picture is not there yet.
 pub(crate) fn untouched_window(options: Options) -> Harness<'static, App> {
-    untouched_window_of(options, Vec2::new(760.0, 1100.0))
+    untouched_window_of(options, Vec2::new(760.0, 1140.0))
 }
 
 fn untouched_window_of(options: Options, size: Vec2) -> Harness<'static, App> {

@@ -51,7 +51,7 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     write_slab(&second);
     let start = |source: PathBuf| {
         let (source, storage) = (Some(source), Some(storage.path().to_owned()));
-        window_with(Options { source, storage, ..Options::default() }, Vec2::new(760.0, 1100.0))
+        window_with(Options { source, storage, ..Options::default() }, Vec2::new(760.0, 1140.0))
     };
     let mut harness = start(first);
     let flat = settings(&harness);

@@ -14,6 +14,7 @@ const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;
 const GRID: Slot = Slot::uniform::<uniforms::Grid>(0, "bound_grid");
 const PYRAMID_TEXTURE: Slot = Slot::sampled(2, "pyramid_texture", Shape::Volume);
 const CLAMPED: Slot = Slot::sampler(3, "clamped");
+const NEAREST: Slot = Slot::sampler(4, "nearest");
 const PRESENCE_TEXTURE: Slot = Slot::sampled(9, "presence_texture", Shape::Volume);
 
 const LIGHTING_PYRAMID: Slot = Slot::sampled(10, "lighting_pyramid", Shape::Volume);
@@ -24,7 +25,7 @@ const VOLUME: &[Slot] = &[
     Slot::sampled(1, "density_texture", Shape::Volume),
     PYRAMID_TEXTURE,
     CLAMPED,
-    Slot::sampler(4, "nearest"),
+    NEAREST,
     PRESENCE_TEXTURE,
 ];
 
@@ -294,7 +295,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::sampled(2, "distances", Shape::Volume),
                 Slot::target(3, "extinction", Shape::Volume, Format::Storage),
             ],
-            VOLUME,
+            &[GRID, PYRAMID_TEXTURE, CLAMPED, NEAREST],
         ],
     ),
     (

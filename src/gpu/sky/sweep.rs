@@ -9,7 +9,7 @@ use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{Constants, Ends, Variant, flag, is_cut};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
-use crate::gpu::volume::{Gpu, Levels, texture_3d};
+use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::{Classification, Settings};
 use crate::plan::{SkyKey, SweepFrame, stretch_reach, sweep_directions};
@@ -122,8 +122,8 @@ impl SkyBuild {
         // Places of a block lie at most as many cells from that of its middle as it has voxels in half its edge.
         let seen = i32::from(stretch_reach(level)) + volume.divisor as i32 / 2;
         let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
-        let of_volume =
-            gpu.bind_volume(&pipeline, dilation, Levels::All, tables.lighting_pyramids(gpu.volume));
+        let pyramid = tables.lighting_pyramids(gpu.volume).own;
+        let of_volume = gpu.bind_pyramid_and_cells(&pipeline, dilation, pyramid);
         let groups = volume.dims.map(|n| (n as u32 + 2).div_ceil(4));
         pass::dispatch(encoder, "Sky::blocks", &pipeline, &[&own, &of_volume], groups);
         Ok(())

@@ -101,6 +101,24 @@ impl Gpu<'_> {
         )
     }
 
+    /// Bind group 1 of passes that look at a pyramid alone, and leap over cells.
+    pub(crate) fn bind_pyramid_and_cells(
+        &self,
+        pipeline: &Pipeline,
+        dilation: i32,
+        pyramid: &LevelViews,
+    ) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(dilation));
+        let entries = [
+            buffer("bound_grid", &grid),
+            view_of("pyramid_texture", &pyramid.all),
+            sampler("clamped", &volume.clamped),
+            sampler("nearest", &volume.nearest),
+        ];
+        self.bind("Volume::cells_bind_group", pipeline, 1, &entries)
+    }
+
     /// Bind group 1 of the passes that sample density.
     pub(crate) fn bind_volume(
         &self,

@@ -278,10 +278,14 @@ fn removing_a_light_rebuilds_nothing() {
 fn an_unlinked_lighting_curve_frees_the_eye() {
     let mut before = request();
     before.settings.lighting.linked = false;
+    before.settings.sky.mode = SkyMode::Off;
     assert_eq!(effect_of(&before, "transfer.points.1.opacity", "0.4"), Effect::Eye);
     // Rays to lights meet the lighting curve in the eye pass itself.
     before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Direct;
     assert_eq!(effect_of(&before, "lighting.scale", "0.4"), Effect::Eye);
+    // That of a sky has a volume, whatever lights have.
+    before.settings.sky.mode = SkyMode::White;
+    assert_eq!(effect_of(&before, "lighting.scale", "0.4"), Effect::Sky);
 }
 
 #[test]
