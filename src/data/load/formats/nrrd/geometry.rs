@@ -84,6 +84,10 @@ impl Geometry {
         let product = |size: u64, axis: &Axis| size.saturating_mul(axis.size);
         let components = before.iter().fold(1, |size, axis| product(size, axis));
         let frames = behind.fold(1, product);
+        if components == 0 || frames == 0 {
+            let why = "an axis that is none of space has no samples: 1 or more were expected, 0 was found";
+            return Err(attempt.bad_input("sizes", why.to_owned(), "correct the header"));
+        }
         if components > MOST_COMPONENTS {
             return Err(attempt.limit(
                 "sizes",
