@@ -51,11 +51,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
         let size = turned_to(rays, vec3f(sweep.dims));
-        let turned = turned_to(rays, block);
-        let n = select(size.x - 1.0 - turned.x, turned.x, rays.rises == 1u);
-        let place = turned.yz - rays.drift * n - rays.first;
-        let low = floor(place);
-        let f = place - low;
+        let place = place_among(rays, block);
+        let n = place.z;
+        let low = floor(place.xy);
+        let f = place.xy - low;
         let near = mix(passed_by(rays, low, n, size), passed_by(rays, low + vec2f(1.0, 0.0), n, size), f.x);
         let far = mix(
             passed_by(rays, low + vec2f(0.0, 1.0), n, size),

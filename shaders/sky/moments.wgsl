@@ -21,10 +21,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var sum = sums[at] * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        let turned = turned_to(rays, vec3f(id));
-        let n = select(slices_of(rays) - 1.0 - turned.x, turned.x, rays.rises == 1u);
-        let ray = turned.yz - rays.drift * n - rays.first;
-        let place = (vec3f(ray, f32(rays.layer) + n) + 0.5) * sweep.sheet_scale;
+        let ray = place_among(rays, vec3f(id));
+        let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
         let passed = textureSampleLevel(sheets, clamped, place, 0.0).r;
         sum += rays.weight * passed * vec4f(rays.towards, 1.0);
     }

@@ -42,10 +42,6 @@ struct Sweep {
 @group(0) @binding(0) var<uniform> bound_sweep: Sweep;
 var<private> sweep: Sweep;
 
-fn slices_of(rays: SkyRays) -> f32 {
-    return f32(select(select(sweep.dims.x, sweep.dims.y, rays.axis == 1u), sweep.dims.z, rays.axis == 2u));
-}
-
 // The components of a block, or of the grid's size: along the axis of the slices, and the two that follow.
 fn turned_to(rays: SkyRays, block: vec3f) -> vec3f {
     return select(select(block, block.yzx, rays.axis == 1u), block.zxy, rays.axis == 2u);
@@ -54,4 +50,12 @@ fn turned_to(rays: SkyRays, block: vec3f) -> vec3f {
 // And back.
 fn turned_from(rays: SkyRays, turned: vec3f) -> vec3f {
     return select(select(turned, turned.zxy, rays.axis == 1u), turned.yzx, rays.axis == 2u);
+}
+
+// Where a place in blocks lies: among the rays, in xy, and at which slice, in z.
+fn place_among(rays: SkyRays, block: vec3f) -> vec3f {
+    let turned = turned_to(rays, block);
+    let last = turned_to(rays, vec3f(sweep.dims)).x - 1.0;
+    let n = select(last - turned.x, turned.x, rays.rises == 1u);
+    return vec3f(turned.yz - rays.drift * n - rays.first, n);
 }

@@ -2,7 +2,7 @@
 //!
 //! Stored are moments over directions ω of the transmittance T from there to beyond the volume: V₀ = ⟨T⟩ and V₁ = ⟨T ω⟩.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Reference;
@@ -51,7 +51,7 @@ impl Reference<'_> {
             let deposits = march(&frame, &extinction);
             sums.par_iter_mut().enumerate().for_each(|(at, sum)| {
                 let block = [at % dims[0], at / dims[0] % dims[1], at / (dims[0] * dims[1])];
-                let passed = between_rays(&frame, &deposits, block);
+                let passed = passed(&frame, &deposits, DVec3::from(block.map(|at| at as f64)));
                 let moments = towards.extend(1.0) * passed;
                 sum.iter_mut().zip(moments.to_array()).for_each(|(sum, moment)| *sum += moment);
             });
@@ -209,11 +209,8 @@ fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
 /// What of the light gets to a place in block units, which may lie beside or behind the grid: between the four rays around
 /// it, each as far as it has come there.
 fn passed(frame: &SweepFrame, deposits: &[f64], place: DVec3) -> f64 {
-    let along = place[frame.axis];
     let last = frame.slices() as f64 - 1.0;
-    let n = if frame.rises { along } else { last - along };
-    let across = DVec2::new(place[(frame.axis + 1) % 3], place[(frame.axis + 2) % 3]);
-    let ray = across - frame.drift * n - DVec2::new(frame.first[0].into(), frame.first[1].into());
+    let (n, ray) = frame.place(place);
     let low = ray.floor();
     let share = ray - low;
     let at = |i: f64, j: f64| {
@@ -224,19 +221,6 @@ fn passed(frame: &SweepFrame, deposits: &[f64], place: DVec3) -> f64 {
         }
         let slice = (n + 0.5).floor().min(last) as usize;
         deposits[(i as usize + j as usize * frame.size[0] as usize) * frame.slices() + slice]
-    };
-    let row = |j: f64| at(0.0, j) * (1.0 - share.x) + at(1.0, j) * share.x;
-    row(0.0) * (1.0 - share.y) + row(1.0) * share.y
-}
-
-/// Between the four rays around the middle of a block.
-fn between_rays(frame: &SweepFrame, deposits: &[f64], block: [usize; 3]) -> f64 {
-    let (slice, place) = frame.place(block);
-    let low = place.floor().max(DVec2::ZERO);
-    let share = place - low;
-    let at = |i: f64, j: f64| {
-        let ray = (low.x + i) as usize + (low.y + j) as usize * frame.size[0] as usize;
-        deposits[ray * frame.slices() + slice]
     };
     let row = |j: f64| at(0.0, j) * (1.0 - share.x) + at(1.0, j) * share.x;
     row(0.0) * (1.0 - share.y) + row(1.0) * share.y

@@ -226,7 +226,7 @@ impl RenderWorker {
         let mut options = self.options(*quality);
         let fills_before: u64 = scene.renderer.light_rebuilds().iter().sum();
         let context = scene.renderer.context().clone();
-        let (mut total_ms, mut light_ms) = (0.0, 0.0);
+        let (mut total_ms, mut light_ms, mut sky_ms) = (0.0, 0.0, 0.0);
         let mut job = scene.renderer.begin(&scene.dataset, request.clone(), &options)?;
         job.set_band(self.controller.rows(*quality, request.size));
         if let Some(exposure) = self.brightness.exposure(frame_request, *quality, job.report()) {
@@ -240,8 +240,10 @@ impl RenderWorker {
             context.wait()?;
             let took_ms = start.elapsed().as_secs_f64() * 1000.0;
             total_ms += took_ms;
-            if matches!(stage, Some(Stage::LightMarch | Stage::LightBackproject)) {
-                light_ms += took_ms;
+            match stage {
+                Some(Stage::LightMarch | Stage::LightBackproject) => light_ms += took_ms,
+                Some(Stage::Sky) => sky_ms += took_ms,
+                _ => {}
             }
             if !more {
                 break;
@@ -278,7 +280,7 @@ impl RenderWorker {
         // How long a volume takes to be uploaded says nothing of the next picture.
         if runs.eye > 0 && runs.volume == 0 {
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
-            self.controller.learn_picture(*quality, pixels, total_ms - light_ms);
+            self.controller.learn_picture(*quality, pixels, total_ms - light_ms - sky_ms);
         }
         if fills > fills_before {
             self.controller.learn_build(*quality, light_ms / (fills - fills_before) as f64);
@@ -345,10 +347,11 @@ fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: Quali
     }
 }
 
-/// Light volumes of full quality that a picture would have to fill.
+/// Light volumes of full quality that a picture would have to fill; what is open of a sky takes about as long as one.
 fn missing(settled: Option<&FrameKeys>, full: &FrameKeys) -> Missing {
     // The first look has filled them all.
     let Some(settled) = settled else { return Missing::default() };
-    let count = full.lights_missing_in(settled);
-    Missing { count, others: full.lights.iter().flatten().count() > count }
+    let lights = full.lights_missing_in(settled);
+    let count = lights + usize::from(full.sky.is_some() && full.sky != settled.sky);
+    Missing { count, others: full.lights.iter().flatten().count() > lights }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::floor_map::MAP_EDGE;
-use super::volume::SkyVolume;
+use super::volume::{SUM_BYTES, SkyVolume};
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{Constants, Ends, Variant, flag, is_cut};
@@ -16,9 +16,6 @@ use crate::plan::{SkyKey, SweepFrame, stretch_reach, sweep_directions};
 
 /// Blocks times directions of a batch: some 0.2 s on a software adapter.
 const BATCH_BLOCKS: usize = 1 << 23;
-
-/// Bytes of four sums.
-const SUM_BYTES: u64 = 16;
 
 /// Most layers of a 3D texture everywhere.
 const MOST_LAYERS: usize = 2048;

@@ -90,12 +90,13 @@ impl SweepFrame {
         at.into()
     }
 
-    /// The slice of a block, and its place among the rays there.
-    pub fn place(&self, block: [usize; 3]) -> (usize, DVec2) {
+    /// The slice of a place in blocks, which may lie between slices and beyond the grid, and where it is among the rays
+    /// there.
+    pub fn place(&self, block: DVec3) -> (f64, DVec2) {
         let along = block[self.axis];
-        let slice = if self.rises { along } else { self.slices() - 1 - along };
-        let across = DVec2::new(block[(self.axis + 1) % 3] as f64, block[(self.axis + 2) % 3] as f64);
-        (slice, across - self.drift * slice as f64 - DVec2::new(self.first[0].into(), self.first[1].into()))
+        let slice = if self.rises { along } else { self.slices() as f64 - 1.0 - along };
+        let across = DVec2::new(block[(self.axis + 1) % 3], block[(self.axis + 2) % 3]);
+        (slice, across - self.drift * slice - DVec2::new(self.first[0].into(), self.first[1].into()))
     }
 
     /// Where a ray crosses a slice, along the two axes that follow `axis`.
@@ -143,15 +144,15 @@ mod tests {
                 assert!(frame.drift.abs().max_element() <= 1.0 + 1e-12, "{frame:?}");
                 let [nx, ny, nz] = frame.dims;
                 for block in (0..nx * ny * nz).map(|at| [at % nx, at / nx % ny, at / (nx * ny)]) {
-                    let (slice, ray) = frame.place(block);
+                    let wanted = DVec3::from(block.map(|at| at as f64));
+                    let (slice, ray) = frame.place(wanted);
                     assert!(ray.min_element() >= -1e-9, "{ray}");
                     let next = ray.floor() + 1.0;
                     assert!(next.x < f64::from(frame.size[0]) && next.y < f64::from(frame.size[1]), "{ray}");
                     // There and back.
                     let nearest = [ray.x.floor() as u32, ray.y.floor() as u32];
-                    let across = frame.crossing(nearest, slice) + ray.fract();
-                    let found = frame.block(slice as f64, across);
-                    let wanted = DVec3::from(block.map(|at| at as f64));
+                    let across = frame.crossing(nearest, slice as usize) + ray.fract();
+                    let found = frame.block(slice, across);
                     assert!((found - wanted).length() < 1e-9, "{found} {wanted}");
                 }
             }
