@@ -37,7 +37,7 @@ struct Floor {
     runs: u32,
     pad0: u32,
     sky: Sky,
-    // From scene space to texture coordinates of the map of what it sees of the sky: vectors, and what is added.
+    // From scene space to texture coordinates of maps: vectors, and what is added.
     map_x: vec4f,
     map_y: vec4f,
     lights: array<Light, MAX_LIGHTS>,
@@ -52,6 +52,16 @@ var<private> floor_disc: Floor;
 
 // C₁ in rgb, C₀ in a: see sky/floor_map.wgsl.
 @group(0) @binding(5) var sky_map: texture_3d<f32>;
+
+// Of lights that have a size, a map of what gets to the floor; they have no points then.
+@group(2) @binding(0) var attenuation_0: texture_3d<f32>;
+@group(2) @binding(1) var attenuation_1: texture_3d<f32>;
+@group(2) @binding(2) var attenuation_2: texture_3d<f32>;
+@group(2) @binding(3) var attenuation_3: texture_3d<f32>;
+@group(2) @binding(4) var attenuation_4: texture_3d<f32>;
+@group(2) @binding(5) var attenuation_5: texture_3d<f32>;
+@group(2) @binding(6) var attenuation_6: texture_3d<f32>;
+@group(2) @binding(7) var attenuation_7: texture_3d<f32>;
 
 // Lights that are on; those that material attenuates come first.
 override LIGHTS: u32 = 1u;
@@ -78,19 +88,50 @@ struct Fallen {
     bare: vec3f,
 }
 
-fn fallen(light: Light, p: vec3f, place: vec3f, shadowed: bool) -> Fallen {
+// Places on maps: of what it sees of the sky, and of lights.
+fn place_on_map(place: vec3f) -> vec3f {
+    // A map is one layer of a volume, for which there is something else to bind where there is none.
+    return vec3f(dot(floor_disc.map_x, vec4f(place, 1.0)), dot(floor_disc.map_y, vec4f(place, 1.0)), 0.5);
+}
+
+fn left_on_map(slot: u32, at: vec3f) -> f32 {
+    switch (slot) {
+        case 0u: { return textureSampleLevel(attenuation_0, clamped, at, 0.0).r; }
+        case 1u: { return textureSampleLevel(attenuation_1, clamped, at, 0.0).r; }
+        case 2u: { return textureSampleLevel(attenuation_2, clamped, at, 0.0).r; }
+        case 3u: { return textureSampleLevel(attenuation_3, clamped, at, 0.0).r; }
+        case 4u: { return textureSampleLevel(attenuation_4, clamped, at, 0.0).r; }
+        case 5u: { return textureSampleLevel(attenuation_5, clamped, at, 0.0).r; }
+        case 6u: { return textureSampleLevel(attenuation_6, clamped, at, 0.0).r; }
+        default: { return textureSampleLevel(attenuation_7, clamped, at, 0.0).r; }
+    }
+}
+
+fn fallen(slot: u32, light: Light, p: vec3f, place: vec3f) -> Fallen {
+    let shadowed = slot < SHADOWED;
     let towards = to_light(light, place);
     let hood = hood_share(light, towards.direction);
     let bare = light.color * max(dot(floor_disc.up, towards.direction), 0.0);
     let s = floor_disc.shading;
     var left = 0.0;
-    if (shadowed && dot(floor_disc.up, towards.direction) > 0.0 && hood > 0.0) {
-        let direction = to_index(floor_disc.space, towards.direction);
-        let cut = floor_disc.shading_cut;
-        let scale = light.extinction_scale;
-        left = shadow_ray(p, direction, towards.distance, s.ray_step, scale, s.dark_depth, cut);
+    if (shadowed) {
+        for (var i = 0u; i < light.points; i += 1u) {
+            let one = point_of(light, i);
+            let way = to_light(one, place);
+            let share = hood_share(one, way.direction);
+            if (dot(floor_disc.up, way.direction) > 0.0 && share > 0.0) {
+                let direction = to_index(floor_disc.space, way.direction);
+                let cut = floor_disc.shading_cut;
+                let scale = light.extinction_scale;
+                left += share * shadow_ray(p, direction, way.distance, s.ray_step, scale, s.dark_depth, cut);
+            }
+        }
+        left /= max(f32(light.points), 1.0);
+        if (light.points == 0u) {
+            left = left_on_map(slot, place_on_map(place));
+        }
     }
-    return Fallen(bare * select(hood, received(s, left * hood), shadowed), bare * hood);
+    return Fallen(bare * select(hood, received(s, left), shadowed), bare * hood);
 }
 
 // What an open floor sees of the sky: moments over a hemisphere.
@@ -101,13 +142,7 @@ fn bare_sky() -> vec4f {
 // What it sees of it at a place.
 fn open_sky(place: vec3f) -> vec4f {
 #if SKY > 1
-    // The map is one layer of a volume, for which there is something else to bind where there is none.
-    let at = vec3f(
-        dot(floor_disc.map_x, vec4f(place, 1.0)),
-        dot(floor_disc.map_y, vec4f(place, 1.0)),
-        0.5,
-    );
-    let stored = textureSampleLevel(sky_map, clamped, at, 0.0);
+    let stored = textureSampleLevel(sky_map, clamped, place_on_map(place), 0.0);
     return mix(bare_sky(), stored, floor_disc.shading.strength);
 #else
     return bare_sky();
@@ -147,7 +182,7 @@ fn main(
         var bare = vec3f(0.0);
         for (var i = 0u; i < LIGHTS; i += 1u) {
             // Not from the copy: an index that varies would keep that as an array in memory.
-            let one = fallen(bound_floor_disc.lights[i], p, place, i < SHADOWED);
+            let one = fallen(i, bound_floor_disc.lights[i], p, place);
             light += one.light;
             bare += one.bare;
         }

@@ -48,10 +48,17 @@ fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towar
 #if DIRECT
     let p = biased(light, surface, towards);
     let s = eye.shading;
-    let reach = towards.distance - s.bias;
-    let direction = to_index(eye.space, towards.direction);
-    return shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth, eye.shading_cut)
-        * hood_share(light, towards.direction);
+    let cut = eye.shading_cut;
+    var sum = 0.0;
+    for (var i = 0u; i < light.points; i += 1u) {
+        let one = point_of(light, i);
+        let way = to_light(one, surface.position);
+        let direction = to_index(eye.space, way.direction);
+        let reach = way.distance - s.bias;
+        sum += shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.dark_depth, cut)
+            * hood_share(one, way.direction);
+    }
+    return sum / f32(light.points);
 #else
     return near_or_looked_up(light, volume, surface, towards);
 #endif

@@ -23,9 +23,56 @@ struct Light {
     two_sided: f32,
     // By how much the last step of rays nearby is longer: half a voxel of its volume, in scene units.
     near_ahead: f32,
-    pad0: f32,
+    // Of a light that has a size (src/model/settings/light/area.rs): point lights that stand for it, or 1 …
+    points: u32,
+    // … 1: a disc, 2: a rectangle, 3: a ball …
+    shape: u32,
+    pad0: u32,
+    // … and from its middle to its borders: to the right, up, and towards the volume. Around the place, or of a parallel
+    // light around its direction.
+    area_right: vec3f,
     pad1: f32,
+    area_up: vec3f,
     pad2: f32,
+    area_near: vec3f,
+    pad3: f32,
+}
+
+// The golden ratio less one.
+const GOLDEN_SHARE = 0.618034;
+
+// Point number `index` of `count` on a disc of radius 1, in rings.
+fn on_rings(index: u32, count: u32) -> vec2f {
+    let all = f32(count);
+    let rings = max(floor(sqrt(all) / 2.0 + 0.5), 1.0);
+    let each = all / (rings * rings);
+    var ring = 1.0;
+    var first = 0.0;
+    var end = floor(each + 0.5);
+    while (f32(index) >= end) {
+        ring += 1.0;
+        first = end;
+        end = floor(each * ring * ring + 0.5);
+    }
+    let turn = 6.2831853 * (f32(index) - first + 0.5 * ring) / (end - first);
+    return vec2f(cos(turn), sin(turn)) * sqrt((first + end) / (2.0 * all));
+}
+
+// A light's point number `index`, as a light of its own.
+fn point_of(light: Light, index: u32) -> Light {
+    var one = light;
+    if (light.points > 1u) {
+        let number = f32(index);
+        let at = (number + 0.5) / f32(light.points);
+        let spread = fract(number * GOLDEN_SHARE + 0.5);
+        let disc = on_rings(index, light.points);
+        let across = select(disc, vec2f(2.0 * at, 2.0 * spread) - 1.0, light.shape == 2u);
+        let deep = sqrt(1.0 - dot(disc, disc)) * sin(3.1415927 * (spread - 0.5));
+        let place = light.place + light.area_right * across.x + light.area_up * across.y + light.area_near * deep;
+        one.place = select(normalize(place), place, light.perspective > 0.5);
+        one.hood_axis = -normalize(place);
+    }
+    return one;
 }
 
 struct Towards {

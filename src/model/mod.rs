@@ -20,6 +20,9 @@ pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFF
 pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::labels::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::length::Length;
+pub use self::settings::light::area::{
+    LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
+};
 pub use self::settings::light::sky::{SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyRadiance};
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, SceneLight};
 pub use self::settings::quality::Quality;
@@ -29,8 +32,8 @@ pub use self::settings::sampling::{
 };
 pub use self::settings::scene_axis::SceneAxis;
 pub use self::settings::shadows::{
-    Deposit, LightStorage, MAX_BIAS_VOXELS, NearField, Precision, Resolution, ReverseKernel, ShadowAlgorithm,
-    Shadows,
+    AreaShadows, Deposit, LightStorage, MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, NearField, Precision, Resolution,
+    ReverseKernel, ShadowAlgorithm, Shadows,
 };
 pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;

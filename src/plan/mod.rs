@@ -13,6 +13,7 @@ pub use self::geometry::brick_set::BrickSet;
 pub use self::geometry::cell_distances::{CellDistances, FARTHEST};
 pub use self::geometry::cell_set::CellSet;
 pub use self::geometry::eye_frame::{eye_frame, picture_frame, preview_slab};
+pub use self::geometry::floor_place::{FloorPlace, FloorTexels};
 pub use self::geometry::light_frame::{
     LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views,
 };
@@ -27,7 +28,7 @@ pub use self::geometry::slice_order::SliceOrder;
 pub use self::geometry::sweep::{SweepFrame, sweep_directions};
 pub use keys::{
     Attenuation, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, LitLight,
-    LitLights, OpacityKey, SkyFloor, SkyKey, TablesKey,
+    LitLights, OpacityKey, SkyKey, TablesKey,
 };
 pub use probe::{Arrival, Probe, probe};
 pub use request::{RenderOptions, Request, VolumeKey};

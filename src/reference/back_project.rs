@@ -9,7 +9,7 @@ use super::footprint::SlabSlice;
 use super::kernel::Profile;
 use super::light::ViewSheets;
 use super::{Fault, Reference, Weights};
-use crate::model::{Kernel, ReverseKernel, ShadowAlgorithm};
+use crate::model::{Kernel, ReverseKernel, SceneLight, ShadowAlgorithm};
 use crate::plan::SheetPosition;
 
 /// How much of a light arrives where: the paper's attenuation volume.
@@ -44,12 +44,22 @@ impl Attenuation {
 }
 
 impl Reference<'_> {
-    /// The attenuation volume of light `index`.
+    /// The attenuation volume of light `index`: the mean of those of its points.
     pub fn attenuation(&self, index: usize) -> Attenuation {
-        match self.settings.shadows.algorithm {
-            ShadowAlgorithm::Raycast => self.raycast(index),
-            _ => self.back_project(&self.light_sheets(index)),
+        let resolution = self.light_resolution(index);
+        let of_point = |point: &SceneLight| match self.settings.shadows.algorithm {
+            ShadowAlgorithm::Raycast => self.raycast(point, resolution.divisor()),
+            _ => self.back_project_to(&self.sheets_of(point, resolution), resolution.divisor()),
+        };
+        let points = self.points(index);
+        let mut mean = Attenuation::unlit(self.scene.dims, resolution.divisor());
+        mean.values.fill(0.0);
+        for point in &points {
+            for (sum, value) in mean.values.iter_mut().zip(of_point(point).values) {
+                *sum += value / points.len() as f64;
+            }
         }
+        mean
     }
 
     /// The attenuation volumes of all lights that have one.
@@ -58,10 +68,14 @@ impl Reference<'_> {
         (0..lights.len()).map(|index| self.casts(index).then(|| self.attenuation(index))).collect()
     }
 
-    /// Splats a light's sheets back into its attenuation volume. What several views claim, the
+    /// Splats the sheets of a point light back into its attenuation volume. What several views claim, the
     /// last of them gets; what none does is unattenuated.
     pub fn back_project(&self, sheets: &[ViewSheets]) -> Attenuation {
-        let mut volume = Attenuation::unlit(self.scene.dims, self.settings.shadows.resolution.divisor());
+        self.back_project_to(sheets, self.settings.shadows.resolution.divisor())
+    }
+
+    fn back_project_to(&self, sheets: &[ViewSheets], divisor: usize) -> Attenuation {
+        let mut volume = Attenuation::unlit(self.scene.dims, divisor);
         for sheets in sheets.iter().filter(|sheets| !sheets.deposits.is_empty()) {
             let filled: Vec<_> = match self.weights() {
                 Weights::Footprint | Weights::Scatter if !self.settings.shadows.first_touch => {

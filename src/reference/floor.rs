@@ -63,7 +63,7 @@ impl Reference<'_> {
             };
             let cone = light.cone();
             let hood = cone.share(-cone.axis.dot(to_light));
-            let arriving = rays.as_ref().map_or(hood, |rays| self.cured(rays.attenuation(index)));
+            let arriving = rays.as_ref().map_or(hood, |rays| self.cured(rays.attenuation_above(index, up)));
             for channel in 0..3 {
                 let rgb =
                     linear_from_srgb(light.color[channel]) * light.intensity * to_light.dot(up).max(0.0);

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::sheet::{Cutting, Stack};
 use super::{Fault, Reference};
-use crate::model::{Deposit, SceneLight};
+use crate::model::{Deposit, Resolution, SceneLight, Shadows};
 use crate::plan::{LightView, light_views};
 
 /// What the sheets of one view of a light hold.
@@ -27,11 +27,15 @@ impl ViewSheets {
 }
 
 impl Reference<'_> {
-    /// The sheets of every view of light `index`: P figure 3 up to the reverse splat.
+    /// The sheets of every view of light `index`, a point: P figure 3 up to the reverse splat.
     pub fn light_sheets(&self, index: usize) -> Vec<ViewSheets> {
-        let shadows = &self.settings.shadows;
-        let light = self.light(index);
-        light_views(&light, shadows, &self.scene).into_iter().map(|view| self.march(&light, view)).collect()
+        self.sheets_of(&self.light(index), self.light_resolution(index))
+    }
+
+    /// The sheets of every view of a point light, for a volume of a resolution.
+    pub(super) fn sheets_of(&self, light: &SceneLight, resolution: Resolution) -> Vec<ViewSheets> {
+        let shadows = Shadows { resolution, ..self.settings.shadows.clone() };
+        light_views(light, &shadows, &self.scene).into_iter().map(|view| self.march(light, view)).collect()
     }
 
     fn march(&self, light: &SceneLight, view: LightView) -> ViewSheets {

@@ -47,7 +47,7 @@ use glam::DVec3;
 
 use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
-use crate::model::{BakedTransfer, Classification, Kernel, SceneLight, Settings};
+use crate::model::{BakedTransfer, Classification, Kernel, Resolution, SceneLight, Settings};
 use field::classified::{Classified, Side};
 use kernel::Profile;
 
@@ -192,6 +192,21 @@ impl<'a> Reference<'a> {
     /// Light `index`, its position in the scene.
     fn light(&self, index: usize) -> SceneLight {
         self.settings.lights[index].in_scene(&self.settings.camera)
+    }
+
+    /// The points of light `index` that stand for it.
+    fn points(&self, index: usize) -> Vec<SceneLight> {
+        self.light(index).points(self.settings.shadows.area.samples)
+    }
+
+    /// The resolution of the volume of light `index`; one volume for all lights has one.
+    fn light_resolution(&self, index: usize) -> Resolution {
+        let shadows = &self.settings.shadows;
+        if self.settings.combines_lights() {
+            shadows.resolution
+        } else {
+            self.light(index).resolution(shadows)
+        }
     }
 
     /// Whether light `index` has an attenuation volume.

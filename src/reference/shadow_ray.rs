@@ -14,7 +14,8 @@ use crate::model::{BakedTransfer, Deposit, Kernel, LightKind, Quadrature, SceneL
 /// What rays to one light are sampled with.
 pub(super) struct ShadowRays<'r> {
     reference: &'r Reference<'r>,
-    light: SceneLight,
+    /// What stands for the light; mostly the light itself.
+    points: Vec<SceneLight>,
     profile: Profile,
     quadrature: Quadrature,
     table: BakedTransfer,
@@ -29,9 +30,17 @@ impl<'r> ShadowRays<'r> {
         kernel: Kernel,
         quadrature: Quadrature,
     ) -> Self {
+        Self::of_points(reference, reference.points(index), (kernel, quadrature))
+    }
+
+    fn of_points(
+        reference: &'r Reference<'r>,
+        points: Vec<SceneLight>,
+        (kernel, quadrature): (Kernel, Quadrature),
+    ) -> Self {
         Self {
             reference,
-            light: reference.light(index),
+            points,
             profile: reference.profile(reference.gathered_kernel(kernel)),
             quadrature,
             table: reference.gathered_table(Side::Lighting),
@@ -39,19 +48,39 @@ impl<'r> ShadowRays<'r> {
         }
     }
 
-    /// ∏ (1 − α(s + r·k·Δs)) over the samples between an index-space point and the light, times what
-    /// the hood lets through. Point samples: nothing is stretched.
+    /// What is left of the light at an index-space point: the mean over the light.
     pub(super) fn attenuation(&self, point: DVec3) -> f64 {
+        self.attenuation_above(point, DVec3::ZERO)
+    }
+
+    /// The same of a surface that only what lies above it reaches, where `up` points there: all of the light where that
+    /// is zero.
+    pub(super) fn attenuation_above(&self, point: DVec3, up: DVec3) -> f64 {
+        let place = self.reference.scene.scene_from_index.transform_point3(point);
+        let is_above = |light: &&SceneLight| {
+            let towards = match light.kind {
+                LightKind::Parallel => light.direction(),
+                LightKind::Perspective => DVec3::from(light.position) - place,
+            };
+            up == DVec3::ZERO || towards.dot(up) > 0.0
+        };
+        let seen = self.points.iter().filter(is_above);
+        seen.map(|light| self.attenuation_of(light, point)).sum::<f64>() / self.points.len() as f64
+    }
+
+    /// ∏ (1 − α(s + r·k·Δs)) over the samples between an index-space point and a point light, times what
+    /// the hood lets through. Point samples: nothing is stretched.
+    fn attenuation_of(&self, light: &SceneLight, point: DVec3) -> f64 {
         let reference = self.reference;
         let place = reference.scene.scene_from_index.transform_point3(point);
-        let (towards, reach) = match self.light.kind {
-            LightKind::Parallel => (self.light.direction(), f64::INFINITY),
+        let (towards, reach) = match light.kind {
+            LightKind::Parallel => (light.direction(), f64::INFINITY),
             LightKind::Perspective => {
-                let away = DVec3::from(self.light.position) - place;
+                let away = DVec3::from(light.position) - place;
                 (away.normalize_or(DVec3::Z), away.length())
             }
         };
-        let cone = self.light.cone();
+        let cone = light.cone();
         let step = reference.settings.shadows.ray_step(&reference.scene);
         let forward = reference.scene.index_from_scene.transform_vector3(towards);
         let first = match reference.settings.shadows.deposit {
@@ -86,7 +115,7 @@ impl<'r> ShadowRays<'r> {
                 let there = offsets.iter().map(there).sum::<f64>() / offsets.len() as f64;
                 let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
                 let share = there * reference.share_that_shades(&self.remaining, at);
-                share * self.table.sample(density)[3] * length * self.light.density_scale
+                share * self.table.sample(density)[3] * length * light.density_scale
             })
             .sum();
         (-optical_depth).exp() * cone.share(-cone.axis.dot(towards))
@@ -94,11 +123,11 @@ impl<'r> ShadowRays<'r> {
 }
 
 impl Reference<'_> {
-    /// The attenuation volume of light `index`, filled by a ray from every voxel (P §3.4).
-    pub(super) fn raycast(&self, index: usize) -> Attenuation {
+    /// The attenuation volume of a point light, filled by a ray from every voxel (P §3.4).
+    pub(super) fn raycast(&self, light: &SceneLight, divisor: usize) -> Attenuation {
         let shadows = &self.settings.shadows;
-        let mut volume = Attenuation::unlit(self.scene.dims, shadows.resolution.divisor());
-        let rays = ShadowRays::new(self, index, shadows.kernel, shadows.quadrature);
+        let mut volume = Attenuation::unlit(self.scene.dims, divisor);
+        let rays = ShadowRays::of_points(self, vec![*light], (shadows.kernel, shadows.quadrature));
         volume.values = (0..volume.values.len())
             .into_par_iter()
             .map(|voxel| rays.attenuation(volume.point_of(voxel)))

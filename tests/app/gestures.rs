@@ -136,6 +136,30 @@ fn hoods_are_opened_by_their_rim() {
     wait_until_idle(&mut harness);
 }
 
+/// Of a parallel light, which is shown on a sphere around the volume: others may stand outside of the picture.
+#[test]
+fn lights_grow_by_their_borders() {
+    let mut harness = window();
+    click(&mut harness, "Disc");
+    harness.run_steps(3);
+    let angle = |harness: &Harness<'_, App>| harness.state().settings().lights[0].angle_deg;
+    let before = angle(&harness);
+    let middle = harness.get_by_label("Light handle Key").rect().center();
+    let handle = harness.get_by_label("Size handle Key").rect().center();
+    drag(&mut harness, handle, (handle - middle).normalized() * 20.0);
+    harness.run_steps(2);
+    assert!(angle(&harness) > 1.1 * before, "{} from {before}", angle(&harness));
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(angle(&harness), before, "a drag is a step");
+    // Far beyond the middle: as narrow as can be, and there to be grabbed again.
+    drag(&mut harness, handle, (middle - handle) * 3.0);
+    harness.run_steps(2);
+    assert!(angle(&harness) < before && angle(&harness) > 0.0, "{}", angle(&harness));
+    assert!(harness.query_by_label("Size handle Key").is_some());
+    wait_until_idle(&mut harness);
+}
+
 #[test]
 fn the_probe_says_what_light_arrives() {
     let mut harness = bare_window();

@@ -239,3 +239,16 @@ pub(crate) const OPENNESS: f64 = 0.01;
 pub(crate) const OPENNESS_BESIDE_A_WALL: f64 = 0.03;
 /// Moments of the GPU beside those of the reference: sums over directions of numbers with 11 bits, and stored in such.
 pub(crate) const SAME_OPENNESS: Limit = Limit { max: 2e-3, rmse: 3e-4 };
+
+/// Worst error of what is left of a disc beside a half-plane, 8 to 64 voxels behind it: steps of 64 points.
+pub(crate) const PENUMBRA: f64 = 0.02;
+
+/// How much wider than twice a penumbra is at twice the distance, as a share: that of a walk at random is a quarter.
+pub(crate) const PENUMBRA_WIDTH: f64 = 0.03;
+
+/// What a light that has a size loses behind something small against what a point loses, as a share of what is open.
+pub(crate) const PENUMBRA_ENERGY: f64 = 0.005;
+
+/// What of lights that have a size gets to the floor, on a map whose texels are as wide as half a voxel here, from sheets
+/// whose pixels are a voxel wide: rays find edges a little sharper.
+pub(crate) const FLOOR_PENUMBRA: Limit = Limit { max: 0.02, rmse: 1.6e-3 };

@@ -118,9 +118,11 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("eye/floor.wgsl", [8, 8, 1]),
         ("eye/gather.wgsl", [8, 8, 1]),
         // What LANES says, which the parser leaves open.
+        ("light/average.wgsl", [8, 8, 4]),
         ("light/backproject.wgsl", [1, 1, 1]),
         ("light/clear_margin.wgsl", [8, 8, 4]),
         ("light/combine.wgsl", [8, 8, 4]),
+        ("light/floor_shadow.wgsl", [8, 8, 1]),
         ("light/march.wgsl", [8, 8, 1]),
         ("light/raycast.wgsl", [8, 8, 4]),
         ("output/display.wgsl", [8, 8, 1]),

@@ -9,13 +9,20 @@ use super::Panels;
 use super::controls::{Number, choice, color, row, switch, unlabelled};
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
-use crate::model::{Camera, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, Settings};
+use crate::model::{Camera, Hood, Light, LightKind, LightLock, LightShape, MAX_LIGHTS, MAX_NAME, Settings};
 
 const KINDS: [(LightKind, Named); 2] =
     [(LightKind::Parallel, text::lights::PARALLEL), (LightKind::Perspective, text::lights::PERSPECTIVE)];
 
 const LOCKS: [(LightLock, Named); 2] =
     [(LightLock::Scene, text::lights::WITH_VOLUME), (LightLock::Camera, text::lights::WITH_CAMERA)];
+
+const SHAPES: [(LightShape, Named); 4] = [
+    (LightShape::Point, text::lights::POINT),
+    (LightShape::Disc, text::lights::DISC),
+    (LightShape::Rectangle, text::lights::RECTANGLE),
+    (LightShape::Ball, text::lights::BALL),
+];
 
 /// The list of lights; the selected one is open.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -78,6 +85,7 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Comm
         }
         hood(ui, &mut light.hood);
     }
+    shape(ui, light);
     let mut lock = light.lock;
     choice(ui, text::lights::LOCK, &mut lock, &LOCKS);
     if lock != light.lock {
@@ -98,6 +106,30 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Comm
     density.show(ui, &mut light.density_scale, fresh.density_scale);
     switch(ui, text::lights::CASTS_SHADOWS, &mut light.casts_shadows);
     ui.button(text::lights::REMOVE.name).on_hover_text(text::lights::REMOVE.tip).clicked()
+}
+
+/// What shines, and how large it is.
+fn shape(ui: &mut Ui, light: &mut Light) {
+    let fresh = Light::default();
+    choice(ui, text::lights::SHAPE, &mut light.shape, &SHAPES);
+    if light.shape == LightShape::Point {
+        return;
+    }
+    match light.kind {
+        LightKind::Parallel => {
+            let angle = Number::new(text::lights::ANGLE, 0.0..=60.0).unit(DEGREES).decimals(1);
+            angle.show(ui, &mut light.angle_deg, fresh.angle_deg);
+        }
+        LightKind::Perspective => {
+            Number::new(text::lights::SIZE, 0.0..=4.0).show(ui, &mut light.size, fresh.size);
+        }
+    }
+    if light.shape == LightShape::Rectangle {
+        let aspect = Number::new(text::lights::ASPECT, 0.1..=10.0).log();
+        aspect.show(ui, &mut light.aspect, fresh.aspect);
+        let turn = Number::new(text::lights::TURN, -180.0..=180.0).unit(DEGREES).decimals(0);
+        turn.show(ui, &mut light.turn_deg, fresh.turn_deg);
+    }
 }
 
 /// A lampshade.

@@ -9,7 +9,8 @@ use super::{Panels, sampling};
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::model::{
-    Deposit, LightStorage, NearField, Precision, Quality, Resolution, ReverseKernel, ShadowAlgorithm,
+    Deposit, LightStorage, MAX_LIGHT_SAMPLES, NearField, Precision, Quality, Resolution, ReverseKernel,
+    ShadowAlgorithm,
 };
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
@@ -85,6 +86,13 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             choice(ui, text::shadows::STORAGE, &mut shadows.storage, &STORAGES);
             ui.weak(text::shadows::light_volumes(panels.facts.light_mebibytes, combines));
             choice(ui, text::shadows::DEPOSIT, &mut shadows.deposit, &DEPOSITS);
+            let samples = &mut shadows.area.samples;
+            let mut points = f64::from(*samples);
+            let number =
+                Number::new(text::shadows::AREA_SAMPLES, 1.0..=f64::from(MAX_LIGHT_SAMPLES)).decimals(0);
+            number.show(ui, &mut points, f64::from(panels.defaults.shadows.area.samples));
+            *samples = points.round().clamp(1.0, f64::from(MAX_LIGHT_SAMPLES)) as u32;
+            choice(ui, text::shadows::AREA_RESOLUTION, &mut shadows.area.resolution, &RESOLUTIONS);
         });
     });
 }

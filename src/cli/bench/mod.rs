@@ -6,7 +6,7 @@
 //! background does); *load* (from a file to its first picture, stage by stage) and *memory*; *read* (of that only what needs
 //! no adapter); *growth* (light volumes of clouds of growing size, splatted
 //! and by rays, with everything that saves work and without);
-//! *sky* (light from all around, in units of one light's); *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
+//! *sky* and *area* (light from all around, and of a light that has a size, in units of one light's); *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
 //! the picture that a volume is opened with).
 
 use std::path::PathBuf;
@@ -14,6 +14,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
+mod area;
 mod edit;
 mod first_look;
 mod growth;
@@ -38,7 +39,7 @@ const WARM_UP: usize = 2;
 const STEP_DEG: f64 = 12.0;
 
 /// What there is to be measured.
-const CASES: [&str; 12] = [
+const CASES: [&str; 13] = [
     "orbit",
     "light-drag",
     "light-build",
@@ -50,6 +51,7 @@ const CASES: [&str; 12] = [
     "growth",
     "paper",
     "sky",
+    "area",
     "first-look",
 ];
 
@@ -76,7 +78,7 @@ pub(super) struct BenchArgs {
     /// Timed frames per case
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
-    /// Only the case of this name; growth, which takes minutes, first-look, read and sky run only when asked for
+    /// Only the case of this name; growth, which takes minutes, first-look, read, sky and area run only when asked for
     #[arg(long, value_name = "CASE", value_parser = CASES)]
     only: Option<String>,
     /// Allow cases that are not rendered at full resolution and with an exact kernel
@@ -89,7 +91,9 @@ pub(super) struct BenchArgs {
 /// Runs the cases and prints them.
 pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let wants = |case: &str| {
-        args.only.as_deref().map_or(!["growth", "first-look", "sky"].contains(&case), |only| only == case)
+        args.only
+            .as_deref()
+            .map_or(!["growth", "first-look", "sky", "area"].contains(&case), |only| only == case)
     };
     let mut cases = Vec::new();
     if args.only.as_deref() == Some("read") {
@@ -131,6 +135,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         }
         if wants("paper") {
             bench.paper(&mut cases, &mut found)?;
+        }
+        if wants("area") {
+            bench.area(&mut cases, &mut found)?;
         }
         if wants("sky") {
             bench.sky(&mut cases, &mut found)?;

@@ -82,7 +82,7 @@ impl Bench<'_> {
     }
 
     /// Frames of two looks in turn, each changed by `change` from frame to frame.
-    fn in_turn(
+    pub(super) fn in_turn(
         &mut self,
         looks: &[Settings; 2],
         change: impl Fn(&mut Settings, usize),

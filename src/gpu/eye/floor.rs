@@ -1,7 +1,8 @@
 //! The floor pass: the light on the floor under the volume.
 
 use super::gather::EyePass;
-use crate::gpu::light::packed::pack_light;
+use crate::gpu::light::floor_shadow::FloorShadow;
+use crate::gpu::light::packed::{light_entries, pack_light};
 use crate::gpu::light::raycast::RaycastVariant;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
@@ -13,7 +14,7 @@ use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
 use crate::model::{Floor, MAX_LIGHTS, Settings, linear_from_srgb};
-use crate::plan::{LitLights, SkyFloor, ray_reach};
+use crate::plan::{FloorPlace, LitLights, ray_reach};
 
 /// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
 /// from the eye.
@@ -29,12 +30,14 @@ pub(crate) struct FloorInputs<'a> {
     pub options: &'a RenderOptions,
     /// What it sees of the sky.
     pub sky: Option<&'a FloorMap>,
+    /// What gets there of each of the lights, in their order, where there is a map of that.
+    pub shadows: &'a [Option<&'a FloorShadow>],
 }
 
 /// Draws some rows of the floor, where the volume in `picture` does not cover it.
 pub(crate) fn draw(
     gpu: Gpu<'_>,
-    FloorInputs { tables, eye, lit, settings, options, sky }: FloorInputs<'_>,
+    FloorInputs { tables, eye, lit, settings, options, sky, shadows }: FloorInputs<'_>,
     picture: &wgpu::TextureView,
     floor_light: &wgpu::TextureView,
     rows: std::ops::Range<u32>,
@@ -54,7 +57,7 @@ pub(crate) fn draw(
         first_row: rows.start,
         end_row: rows.end,
         runs,
-        ..uniform(eye, &volume.scene, settings, lit)
+        ..uniform(eye, &volume.scene, settings, (lit, shadows))
     };
     let uniform = gpu.uniform("Floor::uniform", uniform);
     let own = gpu.bind(
@@ -71,7 +74,10 @@ pub(crate) fn draw(
         ],
     );
     let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest, tables.lighting_pyramids(volume));
-    pass::dispatch(encoder, "Floor::pass", &pipeline, &[&own, &of_volume], tiles);
+    let maps: Vec<_> =
+        shadows.iter().map(|map| map.as_ref().map_or(gpu.placeholder, |map| &map.view)).collect();
+    let of_lights = gpu.bind("Floor::lights", &pipeline, 2, &light_entries(gpu, &maps));
+    pass::dispatch(encoder, "Floor::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
     Ok(())
 }
 
@@ -109,7 +115,12 @@ impl Variant for FloorVariant {
 }
 
 /// What the shader knows of the eye, the floor and the lights; no rows yet.
-fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLights) -> uniforms::Floor {
+fn uniform(
+    eye: &EyePass,
+    scene: &SceneSpace,
+    settings: &Settings,
+    (lit, shadows): (&LitLights, &[Option<&FloorShadow>]),
+) -> uniforms::Floor {
     let uniforms::Eye { frame, shading, space, shading_cut, .. } = eye.uniform();
     let Floor { on: _, height, radius, color, opacity, shadow_only } = settings.floor;
     // How high a scene point is, which is an affine map from index space.
@@ -117,10 +128,14 @@ fn uniform(eye: &EyePass, scene: &SceneSpace, settings: &Settings, lit: &LitLigh
     let [a, b, c] = scene.scene_from_index.matrix3.transpose().mul_vec3(up).as_vec3().to_array();
     let offset = scene.scene_from_index.translation.dot(up) as f32;
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
-    let [map_x, map_y] = SkyFloor::of(settings).map_or([[0.0; 4]; 2], FloorMap::lookup);
+    let [map_x, map_y] = FloorPlace::of(settings).map_or([[0.0; 4]; 2], FloorPlace::lookup);
     let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
-    for (slot, light) in packed.iter_mut().zip(lit.all()) {
+    for (at, (slot, light)) in packed.iter_mut().zip(lit.all()).enumerate() {
         *slot = pack_light(&light.light, None, scene, settings);
+        // No rays to points where a map knows what they would find.
+        if shadows.get(at).is_some_and(Option::is_some) {
+            slot.points = 0;
+        }
     }
     uniforms::Floor {
         frame,

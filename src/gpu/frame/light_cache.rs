@@ -2,18 +2,21 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::light_build::LightBuild;
-use super::loaded::Loaded;
+use super::loaded::{Loaded, Wanted};
+use crate::data::BRICK_EDGE;
 use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::{Filling, LightVolume};
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::volume::transfer_tables::{Needs, Tables};
 use crate::gpu::volume::{GpuVolume, brick_dims};
-use crate::gpu::{Context, GpuError, RenderOptions};
-use crate::model::{MAX_BIAS_VOXELS, NearField, SceneLight, Settings};
+use crate::gpu::{GpuError, RenderOptions};
+use crate::model::{MAX_BIAS_VOXELS, NearField, SceneLight, Settings, ShadowAlgorithm};
 use crate::plan::{
-    CellSet, CellsAhead, FARTHEST, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request, bias_reach, lookup_reach,
-    picture_frame, slab_reach, stretch_reach,
+    BrickSet, CellSet, CellsAhead, FARTHEST, FloorPlace, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request,
+    bias_reach, lookup_reach, picture_frame, slab_reach, stretch_reach,
 };
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
@@ -34,17 +37,6 @@ pub(super) struct PlacedLights {
     pub builds: Vec<LightBuild>,
     /// Bricks of the combined volume, if it must be filled first.
     pub bricks_to_combine: Option<usize>,
-}
-
-/// What a picture is asked for, and of whom.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Wanted<'a> {
-    pub context: &'a Context,
-    pub request: &'a Request,
-    pub options: &'a RenderOptions,
-    pub keys: &'a FrameKeys,
-    /// Counts pictures: volumes that were used last are kept longest.
-    pub now: u64,
 }
 
 /// How many cells from what the transfer functions show a picture looks up light: as far as its samples
@@ -74,6 +66,28 @@ fn lookups_ahead(volume: &GpuVolume, settings: &Settings, light: &SceneLight, di
     }
     let way = (near.length_voxels() + 0.5 * divisor as f64) * volume.scene.smallest_edge();
     CellsAhead::towards(light, &volume.scene, way)
+}
+
+/// Where the floor lies that has a map of what gets there of a light of so many points. It takes what has passed all of the
+/// volume, so that nothing may lie below: at most what is left of a brick that reaches above it, as under what stands there.
+fn floor_of(volume: &GpuVolume, tables: &Tables, settings: &Settings, points: u32) -> Option<FloorPlace> {
+    let place = FloorPlace::of(settings)?;
+    if points < 2 || settings.shadows.algorithm != ShadowAlgorithm::Splat {
+        return None;
+    }
+    let scene = &volume.scene;
+    let up = place.up.direction();
+    let edge = BRICK_EDGE as f64;
+    // From the middle of a brick to its highest corner.
+    let axes = scene.scene_from_index.matrix3.to_cols_array_2d().map(DVec3::from);
+    let half: f64 = axes.into_iter().map(|axis| 0.5 * edge * axis.dot(up).abs()).sum();
+    let is_below = |brick: [usize; 3]| {
+        let middle = DVec3::from(brick.map(|at| (at as f64 + 0.5) * edge - 0.5));
+        scene.scene_from_index.transform_point3(middle).dot(up) + half < place.height
+    };
+    let BrickSet { dims: [nx, ny, _], members } = &*tables.lighting.occupied;
+    let mut bricks = members.iter().enumerate().filter(|(_, member)| **member).map(|(at, _)| at);
+    (!bricks.any(|at| is_below([at % nx, at / nx % ny, at / (nx * ny)]))).then_some(place)
 }
 
 /// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples
@@ -167,7 +181,7 @@ impl Loaded {
         // Without shadows none is pushed out: whoever compares comes back to them.
         let most_kept =
             if shadowed == 0 { lights.len() } else { shadowed + SPARE_LIGHT_VOLUMES.max(shadowed) };
-        let at_coarse = |full: &LightKey| request.coarse.map(|resolution| full.at_resolution(resolution));
+        let at_coarse = |full: &LightKey| request.coarse.map(|resolution| full.coarse(resolution));
         let is_wanted = |key: &LightKey| {
             full_keys.iter().flatten().any(|full| full == key || at_coarse(full).as_ref() == Some(key))
         };
@@ -188,7 +202,9 @@ impl Loaded {
         let least_reach = if request.coarse.is_some() || options.preview { 0 } else { reach };
         let usable = |known: &Cached<LightKey, LightVolume>, index: usize, key: &LightKey| {
             let least = needed(key, least_reach, ahead_of(index, key));
-            known.key() == key && is_within(&least, &known.value.filled)
+            let floor = floor_of(volume, &tables.value, settings, key.samples());
+            let has_floor = floor.is_none() || known.value.floor.as_ref().map(|map| map.place) == floor;
+            known.key() == key && has_floor && is_within(&least, &known.value.filled)
         };
         let mut keys = vec![None; full_keys.len()];
         let mut builds: Vec<LightBuild> = Vec::new();
@@ -222,9 +238,10 @@ impl Loaded {
                 let filled = all(reach);
                 let margin = all(reach.max(stretch_reach(WIDEST))).without(&filled);
                 let reach = read_around(options, key.resolution().divisor(), reach, &aheads);
-                let filling = Filling { filled, margin, reach, aheads };
+                let floor = floor_of(volume, &tables.value, settings, key.samples());
+                let filling = Filling { filled, margin, reach, aheads, floor };
                 let fresh = LightVolume::new(context, volume, &key, filling, recyclable)?;
-                builds.push(LightBuild::new(volume, request, index, &fresh, key.resolution(), options.chunk));
+                builds.push(LightBuild::new(wanted, volume, index, (&key, &fresh))?);
                 lights.push(Cached::unfilled(key.clone(), fresh));
             }
             for known in lights.iter_mut().filter(|known| *known.key() == key) {

@@ -12,9 +12,20 @@ use crate::gpu::volume::GpuVolume;
 use crate::gpu::volume::materials::Materials;
 use crate::gpu::volume::presence::Presence;
 use crate::gpu::volume::transfer_tables::Tables;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::{Classification, Settings, SheetOrder};
-use crate::plan::{CombinedKey, LightKey, SkyKey, TablesKey};
+use crate::plan::{CombinedKey, FrameKeys, LightKey, Request, SkyKey, TablesKey};
+
+/// What a picture is asked for, and of whom.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    pub context: &'a Context,
+    pub request: &'a Request,
+    pub options: &'a RenderOptions,
+    pub keys: &'a FrameKeys,
+    /// Counts pictures: volumes that were used last are kept longest.
+    pub now: u64,
+}
 
 /// A volume on the GPU, and what makes sense only together with it.
 #[derive(Debug)]

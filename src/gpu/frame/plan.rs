@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::job::Job;
-use super::light_cache::{PlacedLights, Wanted};
-use super::loaded::Loaded;
+use super::light_cache::PlacedLights;
+use super::loaded::{Loaded, Wanted};
 use super::report::Report;
 use super::sky_cache::PlacedSky;
 use super::step::{Product, Side, Step};
@@ -145,14 +145,23 @@ impl Renderer {
             let wanted =
                 Wanted { context: &self.tools.context, request: &request, options, keys: &keys, now };
             sky = loaded.value.place_sky(&self.tools, wanted)?;
+            if keys.combined.is_none() {
+                // And so it does lights that have a size.
+                let mut recyclable = loaded.value.take_unfinished();
+                placed = loaded.value.place_lights(wanted, &mut recyclable)?;
+                if !recyclable.is_empty() {
+                    recyclable.clear();
+                    self.tools.pool.forget_groups();
+                }
+            }
         }
         let is_drawn = role.is_some();
+        for (at, build) in placed.builds.iter().enumerate() {
+            steps.extend(build.steps(at, options.light_parts.max(1)));
+        }
         let role = if let Some(role) = role {
             role
         } else {
-            for (at, build) in placed.builds.iter().enumerate() {
-                steps.extend(build.steps(at, options.light_parts.max(1)));
-            }
             steps.extend(combine_steps(placed.bricks_to_combine));
             if request.settings.scatters() {
                 let voxels = loaded.value.voxels_for(&self.tools.context, &request.settings)?;

@@ -1,7 +1,6 @@
 //! Which volume of the sky's visibility a picture needs, and which are kept.
 
-use super::light_cache::Wanted;
-use super::loaded::Loaded;
+use super::loaded::{Loaded, Wanted};
 use super::step::{Product, Step};
 use crate::gpu::GpuError;
 use crate::gpu::resources::cached::Cached;
@@ -9,7 +8,7 @@ use crate::gpu::resources::tools::Tools;
 use crate::gpu::sky::sweep::SkyBuild;
 use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::Gpu;
-use crate::plan::{SkyFloor, SkyKey};
+use crate::plan::{FloorPlace, SkyKey};
 
 /// Volumes that are kept: that of the picture, that of its previews, and one that undoing a change finds again.
 const MOST_KEPT: usize = 3;
@@ -51,7 +50,7 @@ impl Loaded {
         let Some(full) = &keys.sky else { return Ok(PlacedSky::default()) };
         let coarse = request.coarse.map(|_| full.coarse());
         // What a floor sees is found together with all else.
-        let floor = SkyFloor::of(&request.settings);
+        let floor = FloorPlace::of(&request.settings);
         let has_floor =
             |known: &SkyVolume| floor.is_none() || known.floor.as_ref().map(|map| map.place) == floor;
         let find =

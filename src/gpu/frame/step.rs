@@ -41,6 +41,17 @@ pub(super) struct LightStep {
     pub part: Part,
 }
 
+/// Rays from the voxels of some bricks to a light.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct RaycastStep {
+    /// Index of the light build.
+    pub build: usize,
+    /// Number of the point of the light.
+    pub point: usize,
+    /// Which of its bricks.
+    pub bricks: Range<usize>,
+}
+
 /// A transfer function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
@@ -90,8 +101,12 @@ pub(super) enum Step {
     Materials(Side, u32, Range<usize>),
     March(LightStep),
     Backproject(LightStep),
-    /// Index of the light build, and which of its bricks.
-    Raycast(usize, Range<usize>),
+    Raycast(RaycastStep),
+    /// The volumes of points of a light join those before: index of the light build, and of the last of them.
+    Average {
+        build: usize,
+        point: usize,
+    },
     /// Bricks of the volume in which all lights are combined.
     Combine(Range<usize>),
     /// What attenuates the light of a sky.
@@ -116,8 +131,8 @@ impl Step {
             Self::Upload(_) | Self::Presence(_) => Stage::Upload,
             Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
-            Self::Backproject(..) | Self::Combine(_) => Stage::LightBackproject,
-            Self::Raycast(..) => Stage::LightRaycast,
+            Self::Backproject(..) | Self::Average { .. } | Self::Combine(_) => Stage::LightBackproject,
+            Self::Raycast(_) => Stage::LightRaycast,
             Self::SkyBlocks | Self::SkyBatch(_) => Stage::Sky,
             Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => Stage::Eye,
             Self::Display => Stage::Display,

@@ -1,5 +1,7 @@
 //! Lights as the passes that shade take them: packed for uniforms, and their volumes bound.
 
+use glam::DVec3;
+
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{Named, Pipeline, view_of};
 use crate::gpu::pipelines::layouts::ATTENUATION;
@@ -7,7 +9,7 @@ use crate::gpu::pipelines::uniforms;
 use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::Gpu;
 use crate::math::SceneSpace;
-use crate::model::{LightKind, SKY_AHEAD, SceneLight, Settings, SkyRadiance};
+use crate::model::{LightArea, LightKind, SKY_AHEAD, SceneLight, Settings, SkyRadiance};
 use crate::plan::LitLight;
 
 /// A light, and the volume that says how much of it is left.
@@ -37,6 +39,7 @@ pub(crate) fn pack_light(
             (position, to_index.transform_point3(position), 1.0)
         }
     };
+    let border = |of: fn(&LightArea) -> DVec3| light.area.map_or([0.0; 3], |area| of(&area).as_vec3().into());
     uniforms::Light {
         place: place.as_vec3().into(),
         perspective,
@@ -49,9 +52,15 @@ pub(crate) fn pack_light(
         place_in_index: place_in_index.as_vec3().into(),
         two_sided: f32::from(u8::from(!light.casts_shadows)),
         near_ahead: volume.map_or(0.0, |volume| 0.5 * volume.divisor as f64 * scene.smallest_edge()) as f32,
-        pad0: 0.0,
+        points: light.area.map_or(1, |_| settings.shadows.area.samples),
+        shape: light.area.map_or(0, |area| area.shape as u32),
+        pad0: 0,
+        area_right: border(|area| area.right),
         pad1: 0.0,
+        area_up: border(|area| area.up),
         pad2: 0.0,
+        area_near: border(|area| area.near),
+        pad3: 0.0,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::floor_shadow::FloorShadow;
 use crate::data::BRICK_EDGE;
 use crate::gpu::pipelines::binding::{Named, view_of};
 use crate::gpu::pipelines::variant::Only;
@@ -11,7 +12,7 @@ use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::{Gpu, GpuVolume, texture_3d};
 use crate::gpu::{Context, GpuError};
 use crate::model::Precision;
-use crate::plan::{BrickSet, CellSet, CellsAhead, LightKey, LightView, reverse_reach_voxels};
+use crate::plan::{BrickSet, CellSet, CellsAhead, FloorPlace, LightKey, LightView, reverse_reach_voxels};
 
 /// One light's attenuation volume.
 #[derive(Debug)]
@@ -24,6 +25,8 @@ pub(crate) struct LightVolume {
     pub texture: wgpu::Texture,
     /// A view of all of it.
     pub view: wgpu::TextureView,
+    /// What gets to the floor, if that is looked up.
+    pub floor: Option<FloorShadow>,
     /// Cells (of light voxels) that hold, or will hold, values.
     pub filled: Arc<CellSet>,
     /// How far, in data cells around what the transfer functions show, those lie at most.
@@ -53,6 +56,8 @@ pub(crate) struct Filling {
     pub reach: u8,
     /// How far ahead of samples it will be looked up.
     pub aheads: Vec<CellsAhead>,
+    /// Where the floor lies, if a map is to say what gets there.
+    pub floor: Option<FloorPlace>,
 }
 
 impl LightVolume {
@@ -67,7 +72,8 @@ impl LightVolume {
         filling: Filling,
         recyclable: &mut Vec<Self>,
     ) -> Result<Self, GpuError> {
-        let Filling { filled, margin, reach, aheads } = filling;
+        let Filling { filled, margin, reach, aheads, floor } = filling;
+        let floor = floor.map(|place| FloorShadow::new(context, place)).transpose()?;
         let divisor = key.resolution().divisor();
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
         let format = match key.precision() {
@@ -80,6 +86,7 @@ impl LightVolume {
             divisor,
             texture,
             view,
+            floor,
             margin,
             cleared,
             filled,
@@ -97,6 +104,29 @@ impl LightVolume {
         let texture = attenuation_texture(context, dims, format)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(fresh(texture, view, None))
+    }
+
+    /// Another one with the same voxels, nothing of which is filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn alike(&self, context: &Context, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        let texture = attenuation_texture(context, self.dims, format)?;
+        Ok(Self {
+            dims: self.dims,
+            divisor: self.divisor,
+            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            texture,
+            floor: None,
+            filled: Arc::clone(&self.filled),
+            reach: self.reach,
+            aheads: self.aheads.clone(),
+            margin: CellSet::default(),
+            cleared: None,
+            started: None,
+            fill_ms: None,
+            last_used: 0,
+        })
     }
 
     /// The part of the margin that is yet to be cleared: nothing, while a light is dragged.
@@ -150,10 +180,11 @@ impl LightVolume {
         self.fill_ms = self.started.map(|started| started.elapsed().as_secs_f64() * 1000.0);
     }
 
-    /// Bytes of its texture.
+    /// Bytes of its texture, and of the floor's map.
     pub(crate) fn bytes(&self) -> u64 {
         let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
-        texel * self.dims.iter().map(|&n| n as u64).product::<u64>()
+        let floor = self.floor.as_ref().map_or(0, FloorShadow::bytes);
+        floor + texel * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::binding::{Group, Pipeline, Slot, ring_format};
 use super::conditions::{chosen, is_override};
-use super::layouts::LAYOUTS;
+use super::layouts::layouts;
 use super::pipeline_cache::PipelineCache;
 use super::shader_files::SHADERS;
 use super::variant::Variant;
@@ -145,7 +145,7 @@ impl ShaderLibrary {
 
     /// The groups of bindings of a shader, of which equal ones are shared by all.
     fn groups_of(&self, shader: &str, attenuation: wgpu::TextureFormat) -> Result<Arc<[Group]>, GpuError> {
-        let declared = LAYOUTS.iter().find(|(known, _)| *known == shader);
+        let declared = layouts().find(|(known, _)| *known == shader);
         let (_, groups) =
             declared.ok_or_else(|| GpuError::Refused(format!("there is no layout for {shader}")))?;
         let mut known = self.groups.lock().unwrap_or_else(PoisonError::into_inner);

@@ -6,19 +6,16 @@ use crate::gpu::pipelines::uniforms;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 use crate::math::SceneSpace;
-use crate::plan::SkyFloor;
+use crate::plan::{FloorPlace, FloorTexels};
 
 /// Texels along an edge.
 pub(crate) const MAP_EDGE: u32 = 192;
-
-/// How far the map reaches from the middle of the floor, in scene units: beyond, a volume hides next to nothing.
-const REACH: f64 = 3.0;
 
 /// What the floor sees of the sky.
 #[derive(Debug)]
 pub(crate) struct FloorMap {
     /// Where the floor lies.
-    pub place: SkyFloor,
+    pub place: FloorPlace,
     /// C₁ in rgb, C₀ in a.
     pub view: wgpu::TextureView,
 }
@@ -28,7 +25,7 @@ impl FloorMap {
     ///
     /// # Errors
     /// When memory is out.
-    pub(crate) fn new(context: &Context, place: SkyFloor) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &Context, place: FloorPlace) -> Result<Self, GpuError> {
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = wgpu::TextureFormat::Rgba16Float;
         let edge = MAP_EDGE as usize;
@@ -45,11 +42,9 @@ impl FloorMap {
     pub(crate) fn uniform(&self, scene: &SceneSpace, divisor: usize, share: f64) -> uniforms::FloorMap {
         let divisor = divisor as f64;
         let block = |place: DVec3| (scene.index_from_scene.transform_point3(place) + 0.5) / divisor - 0.5;
-        let [right, front, up] = self.axes();
-        let texel = 2.0 * REACH / f64::from(MAP_EDGE);
-        let corner = up * self.place.height - (right + front) * (REACH - 0.5 * texel);
+        let FloorTexels { origin: corner, along: [right, front] } = self.place.texels(MAP_EDGE);
         let origin = block(corner);
-        let along = |axis: DVec3| (block(corner + axis * texel) - origin).as_vec3().into();
+        let along = |step: DVec3| (block(corner + step) - origin).as_vec3().into();
         uniforms::FloorMap {
             origin: origin.as_vec3().into(),
             share: share as f32,
@@ -57,25 +52,8 @@ impl FloorMap {
             size: MAP_EDGE,
             along_y: along(front),
             pad0: 0.0,
-            up: up.as_vec3().into(),
+            up: self.place.up.direction().as_vec3().into(),
             pad1: 0.0,
         }
     }
-
-    /// From scene space to texture coordinates: vectors, and what is added.
-    pub(crate) fn lookup(place: SkyFloor) -> [[f32; 4]; 2] {
-        let map = |axis: DVec3| (axis / (2.0 * REACH)).extend(0.5).as_vec4().into();
-        let [right, front, _] = axes(place);
-        [map(right), map(front)]
-    }
-
-    fn axes(&self) -> [DVec3; 3] {
-        axes(self.place)
-    }
-}
-
-/// Two directions along a floor, and up.
-fn axes(place: SkyFloor) -> [DVec3; 3] {
-    let upright = place.up.scene_from_upright();
-    [upright * DVec3::X, upright * DVec3::Y, place.up.direction()]
 }

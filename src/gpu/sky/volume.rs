@@ -4,7 +4,7 @@ use super::floor_map::FloorMap;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 use crate::model::Resolution;
-use crate::plan::SkyFloor;
+use crate::plan::FloorPlace;
 
 /// Bytes of the four sums of a block.
 pub(crate) const SUM_BYTES: u64 = 16;
@@ -36,7 +36,7 @@ impl SkyVolume {
         context: &Context,
         grid: [usize; 3],
         resolution: Resolution,
-        floor: Option<SkyFloor>,
+        floor: Option<FloorPlace>,
     ) -> Result<Self, GpuError> {
         let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
         let divisor = divisor_for(grid, resolution, most_sums);

@@ -20,6 +20,7 @@ impl Settings {
             storage,
             reverse_kernel,
             near_field,
+            area,
             strength: _,
             ambient_offset: _,
             gain: _,
@@ -41,6 +42,7 @@ impl Settings {
             storage,
             reverse_kernel,
             near_field,
+            area,
             ..self.shadows
         };
         let classification = self.sampling.classification;

@@ -3,9 +3,10 @@
 
 use crate::data::single_line;
 use crate::model::{
-    Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light, MAX_BIAS_VOXELS,
-    MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_NAME, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP,
-    MIN_EXPOSURE, Output, SKY_DIRECTIONS, Sampling, Settings, Shading, Shadows, Sky,
+    AreaShadows, Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light,
+    MAX_BIAS_VOXELS, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT,
+    MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, MIN_EXPOSURE,
+    Output, SKY_DIRECTIONS, Sampling, Settings, Shading, Shadows, Sky,
 };
 
 impl Settings {
@@ -64,6 +65,11 @@ impl Settings {
                 lock: _,
                 hood: Hood { on: _, half_angle_deg, rim_deg },
                 density_scale,
+                shape: _,
+                size,
+                angle_deg,
+                aspect,
+                turn_deg,
             } = light;
             *name = single_line(name, MAX_NAME);
             point(position, 1e6);
@@ -72,6 +78,11 @@ impl Settings {
             number(half_angle_deg, 1.0, 89.0, Hood::default().half_angle_deg);
             number(rim_deg, 0.0, 89.0, Hood::default().rim_deg);
             number(density_scale, 0.0, 1e3, 1.0);
+            let fresh = Light::default();
+            number(size, 0.0, MAX_LIGHT_SIZE, fresh.size);
+            number(angle_deg, 0.0, MAX_LIGHT_ANGLE_DEG, fresh.angle_deg);
+            number(aspect, 1.0 / MAX_LIGHT_ASPECT, MAX_LIGHT_ASPECT, 1.0);
+            number(turn_deg, -1e6, 1e6, 0.0);
         }
         for function in [&mut self.transfer, &mut self.lighting.curve] {
             function.points.retain(|point| point.value.is_finite());
@@ -151,6 +162,7 @@ impl Settings {
             storage: _,
             reverse_kernel: _,
             near_field: _,
+            area: AreaShadows { samples, resolution: _ },
         } = &mut self.shadows;
         number(strength, 0.0, 1.0, default.shadows.strength);
         number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);
@@ -159,6 +171,7 @@ impl Settings {
         number(balance, 0.01, 100.0, default.shadows.balance);
         number(slab, 0.25, 2.0, default.shadows.slab);
         kernel(light_kernel);
+        *samples = (*samples).clamp(1, MAX_LIGHT_SAMPLES);
         let Sampling {
             kernel: eye_kernel,
             slab,

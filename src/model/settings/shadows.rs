@@ -45,8 +45,8 @@ pub enum Deposit {
     SlabMean,
 }
 
-/// Resolution of the light volume per axis, relative to the data.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// Resolution of the light volume per axis, relative to the data, from the finest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resolution {
     /// One light voxel per voxel.
@@ -135,6 +135,25 @@ impl NearField {
     }
 }
 
+/// As many points of a light as are followed at most.
+pub const MAX_LIGHT_SAMPLES: u32 = 64;
+
+/// How lights that have a size are followed: as so many point lights, in one light volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct AreaShadows {
+    /// From how many points of each.
+    pub samples: u32,
+    /// How finely, at most: penumbrae have no fine detail.
+    pub resolution: Resolution,
+}
+
+impl Default for AreaShadows {
+    fn default() -> Self {
+        Self { samples: MAX_LIGHT_SAMPLES, resolution: Resolution::Half }
+    }
+}
+
 /// How light is attenuated on its way, and the cures for darkness (P §4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -175,6 +194,8 @@ pub struct Shadows {
     pub reverse_kernel: ReverseKernel,
     /// Where rays say how much light arrives, and not the light volume. The bias has no effect then.
     pub near_field: NearField,
+    /// Lights that have a size.
+    pub area: AreaShadows,
 }
 
 impl Default for Shadows {
@@ -197,6 +218,7 @@ impl Default for Shadows {
             storage: LightStorage::Auto,
             reverse_kernel: ReverseKernel::Tent,
             near_field: NearField::Short,
+            area: AreaShadows::default(),
         }
     }
 }

@@ -5,6 +5,7 @@ pub(super) mod brick_set;
 pub(super) mod cell_distances;
 pub(super) mod cell_set;
 pub(super) mod eye_frame;
+pub(super) mod floor_place;
 pub(super) mod light_frame;
 pub(super) mod march_tiles;
 pub(super) mod pixel_window;

@@ -2,8 +2,8 @@
 
 use super::table::OpacityKey;
 use crate::model::{
-    Classification, Deposit, Engine, Hood, Kernel, LightKind, Precision, Quadrature, Remains, Resolution,
-    ReverseKernel, Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
+    AreaShadows, Classification, Deposit, Engine, Hood, Kernel, LightArea, LightKind, Precision, Quadrature,
+    Remains, Resolution, ReverseKernel, Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
 };
 use crate::plan::{Request, VolumeKey};
 
@@ -17,6 +17,8 @@ pub struct LightKey {
     /// Angles of the hood, if there is one.
     hood_deg: Option<[f64; 2]>,
     density_scale: f64,
+    /// How large it is, and from how many points it is followed; `None` of a point.
+    area: Option<(LightArea, u32)>,
     algorithm: ShadowAlgorithm,
     classification: Classification,
     engine: Engine,
@@ -33,11 +35,20 @@ pub struct LightKey {
     shading_cut: Remains,
 }
 
+/// Previews follow lights that have a size from so many points.
+const PREVIEW_SAMPLES: u32 = 16;
+
 impl LightKey {
-    /// The key of this light's volume at another resolution.
+    /// The key of this light's volume for a preview, at a resolution that is no finer.
     #[must_use]
-    pub fn at_resolution(&self, resolution: Resolution) -> Self {
-        Self { resolution, ..self.clone() }
+    pub fn coarse(&self, resolution: Resolution) -> Self {
+        let area = self.area.map(|(area, samples)| (area, samples.min(PREVIEW_SAMPLES)));
+        Self { resolution: resolution.max(self.resolution), area, ..self.clone() }
+    }
+
+    /// How many point lights stand for the light.
+    pub fn samples(&self) -> u32 {
+        self.area.map_or(1, |(_, samples)| samples)
     }
 
     /// Resolution of the light volume.
@@ -95,6 +106,7 @@ impl LightKey {
             casts_shadows: _,
             hood: Hood { on: hooded, half_angle_deg, rim_deg },
             density_scale,
+            area,
         } = &light;
         let hooded = *hooded && *kind == LightKind::Perspective;
         let Shadows {
@@ -110,12 +122,13 @@ impl LightKey {
             kernel,
             slab,
             quadrature,
-            resolution,
+            resolution: _,
             precision,
             storage: _,
             reverse_kernel,
             // Where it is looked up.
             near_field: _,
+            area: AreaShadows { samples, resolution: _ },
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
         wanted.then(|| Self {
@@ -127,6 +140,7 @@ impl LightKey {
             },
             hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
             density_scale: *density_scale,
+            area: area.map(|area| (area, *samples)),
             algorithm: *algorithm,
             classification: request.settings.classification(),
             // Rays need no sheets.
@@ -145,7 +159,12 @@ impl LightKey {
             },
             slab: *slab,
             quadrature: *quadrature,
-            resolution: *resolution,
+            // One volume for all lights has one resolution.
+            resolution: if request.settings.combines_lights() {
+                shadows.resolution
+            } else {
+                light.resolution(shadows)
+            },
             precision: *precision,
             shading_cut: cuts.shading(),
         })

@@ -19,7 +19,7 @@ pub use display::DisplayKey;
 pub use eye::{EyeKey, FloorKey};
 pub use light::LightKey;
 pub use lit_lights::{Attenuation, LitLight, LitLights};
-pub use sky::{SkyFloor, SkyKey};
+pub use sky::SkyKey;
 pub use table::{EyeTableKey, OpacityKey, TablesKey};
 
 use super::{RenderOptions, Request, VolumeKey};

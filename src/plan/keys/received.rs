@@ -1,6 +1,6 @@
 //! Light as samples receive it: the look of a light, and the cures for darkness.
 
-use crate::model::{Hood, LightKind, NearField, SceneLight, Settings, ShadowAlgorithm, Shadows};
+use crate::model::{Hood, LightArea, LightKind, NearField, SceneLight, Settings, ShadowAlgorithm, Shadows};
 
 /// A light as samples see it: what moving a parallel light outwards does not change.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,19 +14,22 @@ pub(super) struct LightLook {
     density_scale: f64,
     /// It lights one side of a surface, or both.
     casts_shadows: bool,
+    /// How large it is, which only shadows show.
+    area: Option<LightArea>,
 }
 
 impl LightLook {
     /// What samples see of a light.
     pub(super) fn of(light: &SceneLight) -> Self {
-        let SceneLight { kind, position, color, intensity, on: _, casts_shadows, hood, density_scale } =
+        let SceneLight { kind, position, color, intensity, on: _, casts_shadows, hood, density_scale, area } =
             *light;
+        let area = area.filter(|_| casts_shadows);
         let placed = match kind {
             LightKind::Parallel => light.direction().into(),
             LightKind::Perspective => position,
         };
         let hood = (hood.on && kind == LightKind::Perspective).then_some(hood);
-        Self { kind, placed, color, intensity, hood, density_scale, casts_shadows }
+        Self { kind, placed, color, intensity, hood, density_scale, casts_shadows, area }
     }
 }
 
@@ -65,6 +68,7 @@ impl ReceivedLight {
             storage: _,
             reverse_kernel: _,
             near_field: _,
+            area: _,
         } = settings.shadows;
         let near_field = settings.near_field();
         // Rays nearby take the place of a bias.

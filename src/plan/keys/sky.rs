@@ -1,7 +1,7 @@
 //! What the volume is made from that says how open to the sky each place is.
 
 use super::table::OpacityKey;
-use crate::model::{Classification, Remains, Resolution, SceneAxis, Settings, SkyMode};
+use crate::model::{Classification, Remains, Resolution, Settings, SkyMode};
 use crate::plan::{Request, VolumeKey};
 
 /// Everything that the volume of the sky's visibility is made from: no colours, no brightness, no turn.
@@ -14,24 +14,6 @@ pub struct SkyKey {
     density_scale: f64,
     directions: u32,
     resolution: Resolution,
-}
-
-/// Where a floor lies that takes the light of a sky.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SkyFloor {
-    /// From the middle of the scene upwards.
-    pub height: f64,
-    /// The axis of the scene that points up.
-    pub up: SceneAxis,
-}
-
-impl SkyFloor {
-    /// That of a look; `None` where there is no floor, or nothing attenuates a sky.
-    pub fn of(settings: &Settings) -> Option<Self> {
-        let Settings { floor, camera, .. } = settings;
-        let is_lit = floor.on && settings.has_sky_volume();
-        is_lit.then_some(Self { height: floor.height, up: camera.up })
-    }
 }
 
 /// Previews follow light from so many directions.

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use self::rays::Rays;
 use crate::data::Volume;
-use crate::model::{LightKind, Settings, Sides};
+use crate::model::{LightKind, SceneLight, Settings, Sides};
 use crate::plan::sweep_directions;
 
 /// What is seen somewhere in the picture.
@@ -43,6 +43,9 @@ pub struct Arrival {
 
 /// Rays to the sky: a few milliseconds.
 const PROBED_DIRECTIONS: u32 = 64;
+
+/// Rays to each light that has a size, at most: of what it loses a reader sees whole per cents.
+const PROBED_POINTS: u32 = 16;
 
 /// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
@@ -83,24 +86,26 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         .iter()
         .map(|light| {
             let light = light.in_scene(&settings.camera);
-            let position = DVec3::from(light.position);
-            let (towards, distance) = match light.kind {
-                LightKind::Parallel => (light.direction(), f64::INFINITY),
-                LightKind::Perspective => {
-                    ((position - point).normalize_or(DVec3::Z), (position - point).length())
-                }
+            let is_shadowed = light.needs_volume() && settings.shadows.algorithm.is_on();
+            // The mean over what shines of it.
+            let points = light.points(settings.shadows.area.samples.min(PROBED_POINTS));
+            let mean =
+                |of: &dyn Fn(&SceneLight) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+            let left = |light: &SceneLight| {
+                let (towards, distance) = towards(light, point);
+                let depth = rays.optical_depth(&lighting, &shading_cut, point, towards, distance);
+                (-depth * light.density_scale).exp()
             };
-            let cone = light.cone();
-            let depth = if light.needs_volume() && settings.shadows.algorithm.is_on() {
-                rays.optical_depth(&lighting, &shading_cut, point, towards, distance) * light.density_scale
-            } else {
-                0.0
+            let through_hood = |light: &SceneLight| {
+                let cone = light.cone();
+                cone.share(cone.axis.dot(-towards(light, point).0))
             };
-            let facing = normal.dot(towards);
+            let (middle, _) = towards(&light, point);
+            let facing = normal.dot(middle);
             let facing = if is_one_sided && light.casts_shadows { facing } else { facing.abs() };
             Arrival {
-                transmittance: (-depth).exp(),
-                hood: cone.share(cone.axis.dot(-towards)),
+                transmittance: if is_shadowed { mean(&left) } else { 1.0 },
+                hood: mean(&through_hood),
                 facing: (normal != DVec3::ZERO).then_some(facing),
             }
         })
@@ -116,11 +121,22 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     })
 }
 
+/// Where a light is as seen from a point, a unit vector, and how far away.
+fn towards(light: &SceneLight, point: DVec3) -> (DVec3, f64) {
+    match light.kind {
+        LightKind::Parallel => (light.direction(), f64::INFINITY),
+        LightKind::Perspective => {
+            let away = DVec3::from(light.position) - point;
+            (away.normalize_or(DVec3::Z), away.length())
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::data::Samples;
-    use crate::model::{ControlPoint, Length, Light, ShadowAlgorithm, SkyMode, TransferFunction};
+    use crate::model::{ControlPoint, Length, Light, LightShape, ShadowAlgorithm, SkyMode, TransferFunction};
 
     /// A slab of stuff at z = 10 … 13 over a block at z = 0 … 5.
     fn slab_over_block() -> (Volume, Settings) {
@@ -294,6 +310,23 @@ mod tests {
         let seen = probe(&volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).unwrap();
         assert!((seen.opacity - 0.95).abs() < 1e-9, "{seen:?}");
         assert!(seen.index.z > 8.0 && seen.index.z < 12.5, "{seen:?}");
+    }
+
+    #[test]
+    fn of_a_light_with_a_size_the_mean_arrives() {
+        let (volume, mut settings) = slab_over_block();
+        // The block's side, below the slab: a light straight above is hidden; of one as wide as it is far away some is seen
+        // beside the slab.
+        let arriving = |settings: &Settings| {
+            let seen = probe(&volume, settings, DVec3::new(-3.0, 0.0, -0.375), DVec3::X);
+            seen.expect("the block's side").lights[0].transmittance
+        };
+        let point = arriving(&settings);
+        (settings.lights[0].shape, settings.lights[0].angle_deg) = (LightShape::Disc, 90.0);
+        let disc = arriving(&settings);
+        assert!(disc > point + 0.1 && disc < 0.9, "{point} {disc}");
+        settings.lights[0].angle_deg = 0.0;
+        assert_eq!(arriving(&settings), point);
     }
 
     #[test]

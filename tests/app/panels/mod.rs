@@ -17,6 +17,8 @@ fn panels_change_settings() {
     assert_eq!(harness.state().settings().lights[0].kind, LightKind::Perspective);
     click(&mut harness, "Parallel");
     assert_eq!(harness.state().settings().lights[0].kind, LightKind::Parallel);
+    // Room for what follows.
+    click(&mut harness, "Lights");
     click(&mut harness, "Camera");
     // The section slides open.
     harness.run_steps(8);

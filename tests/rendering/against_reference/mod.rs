@@ -2,7 +2,7 @@
 
 use chiaroscuro::data::Volume;
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{Settings, ShadowAlgorithm};
+use chiaroscuro::model::{LightShape, Settings, ShadowAlgorithm};
 use chiaroscuro::reference::{Options, Reference, Rounding};
 use glam::DVec3;
 
@@ -11,6 +11,7 @@ use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
+mod area_lights;
 mod gather;
 mod labels;
 mod limit;
@@ -50,7 +51,9 @@ pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, roun
         if !settings.shadows.algorithm.has_volume() {
             continue;
         }
-        let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat;
+        // Sheets are those of points.
+        let is_point = settings.lights[light].shape == LightShape::Point;
+        let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat && is_point;
         let sheets = if splats { reference.light_sheets(light) } else { Vec::new() };
         for (view, expected) in sheets.iter().enumerate() {
             let found = renderer.light_sheets(&loaded, settings, light, view).expect("sheets are read back");

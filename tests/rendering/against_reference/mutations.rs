@@ -42,7 +42,7 @@ fn disagree_with(engine: Engine, from: &str, to: &str, fault: Fault) -> bool {
 }
 
 /// The same with a look of its own, of a creature of n³ voxels.
-fn disagree_in(settings: &Settings, n: usize, from: &str, to: &str, fault: Fault) -> bool {
+pub(super) fn disagree_in(settings: &Settings, n: usize, from: &str, to: &str, fault: Fault) -> bool {
     disagree_about(scenes::creature(n, DVec3::ONE), settings, from, to, fault)
 }
 
@@ -66,7 +66,7 @@ fn disagree_about(volume: Volume, settings: &Settings, from: &str, to: &str, fau
 }
 
 /// A mutation must change the shader that it is meant for: a text that is not there proves nothing.
-fn in_shader(shader: &str, from: &str) {
+pub(super) fn in_shader(shader: &str, from: &str) {
     let source = ShaderLibrary::source(shader, wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float)
         .expect("the shader is there");
     assert!(source.contains(from), "{shader} no longer contains {from:?}");

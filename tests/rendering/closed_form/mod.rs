@@ -7,6 +7,7 @@ use crate::common::context;
 use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
 
 mod absorption;
+mod area_lights;
 mod brightness;
 mod kernels;
 mod labels;

@@ -2,8 +2,8 @@
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, ObjectTurn, Projection,
-    SceneAxis, Settings, ShadowAlgorithm, Sky, SkyMode, ToneMap, linear_from_srgb,
+    Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, LightShape, ObjectTurn,
+    Projection, Resolution, SceneAxis, Settings, ShadowAlgorithm, Sky, SkyMode, ToneMap, linear_from_srgb,
 };
 use chiaroscuro::reference::{Options, Reference};
 use glam::DVec3;
@@ -11,7 +11,9 @@ use glam::DVec3;
 use crate::common::{Dataset, context, render};
 use crate::compare::{Limit, compare};
 use crate::scenes::{self, linear_extinction, straight};
-use crate::thresholds::{EIGHT_BITS, F16_STEP, FLOOR_EDGE, FLOOR_SHADOW, FLOOR_UNDER_A_SKY, SAME_WEIGHTS};
+use crate::thresholds::{
+    EIGHT_BITS, F16_STEP, FLOOR_EDGE, FLOOR_PENUMBRA, FLOOR_SHADOW, FLOOR_UNDER_A_SKY, SAME_WEIGHTS,
+};
 
 const SIZE: [u32; 2] = [96, 80];
 const NARROW: [u32; 2] = [48, 128];
@@ -79,6 +81,35 @@ fn floor_and_shadows_as_in_the_reference() {
     settings.lights[0].casts_shadows = true;
     settings.cuts.plane.on = true;
     check("shadow alone, and cut", SIZE, DVec3::ONE, &settings);
+}
+
+/// A lamp and a sun that have a size, the lamp partly below the floor: by rays, and on maps, which are interpolated.
+#[test]
+fn penumbrae_on_the_floor_as_in_the_reference() {
+    let mut settings = on(scenes::look());
+    let mut lamp = scenes::light(LightKind::Perspective, [2.1, -0.9, 0.0]);
+    (lamp.shape, lamp.size) = (LightShape::Rectangle, 2.6);
+    lamp.hood = Hood { on: true, half_angle_deg: 60.0, rim_deg: 20.0 };
+    settings.lights.push(lamp);
+    (settings.lights[0].shape, settings.lights[0].angle_deg) = (LightShape::Disc, 25.0);
+    settings.shadows.area.samples = 4;
+    settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+    check("by rays", SIZE, DVec3::ONE, &settings);
+    settings.shadows.algorithm = ShadowAlgorithm::Splat;
+    settings.floor.height = -1.05;
+    settings.shadows.area.resolution = Resolution::Full;
+    check_within("on maps", SIZE, DVec3::ONE, &settings, FLOOR_PENUMBRA);
+    // A lamp within the cube of its own sheets.
+    settings.lights[1].position = [0.9, -0.8, 0.7];
+    settings.lights[1].shape = LightShape::Ball;
+    settings.lights[1].size = 0.4;
+    check_within("a lamp near by", SIZE, DVec3::ONE, &settings, FLOOR_PENUMBRA);
+    let mut narrow = settings.clone();
+    narrow.lights[0].angle_deg = 12.0;
+    let found = std::panic::catch_unwind(|| {
+        check_against(SIZE, DVec3::ONE, [&settings, &narrow], "half as wide", FLOOR_PENUMBRA);
+    });
+    assert!(found.is_err(), "a light that is half as wide is noticed");
 }
 
 /// A map of what the floor sees is interpolated, and the reference asks at every pixel.

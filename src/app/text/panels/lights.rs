@@ -43,6 +43,26 @@ pub(crate) const DENSITY: Named = named(
 pub(crate) const CASTS_SHADOWS: Named =
     named("Casts shadows", "Whether material attenuates this light; a fill light does without");
 
+pub(crate) const SHAPE: Named = named(
+    "Light shape",
+    "What shines: the larger it looks from the volume, the softer the borders of its shadows",
+);
+pub(crate) const POINT: Named = named("Point", "Shadows are as sharp as the volume");
+pub(crate) const DISC: Named = named("Disc", "A round plate that faces the volume, like a studio lamp");
+pub(crate) const RECTANGLE: Named = named("Rectangle", "A soft box, or a window");
+pub(crate) const BALL: Named =
+    named("Ball", "Looks the same from everywhere, like a paper lantern or the sun");
+pub(crate) const ANGLE: Named = named(
+    "Width",
+    "How wide the light looks from the volume: the sun has half a degree; its border can be dragged in the picture",
+);
+pub(crate) const SIZE: Named = named(
+    "Width",
+    "How wide the light is, where the longest edge of the volume is 2; its border can be dragged in the picture",
+);
+pub(crate) const ASPECT: Named = named("Width by height", "1 is a square, 2 twice as wide as high");
+pub(crate) const TURN: Named = named("Turn", "Turns the rectangle about the line to the volume");
+
 pub(crate) const HOOD: Named = named(
     "Hood",
     "A lampshade: the light shines only within a cone around the line to the middle of the volume",
@@ -106,4 +126,9 @@ pub(crate) fn handle(name: &str) -> String {
 /// The handle that opens and closes a light's hood.
 pub(crate) fn hood_handle(name: &str) -> String {
     format!("Hood handle {name}")
+}
+
+/// The handle on the border of a light that has a size.
+pub(crate) fn size_handle(name: &str) -> String {
+    format!("Size handle {name}")
 }

@@ -112,6 +112,15 @@ pub(crate) const SLAB_MEAN: Named = named("Mean", "The mean over the slab: hardl
 pub(crate) const FRONT: Named =
     named("Front", "What arrives in front of the slab: a little brighter; the paper's equation");
 
+pub(crate) const AREA_SAMPLES: Named = named(
+    "Points of lights",
+    "From how many points a light that has a size is followed: fewer show as several edges of a shadow",
+);
+pub(crate) const AREA_RESOLUTION: Named = named(
+    "Soft resolution",
+    "Resolution of the light volumes of lights that have a size, whose shadows have less detail",
+);
+
 /// How much of what is seen is nearly black.
 pub(crate) fn dark_share(share: f64) -> String {
     format!("{:.0} %", share * 100.0)

@@ -92,6 +92,11 @@ impl View {
         self.view_projection.camera.scene_from_view().x_axis
     }
 
+    /// Towards the eye, in scene space.
+    pub(crate) fn towards(&self) -> DVec3 {
+        self.view_projection.camera.scene_from_view().z_axis
+    }
+
     /// The scene point that is seen at a place of the window, on the plane through `through` that faces the eye.
     pub(crate) fn facing(&self, through: DVec3, at: Pos2) -> Option<DVec3> {
         let (origin, direction) = self.view_projection.ray(at);

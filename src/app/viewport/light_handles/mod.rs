@@ -7,11 +7,13 @@
 mod geometry;
 mod guides;
 mod hood_handle;
+mod size_handle;
 
 use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke, Vec2, WidgetInfo};
 
 use self::geometry::View;
 use self::hood_handle::HoodHandle;
+use self::size_handle::{Dragged, SizeHandle};
 use super::orbit::wheel_notches;
 use crate::app::common::theme;
 use crate::app::text;
@@ -35,6 +37,8 @@ pub(crate) struct LightHandles {
     drag: Option<Drag>,
     /// The handle of the hood of the selected light.
     hood: HoodHandle,
+    /// The handle on its border, if it has a size.
+    size: SizeHandle,
     /// The pointer is on a handle for which the wheel means distance.
     pub takes_wheel: bool,
     /// Where they were painted last, in points.
@@ -82,7 +86,7 @@ impl LightHandles {
             let handle = seen(settings).unwrap_or(handle);
             self.positions.push(handle.position);
             let lamp = settings.lights[light].in_scene(&settings.camera);
-            if active || (*selected == light && self.hood.is_active()) {
+            if active || (*selected == light && (self.hood.is_active() || self.size.is_active())) {
                 let up = settings.camera.up.direction();
                 guides::paint(&painter, &view, &lamp, up, settings.floor.height);
             }
@@ -91,6 +95,14 @@ impl LightHandles {
                     self.hood.show(ui, &painter, &view, &lamp, &settings.lights[light].name, light)
             {
                 settings.lights[light].hood.half_angle_deg = half_angle_deg;
+            }
+            if *selected == light {
+                let of_light = (settings.lights[light].name.as_str(), light);
+                match self.size.show(ui, &painter, &view, &lamp, of_light) {
+                    Some(Dragged::Size(size)) => settings.lights[light].size = size,
+                    Some(Dragged::AngleDeg(angle_deg)) => settings.lights[light].angle_deg = angle_deg,
+                    None => {}
+                }
             }
             let color = theme::color(settings.lights[light].color);
             let radius = theme::HANDLE_RADIUS + if active { 1.5 } else { 0.0 };

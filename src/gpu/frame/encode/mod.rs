@@ -1,26 +1,21 @@
 //! What each step of a job records: the frame's passes, in the order in which they run.
 
+mod light;
+
 use std::ops::Range;
 
 use super::job::Job;
-use super::light_build::{CurrentView, LightBuild};
 use super::plan::inputs;
-use super::step::{LightStep, Product, Step};
+use super::step::{Product, Step};
 use super::targets::shown_key;
 use crate::gpu::GpuError;
 use crate::gpu::eye::floor;
-use crate::gpu::light::backproject::{Schedule, backproject};
-use crate::gpu::light::march::{Sheets, march};
 use crate::gpu::light::packed::LookedUp;
-use crate::gpu::light::raycast::raycast;
 use crate::gpu::output::display::display;
 use crate::gpu::scatter::eye::EyeScatter;
-use crate::gpu::scatter::light::LightScatter;
 use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::listed_bricks::listed;
-use crate::gpu::volume::transfer_tables::EVERYWHERE;
 use crate::gpu::volume::{Gpu, gradients, prefilter};
-use crate::plan::reverse_reach;
 
 impl Job<'_> {
     /// Records one step.
@@ -56,7 +51,8 @@ impl Job<'_> {
             }
             Step::March(light) => self.encode_light(light, Self::march_view, encoder),
             Step::Backproject(light) => self.encode_light(light, Self::backproject_view, encoder),
-            Step::Raycast(build, bricks) => self.encode_raycast(*build, bricks, encoder),
+            Step::Raycast(step) => self.encode_raycast(step, encoder),
+            Step::Average { build, point } => self.encode_average(*build, *point, encoder),
             Step::Combine(bricks) => self.encode_combine(bricks, encoder),
             Step::SkyBlocks => self.encode_sky(None, encoder),
             Step::SkyBatch(batch) => self.encode_sky(Some(*batch), encoder),
@@ -67,7 +63,10 @@ impl Job<'_> {
                 let target = self.targets.get(self.role);
                 let (picture, floor) = (&target.light.value.plane.view, &target.floor.value.view);
                 let gpu = Gpu::new(self.tools, volume);
+                let lights = inputs(&self.lit, &self.slots, &self.loaded.value);
+                let shadows: Vec<_> = lights.iter().map(|light| light.volume?.floor.as_ref()).collect();
                 let inputs = floor::FloorInputs {
+                    shadows: &shadows,
                     tables: &self.loaded.value.tables.value,
                     eye: &self.eye,
                     lit: &self.lit,
@@ -98,9 +97,13 @@ impl Job<'_> {
                     }
                 }
                 Product::Light(build) => {
-                    let light = &mut self.loaded.value.lights[self.builds[*build].slot];
+                    let build = &mut self.builds[*build];
+                    let light = &mut self.loaded.value.lights[build.slot];
                     light.value.finish();
                     light.finish();
+                    if build.average.take().is_some() {
+                        self.tools.pool.forget_groups();
+                    }
                 }
                 Product::CombinedLight => {
                     if let Some(combined) = &mut self.loaded.value.combined {
@@ -134,157 +137,6 @@ impl Job<'_> {
     fn builds_keys(&self) -> Vec<Option<crate::plan::LightKey>> {
         let lights = &self.loaded.value.lights;
         self.slots.iter().map(|slot| slot.map(|slot| lights[slot].key().clone())).collect()
-    }
-
-    /// Sets up the march through one view of a light.
-    fn begin_view(&mut self, build: &LightBuild, view: usize) -> Result<CurrentView, GpuError> {
-        let settings = &self.request.settings;
-        let geometry = &build.views[view];
-        let loaded = &self.loaded.value;
-        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let light = &loaded.lights[build.slot].value;
-        let skips = self.options.empty_space_skipping;
-        let reach = if skips { i32::from(build.reach) } else { EVERYWHERE };
-        let mut sheets = Sheets::new(self.tools, geometry, build.chunks[view], reach)?;
-        sheets.min_transmittance = self.options.min_transmittance;
-        // A volume as pictures have it serves them, too.
-        sheets.preview = self.options.preview && build.is_coarse;
-        let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + sheets.ring.bytes();
-        let scatter = match &self.scattering {
-            Some(scattering) if build.scatters => {
-                let read = build.read.as_ref().filter(|_| skips);
-                let of_light = (settings, light);
-                let fresh =
-                    LightScatter::new(gpu, scattering, tables, geometry, of_light, read, &self.options)?;
-                bytes += fresh.bytes();
-                Some(fresh)
-            }
-            _ => None,
-        };
-        let scene = &gpu.volume.scene;
-        // Scattered sheets are not marched in tiles.
-        let beyond = if build.scatters || sheets.reach == EVERYWHERE {
-            EVERYWHERE
-        } else {
-            i32::from(reverse_reach(&build.views, scene, light.divisor))
-        };
-        let schedule = Schedule::new(scene, geometry, light, sheets.chunk, beyond);
-        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
-        Ok(CurrentView { sheets, schedule, scatter })
-    }
-
-    /// Notes that the filling of a light volume begins.
-    fn begin_light(&mut self, build: &LightBuild) {
-        self.report.runs.light_volumes += 1;
-        self.fills[build.index] += 1;
-        self.loaded.value.lights[build.slot].value.begin();
-    }
-
-    /// Records a step of one half of a light pass.
-    fn encode_light(
-        &mut self,
-        step: &LightStep,
-        half: fn(&mut Self, &mut LightBuild, &LightStep, &mut wgpu::CommandEncoder) -> Result<(), GpuError>,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        // Taken out meanwhile: a half changes its build and the job.
-        let mut builds = std::mem::take(&mut self.builds);
-        let result = half(self, &mut builds[step.build], step, encoder);
-        self.builds = builds;
-        result
-    }
-
-    /// The view that is being marched, set up when its first step comes.
-    fn take_view(&mut self, build: &mut LightBuild, view: usize) -> Result<CurrentView, GpuError> {
-        match build.current.take() {
-            Some(current) => Ok(current),
-            None => self.begin_view(build, view),
-        }
-    }
-
-    fn march_view(
-        &mut self,
-        build: &mut LightBuild,
-        &LightStep { view, begin, part, .. }: &LightStep,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        if view == 0 && begin == 0 && part.is_first() {
-            let loaded = &self.loaded.value;
-            let gpu = Gpu::new(self.tools, &loaded.volume);
-            loaded.lights[build.slot].value.clear_margin(gpu, &build.margin, encoder)?;
-            self.begin_light(build);
-        }
-        let chunk = build.chunks[view];
-        let current = self.take_view(build, view)?;
-        let CurrentView { sheets, schedule, scatter } = build.current.insert(current);
-        let geometry = &build.views[view];
-        let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
-        let loaded = &self.loaded.value;
-        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let lamp = (&build.light, &self.request.settings);
-        if let (Some(scatter), Some(scattering)) = (scatter, &self.scattering) {
-            let table = &tables.lighting.buffer;
-            scatter.march(gpu, scattering, table, lamp, geometry, sheets, slabs, encoder)
-        } else {
-            let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, part);
-            march(gpu, tables, lamp, geometry, sheets, slabs, tiles, encoder)
-        }
-    }
-
-    fn backproject_view(
-        &mut self,
-        build: &mut LightBuild,
-        &LightStep { view, begin, part, .. }: &LightStep,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let current = self.take_view(build, view)?;
-        let shadows = &self.request.settings.shadows;
-        let geometry = &build.views[view];
-        let slabs = begin..(begin + build.chunks[view]).min(geometry.frame.slab_count);
-        let ends_view = slabs.end == geometry.frame.slab_count && part.is_last();
-        let loaded = &self.loaded.value;
-        let gpu = Gpu::new(self.tools, &loaded.volume);
-        let light = &loaded.lights[build.slot].value;
-        let CurrentView { sheets, schedule, scatter } = &current;
-        match scatter {
-            // The first sheet that touches a voxel needs no sums.
-            Some(scatter) if !shadows.first_touch => {
-                scatter.splat_back(gpu, sheets, slabs, encoder)?;
-                if ends_view {
-                    scatter.normalise(gpu, light, &build.bricks, encoder)?;
-                }
-            }
-            _ => backproject(gpu, shadows, geometry, (sheets, schedule), light, slabs, part, encoder)?,
-        }
-        if ends_view {
-            self.tools.pool.leave_ring(current.sheets.ring);
-        } else {
-            build.current = Some(current);
-        }
-        Ok(())
-    }
-
-    fn encode_raycast(
-        &mut self,
-        at: usize,
-        bricks: &Range<usize>,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let build = &self.builds[at];
-        let loaded = &self.loaded.value;
-        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let target = &loaded.lights[build.slot].value;
-        if bricks.start == 0 {
-            target.clear_margin(gpu, &build.margin, encoder)?;
-        }
-        let lamp = (&build.light, &self.request.settings);
-        raycast(gpu, tables, lamp, &self.options, target, &build.bricks[bricks.clone()], encoder)?;
-        if bricks.start == 0 {
-            let builds = std::mem::take(&mut self.builds);
-            self.begin_light(&builds[at]);
-            self.builds = builds;
-        }
-        Ok(())
     }
 
     fn encode_combine(

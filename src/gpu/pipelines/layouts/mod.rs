@@ -1,6 +1,9 @@
 //! What every shader binds, by the names that it gives its bindings: group by group, with their numbers, kinds and
 //! sizes. Compared with the shaders themselves by a test (`tests/shaders/bindings.rs`).
 
+mod light;
+mod sky;
+
 use super::binding::{Access, Format, Shape, Slot};
 use super::uniforms;
 
@@ -92,8 +95,6 @@ const SHEETS: Slot = Slot::list(6, "sheets", 4, Access::ReadWrite);
 const FOOTPRINT_TABLE: Slot = Slot::list(7, "footprint_table", FOOTPRINT_TABLE_BYTES, Access::Read);
 const RAYS: Slot = Slot::list(8, "rays", 16, Access::ReadWrite);
 
-const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
-
 /// What display passes read; `shown` is what they write.
 const fn display(shown: Format) -> [Slot; 4] {
     [
@@ -110,8 +111,16 @@ const DISPLAY_DEEP: &[Slot] = &display(Format::Of(wgpu::TextureFormat::Rgba32Flo
 /// The groups of a shader.
 pub(crate) type Groups = &'static [&'static [Slot]];
 
+/// Shaders, and what each binds.
+pub(crate) type Layouts = &'static [(&'static str, Groups)];
+
 /// Every compute shader, and what it binds.
-pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
+pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, Groups)> {
+    [OTHERS, light::LAYOUTS, sky::LAYOUTS].into_iter().flatten()
+}
+
+/// All but those of light and sky.
+const OTHERS: Layouts = &[
     (
         "eye/floor.wgsl",
         &[
@@ -124,6 +133,7 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
                 Slot::sampled(5, "sky_map", Shape::Volume),
             ],
             VOLUME,
+            LIGHTS,
         ],
     ),
     (
@@ -140,64 +150,6 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
             ],
             VOLUME_AND_LIGHTING,
             LIGHTS_AND_SKY,
-        ],
-    ),
-    (
-        "light/backproject.wgsl",
-        &[&[
-            Slot::uniform::<uniforms::Backprojection>(0, "bound_view"),
-            Slot::list(1, "bricks", 16, Access::Read),
-            Slot::sampled(2, "ring", Shape::Sheets),
-            Slot::sampler(3, "ring_sampler"),
-            Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
-        ]],
-    ),
-    (
-        "light/clear_margin.wgsl",
-        &[&[
-            Slot::list(0, "bricks", 16, Access::Read),
-            Slot::target(1, "attenuation", Shape::Volume, Format::Attenuation),
-        ]],
-    ),
-    (
-        "light/combine.wgsl",
-        &[
-            &[
-                EYE,
-                TABLE,
-                Slot::uniform::<uniforms::Combine>(2, "bound_combine"),
-                Slot::list(3, "bricks", 16, Access::Read),
-                Slot::target(4, "combined", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-            ],
-            PYRAMID,
-            LIGHTS,
-        ],
-    ),
-    (
-        "light/march.wgsl",
-        &[
-            &[
-                Slot::uniform::<uniforms::March>(0, "bound_march"),
-                TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
-                Slot::list(3, "transmittance", 4, Access::ReadWrite),
-                Slot::target(4, "ring", Shape::Sheets, Format::Ring),
-                Slot::list(5, "tiles", 4, Access::Read),
-            ],
-            VOLUME,
-        ],
-    ),
-    (
-        "light/raycast.wgsl",
-        &[
-            &[
-                Slot::uniform::<uniforms::Raycast>(0, "bound_raycast"),
-                TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
-                Slot::list(3, "bricks", 16, Access::Read),
-                Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
-            ],
-            VOLUME,
         ],
     ),
     ("output/display.wgsl", &[DISPLAY]),
@@ -286,47 +238,6 @@ pub(crate) const LAYOUTS: &[(&str, Groups)] = &[
             &[SCATTER, SHEETS, FOOTPRINT_TABLE],
         ],
     ),
-    (
-        "sky/blocks.wgsl",
-        &[
-            &[
-                Slot::uniform::<uniforms::Blocks>(0, "bound_blocks"),
-                TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
-                Slot::target(3, "extinction", Shape::Volume, Format::Storage),
-            ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED, NEAREST],
-        ],
-    ),
-    (
-        "sky/floor_map.wgsl",
-        &[&[
-            SWEEP,
-            Slot::uniform::<uniforms::FloorMap>(1, "bound_map"),
-            Slot::loaded(2, "sheets", Shape::Volume),
-            Slot::list(3, "sums", 16, Access::ReadWrite),
-            Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-        ]],
-    ),
-    (
-        "sky/moments.wgsl",
-        &[&[
-            SWEEP,
-            Slot::sampled(1, "sheets", Shape::Volume),
-            Slot::sampler(2, "clamped"),
-            Slot::list(3, "sums", 16, Access::ReadWrite),
-            Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-        ]],
-    ),
-    (
-        "sky/sweep.wgsl",
-        &[&[
-            SWEEP,
-            Slot::sampled(1, "extinction", Shape::Volume),
-            Slot::sampler(2, "clamped"),
-            Slot::target(3, "sheets", Shape::Volume, Format::Storage),
-        ]],
-    ),
     ("volume/downsample.wgsl", &[RESAMPLE]),
     (
         "volume/downsample_materials.wgsl",
@@ -396,5 +307,5 @@ pub fn shader_bindings(
     let group = |slots: &&'static [Slot]| {
         slots.iter().map(|slot| (slot.name, slot.entry(storage, attenuation))).collect()
     };
-    LAYOUTS.iter().map(|(shader, groups)| (*shader, groups.iter().map(group).collect())).collect()
+    layouts().map(|(shader, groups)| (*shader, groups.iter().map(group).collect())).collect()
 }

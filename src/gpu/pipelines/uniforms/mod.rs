@@ -6,8 +6,10 @@
     expect(missing_docs, reason = "each field is documented where the shader declares it")
 )]
 
+mod light;
 mod sky;
 
+pub use self::light::{Average, FloorShadow, Light, Raycast, Shading};
 pub use self::sky::{Blocks, FloorMap, MAX_SKY_RAYS, Sky, SkyRays, Sweep};
 
 use bytemuck::{Pod, Zeroable};
@@ -218,21 +220,6 @@ pub struct Backprojection {
     pub pad1: f32,
 }
 
-/// `light/raycast.wgsl`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Raycast {
-    pub light: Light,
-    pub space: Space,
-    pub dims: [u32; 3],
-    pub bricks: u32,
-    pub voxel_step: f32,
-    pub ray_step: f32,
-    pub dark: f32,
-    pub pad0: u32,
-    pub shading_cut: Cut,
-}
-
 /// `light/combine.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -270,44 +257,6 @@ impl Space {
             index_from_scene_z,
         }
     }
-}
-
-/// `shading/lights.wgsl`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Light {
-    pub place: [f32; 3],
-    pub perspective: f32,
-    pub color: [f32; 3],
-    pub extinction_scale: f32,
-    pub lookup: [f32; 3],
-    pub hood_inner: f32,
-    pub hood_axis: [f32; 3],
-    pub hood_outer: f32,
-    pub place_in_index: [f32; 3],
-    pub two_sided: f32,
-    pub near_ahead: f32,
-    pub pad0: f32,
-    pub pad1: f32,
-    pub pad2: f32,
-}
-
-/// `shading/lights.wgsl`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Shading {
-    pub emission: f32,
-    pub ambient: f32,
-    pub diffuse: f32,
-    pub specular: f32,
-    pub shininess: f32,
-    pub surface_gradient: f32,
-    pub strength: f32,
-    pub ambient_offset: f32,
-    pub gain: f32,
-    pub bias: f32,
-    pub ray_step: f32,
-    pub dark_depth: f32,
 }
 
 /// `shading/shade.wgsl`.

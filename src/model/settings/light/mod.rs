@@ -1,10 +1,12 @@
 //! Lights, in scene space.
 
+pub(in crate::model) mod area;
 pub(in crate::model) mod sky;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
+use self::area::{LightArea, LightShape};
 use crate::model::Camera;
 
 /// As many lights as a picture can have; each has its own attenuation volume.
@@ -78,6 +80,16 @@ pub struct Light {
     pub hood: Hood,
     /// Multiplies the extinction that this light meets.
     pub density_scale: f64,
+    /// What shines of it. Anything but a point has penumbrae.
+    pub shape: LightShape,
+    /// Width of a perspective light, in scene units.
+    pub size: f64,
+    /// Width of a parallel light as it is seen from the volume, in degrees: the sun has half of one.
+    pub angle_deg: f64,
+    /// Width by height of a rectangle.
+    pub aspect: f64,
+    /// How far a rectangle is turned counterclockwise, as seen from the volume.
+    pub turn_deg: f64,
 }
 
 impl Default for Light {
@@ -93,6 +105,12 @@ impl Default for Light {
             lock: LightLock::Scene,
             hood: Hood::default(),
             density_scale: 1.0,
+            shape: LightShape::Point,
+            size: 1.0,
+            // At usual distances as wide as a perspective light of the size above.
+            angle_deg: 15.0,
+            aspect: 1.0,
+            turn_deg: 0.0,
         }
     }
 }
@@ -138,17 +156,35 @@ pub struct SceneLight {
     pub hood: Hood,
     /// Multiplies the extinction that it meets.
     pub density_scale: f64,
+    /// How large it is; `None` of a point.
+    pub area: Option<LightArea>,
 }
 
 impl Light {
     /// The light where it stands in the scene, for the given camera.
     pub fn in_scene(&self, camera: &Camera) -> SceneLight {
-        let Self { name: _, kind, position, color, intensity, on, casts_shadows, lock, hood, density_scale } =
-            self;
+        let Self {
+            name: _,
+            kind,
+            position,
+            color,
+            intensity,
+            on,
+            casts_shadows,
+            lock,
+            hood,
+            density_scale,
+            shape: _,
+            size: _,
+            angle_deg: _,
+            aspect: _,
+            turn_deg: _,
+        } = self;
         let position = match lock {
             LightLock::Scene => *position,
             LightLock::Camera => (camera.scene_from_view() * DVec3::from(*position)).into(),
         };
+        let direction = DVec3::from(position).normalize_or(DVec3::Z);
         SceneLight {
             kind: *kind,
             position,
@@ -158,6 +194,24 @@ impl Light {
             casts_shadows: *casts_shadows,
             hood: *hood,
             density_scale: *density_scale,
+            area: LightArea::new(
+                (self.shape, self.half_extent()),
+                direction,
+                camera.up.direction(),
+                self.turn_deg,
+            ),
+        }
+    }
+
+    /// Half its width and half its height: in scene units, of a parallel light as tangents.
+    fn half_extent(&self) -> DVec2 {
+        let half = match self.kind {
+            LightKind::Parallel => (0.5 * self.angle_deg).to_radians().tan(),
+            LightKind::Perspective => 0.5 * self.size,
+        };
+        match self.shape {
+            LightShape::Rectangle => DVec2::new(half, half / self.aspect),
+            _ => DVec2::splat(half),
         }
     }
 

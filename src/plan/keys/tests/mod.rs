@@ -1,12 +1,14 @@
 //! What each setting changes: the keys that differ, setting by setting.
 
+mod lights;
+
 use serde_json::Value;
 
 use super::*;
 use crate::data::{Shown, ValueRange, ValueRanges, VolumeId};
 use crate::model::{
-    Camera, ControlPoint, LabelLook, Light, LightKind, LightLock, Settings, Sky, SkyMode, TransferFunction,
-    apply_path, to_json,
+    Camera, ControlPoint, LabelLook, Light, LightKind, Settings, Sky, SkyMode, TransferFunction, apply_path,
+    to_json,
 };
 
 fn request() -> Request {
@@ -93,6 +95,13 @@ fn every_setting_causes_what_the_design_says() {
         ("lights.1.hood", r#"{"on": true}"#, Effect::Nothing),
         ("lights.2.hood", r#"{"on": true}"#, Effect::OneLight),
         ("lights.1.density_scale", "0.5", Effect::OneLight),
+        ("lights.1.shape", "disc", Effect::OneLight),
+        ("lights.2.shape", "ball", Effect::OneLight),
+        // A point has none of these.
+        ("lights.1.size", "0.5", Effect::Nothing),
+        ("lights.1.angle_deg", "5", Effect::Nothing),
+        ("lights.1.aspect", "2", Effect::Nothing),
+        ("lights.1.turn_deg", "20", Effect::Nothing),
         ("range", "full", Effect::AllLights),
         ("range", r#"{"typed": [0, 2]}"#, Effect::AllLights),
         // Beyond what the range holds: it is widened.
@@ -132,6 +141,9 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.storage", "combined", Effect::Eye),
         ("shadows.reverse_kernel", "forward", Effect::AllLights),
         ("shadows.near_field", "long", Effect::Eye),
+        // Of points.
+        ("shadows.area.samples", "16", Effect::Nothing),
+        ("shadows.area.resolution", "full", Effect::Nothing),
         ("sky.mode", "off", Effect::Eye),
         ("sky.mode", "white", Effect::Eye),
         ("sky.intensity", "0.1", Effect::Eye),
@@ -250,28 +262,6 @@ fn options_that_only_display_reads_change_the_display_alone() {
     assert_eq!(effect(&keys(&request()), &FrameKeys::of(&request(), &options)), Effect::Display);
     let options = RenderOptions { timed: true, light_parts: 3, ..RenderOptions::default() };
     assert_eq!(effect(&keys(&request()), &FrameKeys::of(&request(), &options)), Effect::Nothing);
-}
-
-#[test]
-fn a_light_that_is_off_may_move() {
-    let mut before = request();
-    before.settings.lights[1].on = false;
-    assert_eq!(effect_of(&before, "lights.1.position", "[5,0,0]"), Effect::Nothing);
-    assert_eq!(effect_of(&before, "lights.1.on", "true"), Effect::OneLight);
-}
-
-#[test]
-fn a_light_that_is_locked_to_the_camera_turns_with_it() {
-    let mut before = request();
-    before.settings.lights[1].lock = LightLock::Camera;
-    assert_eq!(effect_of(&before, "camera.azimuth_deg", "10"), Effect::OneLight);
-}
-
-#[test]
-fn removing_a_light_rebuilds_nothing() {
-    let mut next = request();
-    next.settings.lights.remove(0);
-    assert_eq!(effect(&keys(&request()), &keys(&next)), Effect::Eye);
 }
 
 #[test]

@@ -1,0 +1,63 @@
+// A light that has a size is the mean of point lights on it: adds the volumes of some of them to those before, and after the
+// last stores what the mean leaves of the light. One thread per voxel.
+#import "common/listed_bricks.wgsl"
+
+struct Average {
+    dims: vec3u,
+    // Bricks listed for this dispatch.
+    bricks: u32,
+    // One over the points up to these.
+    share: f32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+@group(0) @binding(0) var<uniform> bound_average: Average;
+var<private> average: Average;
+@group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
+// What is left of each point's light.
+@group(0) @binding(2) var point_0: texture_3d<f32>;
+@group(0) @binding(3) var point_1: texture_3d<f32>;
+@group(0) @binding(4) var point_2: texture_3d<f32>;
+@group(0) @binding(5) var point_3: texture_3d<f32>;
+// Of the points before, and with these.
+@group(0) @binding(6) var before: texture_3d<f32>;
+@group(0) @binding(7) var after: texture_storage_3d<r32float, write>;
+@group(0) @binding(8) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+
+// Points that are added, up to four; whether they are the first and the last.
+override ADDED: u32 = 1u;
+override IS_FIRST: bool = true;
+override IS_LAST: bool = true;
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    average = bound_average;
+    let listed = listed_brick(group);
+    if (listed >= average.bricks) {
+        return;
+    }
+    let voxel = voxel_in(bricks[listed].x, group, local);
+    if (!is_listed(bricks[listed], group, local) || any(voxel >= average.dims)) {
+        return;
+    }
+    var sum = textureLoad(point_0, voxel, 0).r;
+    if (ADDED > 1u) {
+        sum += textureLoad(point_1, voxel, 0).r;
+    }
+    if (ADDED > 2u) {
+        sum += textureLoad(point_2, voxel, 0).r;
+    }
+    if (ADDED > 3u) {
+        sum += textureLoad(point_3, voxel, 0).r;
+    }
+    if (!IS_FIRST) {
+        sum += textureLoad(before, voxel, 0).r;
+    }
+    if (IS_LAST) {
+        textureStore(attenuation, voxel, vec4f(sum * average.share));
+    } else {
+        textureStore(after, voxel, vec4f(sum));
+    }
+}

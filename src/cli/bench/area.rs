@@ -1,0 +1,71 @@
+//! What lights that have a size take, beside one that has none.
+
+use serde_json::{Map, Value, json};
+
+use super::report::{Samples, round};
+use super::{Bench, STEP_DEG, WARM_UP};
+use crate::cli::CliError;
+use crate::model::{Kernel, LightShape, Resolution, ReverseKernel, Settings};
+
+/// Points of a light and resolutions that are timed.
+const BUILDS: [(u32, Resolution); 4] =
+    [(16, Resolution::Quarter), (16, Resolution::Half), (64, Resolution::Half), (16, Resolution::Full)];
+
+/// Width of the light, in degrees.
+const ANGLE_DEG: f64 = 15.0;
+
+impl Bench<'_> {
+    /// Fillings of the volume of a disc in units of B, the filling of one parallel light with the B-spline both ways; an
+    /// orbit under a disc over one without. In turn, so that a busy machine slows all of them.
+    pub(super) fn area(
+        &mut self,
+        cases: &mut Vec<Value>,
+        ratios: &mut Map<String, Value>,
+    ) -> Result<(), CliError> {
+        let mut lit = self.settings.clone();
+        lit.lights.truncate(1);
+        let mut unit = lit.clone();
+        unit.shadows.kernel = Kernel::BSpline;
+        unit.shadows.reverse_kernel = ReverseKernel::Forward;
+        let under_a_disc = |samples: u32, resolution: Resolution| {
+            let mut settings = lit.clone();
+            settings.lights.iter_mut().for_each(|light| {
+                (light.shape, light.angle_deg) = (LightShape::Disc, ANGLE_DEG);
+            });
+            (settings.shadows.area.samples, settings.shadows.area.resolution) = (samples, resolution);
+            settings
+        };
+        let mut one_light = Samples::default();
+        let mut builds: Vec<_> = BUILDS.iter().map(|_| Samples::default()).collect();
+        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+            let timed = frame >= WARM_UP;
+            let denser = |settings: &Settings| {
+                let mut settings = settings.clone();
+                let scale = 1.0 + 0.01 * (frame % 7) as f64;
+                settings.lights.iter_mut().for_each(|light| light.density_scale *= scale);
+                settings
+            };
+            self.frame(&denser(&unit), timed.then_some(&mut one_light))?;
+            for ((points, resolution), samples) in BUILDS.into_iter().zip(&mut builds) {
+                let settings = denser(&under_a_disc(points, resolution));
+                self.frame(&settings, timed.then_some(samples))?;
+            }
+        }
+        let unit = one_light.light_build();
+        ratios.insert("one_light_ms".to_owned(), json!(round(unit)));
+        for ((points, resolution), samples) in BUILDS.into_iter().zip(&builds) {
+            let divisor = resolution.divisor();
+            ratios.insert(
+                format!("disc_{points}_points_at_1/{divisor}"),
+                json!({ "measured": round(samples.light_build() / unit) }),
+            );
+        }
+        let pair = [lit.clone(), under_a_disc(64, Resolution::Half)];
+        let turned =
+            |settings: &mut Settings, frame: usize| settings.camera.azimuth_deg += STEP_DEG * frame as f64;
+        let [without, with] = self.in_turn(&pair, turned)?;
+        ratios.insert("orbit_under_a_disc_over_orbit".to_owned(), json!(round(with.cost() / without.cost())));
+        cases.push(self.case("orbit-point", &without, 0));
+        Ok(())
+    }
+}

@@ -1,0 +1,168 @@
+//! What of a light that has a size gets to the floor, as a map of it: rays from every pixel of the floor to every point of
+//! the light would take as long as pictures do, for each of them.
+
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+
+use super::march::Sheets;
+use crate::gpu::pipelines::binding::{buffer, view_of};
+use crate::gpu::pipelines::uniforms::{self, rows};
+use crate::gpu::pipelines::variant::{Constants, Variant, flag};
+use crate::gpu::resources::pass;
+use crate::gpu::volume::{Gpu, texture_3d};
+use crate::gpu::{Context, GpuError};
+use crate::model::{LightKind, SceneLight};
+use crate::plan::{FloorPlace, FloorTexels, LightView};
+
+/// Texels along an edge: two voxels of 256 to the scene's two units, as fine as the light volumes of such lights.
+const MAP_EDGE: u32 = 384;
+
+/// What of a light gets to the floor.
+#[derive(Debug)]
+pub(crate) struct FloorShadow {
+    /// Where the floor lies.
+    pub place: FloorPlace,
+    pub view: wgpu::TextureView,
+    /// Of the views before, a float for each texel.
+    sums: wgpu::Buffer,
+}
+
+/// One of the views of the points of a light.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ViewOfPoint<'a> {
+    pub point: &'a SceneLight,
+    pub geometry: &'a LightView,
+    /// Its number, and how many there are.
+    pub index: usize,
+    pub count: usize,
+    /// Points of the light.
+    pub points: usize,
+}
+
+impl FloorShadow {
+    /// Makes the texture; nothing is filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(context: &Context, place: FloorPlace) -> Result<Self, GpuError> {
+        let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
+        let size = [MAP_EDGE as usize, MAP_EDGE as usize, 1];
+        let format = context.storage_format;
+        let texture = context.texture(&texture_3d("FloorShadow::texture", size, format, usages))?;
+        let sums = context.empty_buffer(&wgpu::BufferDescriptor {
+            label: Some("FloorShadow::sums"),
+            size: 4 * u64::from(MAP_EDGE) * u64::from(MAP_EDGE),
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        Ok(Self { place, view: texture.create_view(&wgpu::TextureViewDescriptor::default()), sums })
+    }
+
+    /// Bytes of texture and sums.
+    pub(crate) fn bytes(&self) -> u64 {
+        let texel = u64::from(self.view.texture().format().block_copy_size(None).unwrap_or(4));
+        self.sums.size() + texel * u64::from(MAP_EDGE) * u64::from(MAP_EDGE)
+    }
+
+    /// The part of the map that light of a view gets to through its sheets: the first texel, and how many there are. `None`
+    /// where some of it goes upwards.
+    fn reached(&self, view: &LightView) -> Option<[[u32; 2]; 2]> {
+        let FloorTexels { origin, along } = self.place.texels(MAP_EDGE);
+        let up = self.place.up.direction();
+        let [width, height] = view.frame.size.map(f64::from);
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for corner in [(-1.0, -1.0), (width, -1.0), (-1.0, height), (width, height)] {
+            let pixel = (DVec2::from(corner) + view.first_pixel) * view.frame.pitch;
+            let across = view.axes.x_axis * pixel.x + view.axes.y_axis * pixel.y;
+            let direction = view.axes.z_axis + across * view.frame.inverse_distance;
+            let from = view.anchor + across;
+            let speed = direction.dot(up);
+            // As good as along the floor is too far away.
+            if speed > -1e-3 {
+                return None;
+            }
+            let place = from + direction * ((self.place.height - from.dot(up)) / speed);
+            let texel = DVec2::from(along.map(|step| (place - origin).dot(step) / step.length_squared()));
+            (low, high) = (low.min(texel), high.max(texel));
+        }
+        let edge = DVec2::splat(f64::from(MAP_EDGE));
+        let first = (low.floor() - 1.0).clamp(DVec2::ZERO, edge);
+        let end = (high.ceil() + 2.0).clamp(first, edge);
+        Some([first, end - first].map(|v| [v.x as u32, v.y as u32]))
+    }
+
+    /// Adds what a view whose sheets have all been marched leaves behind them.
+    pub(crate) fn add(
+        &self,
+        gpu: Gpu<'_>,
+        of: ViewOfPoint<'_>,
+        (march, sheets): (uniforms::March, &Sheets),
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let ViewOfPoint { point, geometry, index, count, points } = of;
+        let variant = FloorShadowVariant { is_first: index == 0, is_last: index + 1 == count };
+        let pipeline = gpu.shaders.pipeline(&variant)?;
+        let FloorTexels { origin, along: [right, front] } = self.place.texels(MAP_EDGE);
+        let whole = [[0; 2], [MAP_EDGE; 2]];
+        let is_whole = index == 0 || index + 1 == count || point.hood.on;
+        let texels = if is_whole { whole } else { self.reached(geometry).unwrap_or(whole) };
+        let vec3 = |v: DVec3| v.as_vec3().into();
+        let (place, perspective) = match point.kind {
+            LightKind::Parallel => (point.direction(), 0.0),
+            LightKind::Perspective => (point.position.into(), 1.0),
+        };
+        let pitch = 1.0 / geometry.frame.pitch;
+        let to_light = DMat3::from_diagonal(DVec3::new(pitch, pitch, 1.0)) * geometry.axes.transpose();
+        let light_from_scene = DAffine3 { matrix3: to_light, translation: -(to_light * geometry.anchor) };
+        let [light_from_scene_x, light_from_scene_y, light_from_scene_z] = rows(&light_from_scene);
+        let uniform = uniforms::FloorShadow {
+            origin: vec3(origin),
+            size: MAP_EDGE,
+            along_x: vec3(right),
+            share: 1.0 / points as f32,
+            along_y: vec3(front),
+            cube_face: u32::from(geometry.cube_face),
+            up: vec3(self.place.up.direction()),
+            perspective,
+            place: vec3(place),
+            pad0: 0.0,
+            light_from_scene_x,
+            light_from_scene_y,
+            light_from_scene_z,
+            first_pixel: geometry.first_pixel.as_vec2().into(),
+            first_texel: texels[0],
+        };
+        let uniform = gpu.uniform("FloorShadow::uniform", uniform);
+        let march = gpu.uniform("FloorShadow::march", march);
+        let own = gpu.bind(
+            "FloorShadow::bind_group",
+            &pipeline,
+            0,
+            &[
+                buffer("bound_march", &march),
+                buffer("bound_floor_map", &uniform),
+                buffer("sums", &self.sums),
+                buffer("transmittance", &sheets.ring.transmittance),
+                view_of("shadow", &self.view),
+            ],
+        );
+        pass::dispatch(encoder, "FloorShadow::pass", &pipeline, &[&own], pass::tiles(texels[1]));
+        Ok(())
+    }
+}
+
+/// What tells one pipeline of the map from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct FloorShadowVariant {
+    is_first: bool,
+    is_last: bool,
+}
+
+impl Variant for FloorShadowVariant {
+    fn shader(&self) -> &'static str {
+        "light/floor_shadow.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        vec![flag("IS_FIRST", self.is_first), flag("IS_LAST", self.is_last)]
+    }
+}

@@ -1,0 +1,97 @@
+//! What shaders of lights mirror.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::{Cut, Space};
+
+/// `shading/lights.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Light {
+    pub place: [f32; 3],
+    pub perspective: f32,
+    pub color: [f32; 3],
+    pub extinction_scale: f32,
+    pub lookup: [f32; 3],
+    pub hood_inner: f32,
+    pub hood_axis: [f32; 3],
+    pub hood_outer: f32,
+    pub place_in_index: [f32; 3],
+    pub two_sided: f32,
+    pub near_ahead: f32,
+    pub points: u32,
+    pub shape: u32,
+    pub pad0: u32,
+    pub area_right: [f32; 3],
+    pub pad1: f32,
+    pub area_up: [f32; 3],
+    pub pad2: f32,
+    pub area_near: [f32; 3],
+    pub pad3: f32,
+}
+
+/// `shading/lights.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Shading {
+    pub emission: f32,
+    pub ambient: f32,
+    pub diffuse: f32,
+    pub specular: f32,
+    pub shininess: f32,
+    pub surface_gradient: f32,
+    pub strength: f32,
+    pub ambient_offset: f32,
+    pub gain: f32,
+    pub bias: f32,
+    pub ray_step: f32,
+    pub dark_depth: f32,
+}
+
+/// `light/raycast.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Raycast {
+    pub light: Light,
+    pub space: Space,
+    pub dims: [u32; 3],
+    pub bricks: u32,
+    pub voxel_step: f32,
+    pub ray_step: f32,
+    pub dark: f32,
+    pub pad0: u32,
+    pub shading_cut: Cut,
+}
+
+/// `light/average.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Average {
+    pub dims: [u32; 3],
+    pub bricks: u32,
+    pub share: f32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
+}
+
+/// `light/floor_shadow.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct FloorShadow {
+    pub origin: [f32; 3],
+    pub size: u32,
+    pub along_x: [f32; 3],
+    pub share: f32,
+    pub along_y: [f32; 3],
+    pub cube_face: u32,
+    pub up: [f32; 3],
+    pub perspective: f32,
+    pub place: [f32; 3],
+    pub pad0: f32,
+    pub light_from_scene_x: [f32; 4],
+    pub light_from_scene_y: [f32; 4],
+    pub light_from_scene_z: [f32; 4],
+    pub first_pixel: [f32; 2],
+    pub first_texel: [u32; 2],
+}

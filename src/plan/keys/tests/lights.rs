@@ -1,0 +1,62 @@
+//! What moves with lights, and what their volumes are made from.
+
+use super::{Effect, effect, effect_of, keys, request};
+use crate::model::{LightLock, LightShape, Resolution};
+use crate::plan::LightKey;
+
+#[test]
+fn the_size_of_a_light_is_part_of_its_volume_alone() {
+    let mut before = request();
+    before.settings.lights[1].shape = LightShape::Disc;
+    before.settings.lights[2].shape = LightShape::Rectangle;
+    for (path, value, expected) in [
+        ("lights.1.angle_deg", "5", Effect::OneLight),
+        // The size of one is an angle, that of the other a length.
+        ("lights.1.size", "0.5", Effect::Nothing),
+        ("lights.2.size", "0.5", Effect::OneLight),
+        ("lights.2.angle_deg", "5", Effect::Nothing),
+        ("lights.1.aspect", "2", Effect::Nothing),
+        ("lights.2.aspect", "2", Effect::OneLight),
+        ("lights.2.turn_deg", "20", Effect::OneLight),
+        ("lights.1.color", "[1,0,0]", Effect::Eye),
+        ("lights.1.intensity", "2", Effect::Eye),
+        ("shadows.area.samples", "16", Effect::AllLights),
+        ("shadows.area.resolution", "full", Effect::AllLights),
+        // It is coarser already.
+        ("shadows.resolution", "half", Effect::OneLight),
+    ] {
+        assert_eq!(effect_of(&before, path, value), expected, "{path} = {value}");
+    }
+    let key = LightKey::of(&before, 1).expect("it casts shadows");
+    assert_eq!((key.samples(), key.resolution()), (64, Resolution::Half));
+    let coarse = key.coarse(Resolution::Quarter);
+    assert_eq!((coarse.samples(), coarse.resolution()), (16, Resolution::Quarter));
+    // A preview is never finer than the picture.
+    let point = LightKey::of(&before, 0).expect("it casts shadows");
+    assert_eq!((point.samples(), point.coarse(Resolution::Half).resolution()), (1, Resolution::Half));
+    before.settings.shadows.resolution = Resolution::Quarter;
+    let key = LightKey::of(&before, 1).expect("it casts shadows");
+    assert_eq!(key.coarse(Resolution::Half).resolution(), Resolution::Quarter);
+}
+
+#[test]
+fn a_light_that_is_off_may_move() {
+    let mut before = request();
+    before.settings.lights[1].on = false;
+    assert_eq!(effect_of(&before, "lights.1.position", "[5,0,0]"), Effect::Nothing);
+    assert_eq!(effect_of(&before, "lights.1.on", "true"), Effect::OneLight);
+}
+
+#[test]
+fn a_light_that_is_locked_to_the_camera_turns_with_it() {
+    let mut before = request();
+    before.settings.lights[1].lock = LightLock::Camera;
+    assert_eq!(effect_of(&before, "camera.azimuth_deg", "10"), Effect::OneLight);
+}
+
+#[test]
+fn removing_a_light_rebuilds_nothing() {
+    let mut next = request();
+    next.settings.lights.remove(0);
+    assert_eq!(effect(&keys(&request()), &keys(&next)), Effect::Eye);
+}

@@ -1,0 +1,135 @@
+//! Lights that have a size against the reference: their volumes, rays to them, and the floor below.
+
+use chiaroscuro::gpu::{Renderer, ShaderLibrary};
+use chiaroscuro::model::{
+    Engine, Hood, Light, LightKind, LightShape, LightStorage, NearField, Resolution, Settings,
+    ShadowAlgorithm,
+};
+use chiaroscuro::reference::{Fault, Options, Reference};
+use glam::DVec3;
+
+use super::mutations::{disagree_in, in_shader};
+use super::{SIZE, check_volume};
+use crate::common::{Dataset, context, render};
+use crate::compare::{Limit, compare, flat32, flat64};
+use crate::scenes;
+use crate::thresholds::{COMBINED_NORMALS, SAME_WEIGHTS};
+
+const N: usize = 22;
+
+/// A disc far away, a window, and a ball near by.
+fn look() -> Settings {
+    let mut settings = scenes::look();
+    let light = |kind, position| scenes::light(kind, position);
+    settings.lights = vec![
+        Light { shape: LightShape::Disc, angle_deg: 30.0, ..light(LightKind::Parallel, [1.3, -0.8, 1.7]) },
+        Light {
+            shape: LightShape::Rectangle,
+            size: 1.4,
+            aspect: 0.6,
+            turn_deg: 25.0,
+            ..light(LightKind::Perspective, [-2.2, 1.8, 2.4])
+        },
+        Light { shape: LightShape::Ball, size: 0.7, ..light(LightKind::Perspective, [1.1, 1.2, -0.4]) },
+    ];
+    settings.shadows.area.samples = 5;
+    settings
+}
+
+fn check(what: &str, settings: &Settings) {
+    check_volume(what, scenes::creature(N, DVec3::new(1.0, 1.0, 1.4)), settings, None);
+}
+
+#[test]
+fn three_shapes() {
+    let mut settings = look();
+    check("half resolution", &settings);
+    settings.shadows.area.resolution = Resolution::Full;
+    settings.shadows.area.samples = 1;
+    settings.lights[1].hood = Hood { on: true, half_angle_deg: 22.0, rim_deg: 9.0 };
+    check("one point each, a hood", &settings);
+    settings.shadows.area.samples = 3;
+    check("finely", &settings);
+}
+
+#[test]
+fn by_rays() {
+    let mut settings = look();
+    settings.shadows.area.samples = 3;
+    settings.lights[1].hood = Hood { on: true, half_angle_deg: 22.0, rim_deg: 9.0 };
+    settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+    check("rays from voxels", &settings);
+    settings.shadows.algorithm = ShadowAlgorithm::Direct;
+    settings.shadows.bias_voxels = 0.6;
+    check("rays from samples", &settings);
+}
+
+#[test]
+fn scattered() {
+    let mut settings = look();
+    settings.shadows.area.samples = 2;
+    settings.lights.truncate(2);
+    settings.sampling.engine = Engine::Scatter;
+    check("scattered", &settings);
+}
+
+/// One volume for all lights is as fine as the others are, whatever the resolution of lights that have a size.
+#[test]
+fn in_one_volume_for_all() {
+    let mut settings = look();
+    settings.shadows.area.samples = 2;
+    settings.shadows.near_field = NearField::Off;
+    settings.shading.specular = 0.0;
+    let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut picture = |storage, area| {
+        settings.shadows.storage = storage;
+        settings.shadows.area.resolution = area;
+        flat32(&render(&mut renderer, &loaded, &settings, SIZE).light)
+    };
+    let each = picture(LightStorage::PerLight, Resolution::Full);
+    let all = picture(LightStorage::Combined, Resolution::Half);
+    let each: Vec<f64> = each.iter().map(|&value| f64::from(value)).collect();
+    let limit = Limit { max: f64::INFINITY, rmse: COMBINED_NORMALS };
+    compare("one volume for all", &all, &each, limit).unwrap_or_else(|err| panic!("{err}"));
+}
+
+#[test]
+fn mistakes_in_them_are_noticed() {
+    let mut settings = look();
+    settings.lights.truncate(1);
+    assert!(!disagree_in(&settings, N, "\u{0}", "", Fault::None));
+    let volume = "light/average.wgsl";
+    for (from, to) in [
+        ("vec4f(sum * average.share)", "vec4f(sum * average.share * 0.97)"),
+        ("!IS_FIRST", "false"),
+        ("ADDED > 2u", "ADDED > 4u"),
+        ("textureLoad(point_0, voxel, 0).r", "textureLoad(point_1, voxel, 0).r"),
+    ] {
+        in_shader(volume, from);
+        assert!(disagree_in(&settings, N, from, to, Fault::None), "{to:?} for {from:?} is not noticed");
+    }
+    settings.shadows.algorithm = ShadowAlgorithm::Direct;
+    settings.lights[0].angle_deg = 80.0;
+    assert!(!pictures_differ(&settings, "\u{0}", ""));
+    for (from, to) in [
+        ("* sqrt((first + end) / (2.0 * all));", "* ((first + end) / (2.0 * all));"),
+        ("- first + 0.5 * ring)", "- first)"),
+        ("light.area_up * across.y", "light.area_up * across.x"),
+        ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
+    ] {
+        in_shader("eye/gather.wgsl", from);
+        assert!(pictures_differ(&settings, from, to), "{to:?} for {from:?} is not noticed");
+    }
+}
+
+/// Whether the picture of a damaged shader is another than the reference's.
+fn pictures_differ(settings: &Settings, from: &str, to: &str) -> bool {
+    let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
+    let context = context();
+    let shaders = ShaderLibrary::with_mutation(&context, from, to);
+    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+    let expected = Reference::new(loaded.volume(), settings, Options::default()).picture(SIZE, &[]);
+    let found = render(&mut renderer, &loaded, settings, SIZE);
+    compare("picture", &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).is_err()
+}

@@ -1,0 +1,171 @@
+//! Lights that have a size, where their penumbrae are known in closed form.
+
+use std::f64::consts::PI;
+
+use chiaroscuro::data::{Samples, Volume};
+use chiaroscuro::model::{Engine, LightKind, LightShape, Resolution, Settings};
+use glam::{DVec2, DVec3};
+
+use super::{base, renderer};
+use crate::common::{Dataset, attenuation};
+use crate::scenes;
+use crate::thresholds::{F16_STEP, PENUMBRA, PENUMBRA_ENERGY, PENUMBRA_WIDTH};
+
+/// Voxels along x and y, and along z.
+const DIMS: [usize; 3] = [124, 124, 84];
+
+/// The layer of the plate, which light from above meets.
+const PLATE: usize = 76;
+
+/// An opaque plate, two voxels thick, where `covers` says so: x and y from the middle.
+fn plate(covers: impl Fn(DVec2) -> f64) -> Dataset {
+    let [nx, ny, nz] = DIMS;
+    let value = |at: usize| {
+        let [x, y, z] = [at % nx, at / nx % ny, at / (nx * ny)];
+        let place = DVec2::new(x as f64, y as f64) - DVec2::new(nx as f64 - 1.0, ny as f64 - 1.0) / 2.0;
+        if z == PLATE || z == PLATE + 1 { (255.0 * covers(place)).round() as u8 } else { 0 }
+    };
+    let values = (0..nx * ny * nz).map(value).collect();
+    Dataset::new(Volume::with_spacing("plate", DIMS, DVec3::ONE, Samples::U8(values)).expect("a volume"))
+}
+
+/// A disc above, as wide as its tangent says.
+fn look(tangent: f64) -> Settings {
+    let mut settings = base(Engine::Gather, 8.0);
+    settings.lights = vec![scenes::light(LightKind::Parallel, [0.0, 0.0, 2.0])];
+    settings.lights[0].shape = LightShape::Disc;
+    settings.lights[0].angle_deg = 2.0 * tangent.atan().to_degrees();
+    settings.shadows.area.resolution = Resolution::Full;
+    settings
+}
+
+/// What a half-plane leaves of a disc that is seen a share `u` of its radius beside the edge.
+fn beside_an_edge(u: f64) -> f64 {
+    let u = u.clamp(-1.0, 1.0);
+    0.5 + (u * (1.0 - u * u).sqrt() + u.asin()) / PI
+}
+
+/// What arrives in the layer `depth` voxels below the plate, along `across`, within `reach` of the edge: places and values.
+fn profile(volume: &[f32], depth: usize, across: DVec2, reach: f64) -> Vec<(f64, f64)> {
+    let [nx, ny, _] = DIMS;
+    // The middle of two layers.
+    let z = PLATE - depth;
+    let voxels = (0..ny).flat_map(|y| (0..nx).map(move |x| (x, y)));
+    voxels
+        .filter_map(|(x, y)| {
+            let place = DVec2::new(x as f64, y as f64) - DVec2::new(nx as f64 - 1.0, ny as f64 - 1.0) / 2.0;
+            let along = place.dot(across);
+            // Away from the borders of the volume, where light comes in beside the plate.
+            let inside = place.perp_dot(across).abs() < 6.0 && along.abs() < reach;
+            let value = || f64::from(volume[x + nx * (y + ny * z)]);
+            inside.then(|| (along, value()))
+        })
+        .collect()
+}
+
+/// A row of means over what lies within half a voxel of each place, `reach` voxels to both sides of the edge.
+fn row(volume: &[f32], depth: usize, across: DVec2, reach: usize) -> Vec<f64> {
+    let found = profile(volume, depth, across, reach as f64 + 1.5);
+    let mean_at = |at: f64| {
+        let weighted = found.iter().map(|(along, value)| ((1.0 - (along - at).abs()).max(0.0), value));
+        let (sum, weights) =
+            weighted.fold((0.0, 0.0), |(sum, all), (weight, value)| (sum + weight * value, all + weight));
+        sum / weights
+    };
+    (0..=2 * reach).map(|at| mean_at(at as f64 - reach as f64)).collect()
+}
+
+/// A half-plane under a disc: ½ + (u√(1 − u²) + asin u)/π, u = x/(d tan θ), whatever the distance, in many directions. The
+/// edge is as soft as the shadow that a point has of it, which adds to the penumbra as one blur does to another.
+#[test]
+fn penumbrae_widen_with_the_distance() {
+    let tangent = 0.4;
+    let mut worst_of_all = 0.0_f64;
+    for turn_deg in [0.0_f64, 22.5, 45.0] {
+        let across = DVec2::from_angle(turn_deg.to_radians());
+        let loaded = plate(|place| (0.5 - place.dot(across)).clamp(0.0, 1.0));
+        let mut settings = look(tangent);
+        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        settings.lights[0].shape = LightShape::Point;
+        let sharp = attenuation(&mut renderer(), &loaded, &settings, 0);
+        let mut worst = [0.0_f64; 4];
+        for (worst, depth) in worst.iter_mut().zip([8, 16, 32, 64]) {
+            let half = (depth as f64 + 0.5) * tangent;
+            // As far as the light comes past the edge alone.
+            let reach = half as usize + 3;
+            let edge = row(&sharp, depth, across, 8);
+            let found = row(&volume, depth, across, reach);
+            for (at, found) in found.into_iter().enumerate() {
+                let place = at as f64 - reach as f64;
+                let blurred = edge.windows(2).enumerate().map(|(at, pair)| {
+                    let step = at as f64 + 0.5 - 8.0;
+                    (pair[1] - pair[0]) * beside_an_edge((place - step) / half)
+                });
+                *worst = worst.max((found - blurred.sum::<f64>()).abs());
+            }
+        }
+        println!("{turn_deg}°: {worst:.4?}");
+        worst_of_all = worst.into_iter().fold(worst_of_all, f64::max);
+    }
+    assert!(worst_of_all <= PENUMBRA, "{worst_of_all}");
+}
+
+/// Where light rises is twice as wide at twice the distance: no walk at random, whose width rises by √2 alone.
+#[test]
+fn twice_as_far_is_twice_as_wide() {
+    let loaded = plate(|place| (0.5 - place.x).clamp(0.0, 1.0));
+    let volume = attenuation(&mut renderer(), &loaded, &look(0.4), 0);
+    // The standard deviation of the slope, which steps hardly touch.
+    let width = |depth: usize| {
+        let reach = (0.5 * depth as f64) as usize + 6;
+        let slopes = row(&volume, depth, DVec2::X, reach);
+        let slopes: Vec<_> =
+            slopes.windows(2).enumerate().map(|(at, pair)| (at as f64, pair[1] - pair[0])).collect();
+        let total: f64 = slopes.iter().map(|(_, slope)| slope).sum();
+        let mean = slopes.iter().map(|(at, slope)| at * slope).sum::<f64>() / total;
+        (slopes.iter().map(|(at, slope)| (at - mean).powi(2) * slope).sum::<f64>() / total).sqrt()
+    };
+    let [near, far] = [30, 60].map(|depth| width(depth) / (depth as f64 + 0.5));
+    println!("widths per distance: {near:.4}, {far:.4}");
+    assert!((far / near - 1.0).abs() <= PENUMBRA_WIDTH, "{near}, {far}");
+}
+
+/// What is behind something small loses as much of a large light as of a point; it is only spread.
+#[test]
+fn a_penumbra_takes_no_light_away() {
+    let loaded = plate(|place| f64::from(u8::from(place.length() < 6.0)));
+    let mean = |settings: &Settings| {
+        let volume = attenuation(&mut renderer(), &loaded, settings, 0);
+        let [nx, ny, _] = DIMS;
+        let layer = &volume[nx * ny * (PLATE - 40)..][..nx * ny];
+        layer.iter().map(|&value| f64::from(value)).sum::<f64>() / (nx * ny) as f64
+    };
+    let large = look(0.4);
+    let mut point = large.clone();
+    point.lights[0].shape = LightShape::Point;
+    let (found, right) = (mean(&large), mean(&point));
+    println!("left of a disc {found:.5}, of a point {right:.5}");
+    assert!(right < 0.995 && (found - right).abs() <= PENUMBRA_ENERGY, "{found}, not {right}");
+}
+
+/// A light without a size is a point, byte for byte; and one with hardly any nearly so.
+#[test]
+fn no_size_is_a_point() {
+    let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
+    let volume = |settings: &Settings| attenuation(&mut renderer(), &loaded, settings, 0);
+    for kind in [LightKind::Parallel, LightKind::Perspective] {
+        let mut settings = look(0.4);
+        settings.lights[0] = scenes::light(kind, [1.2, -1.7, 2.0]);
+        let point = volume(&settings);
+        let light = &mut settings.lights[0];
+        (light.shape, light.size, light.angle_deg) = (LightShape::Ball, 0.0, 0.0);
+        assert_eq!(volume(&settings), point, "{kind:?}");
+        let light = &mut settings.lights[0];
+        (light.size, light.angle_deg) = (1e-6, 1e-6);
+        let farthest = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(farthest(&volume(&settings), &point) <= F16_STEP, "{kind:?}");
+        let light = &mut settings.lights[0];
+        (light.size, light.angle_deg) = (0.5, 20.0);
+        assert!(farthest(&volume(&settings), &point) > 0.1, "a size is seen");
+    }
+}
