@@ -89,7 +89,6 @@ fn in_one_volume_for_all() {
     };
     let each = picture(LightStorage::PerLight, Resolution::Full);
     let all = picture(LightStorage::Combined, Resolution::Half);
-    let each: Vec<f64> = each.iter().map(|&value| f64::from(value)).collect();
     let limit = Limit { max: f64::INFINITY, rmse: COMBINED_NORMALS };
     compare("one volume for all", &all, &each, limit).unwrap_or_else(|err| panic!("{err}"));
 }

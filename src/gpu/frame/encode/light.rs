@@ -186,7 +186,7 @@ impl Job<'_> {
 
     /// Records that the volumes of the last points of a light join those before.
     pub(super) fn encode_average(
-        &mut self,
+        &self,
         at: usize,
         point: usize,
         encoder: &mut wgpu::CommandEncoder,
