@@ -52,7 +52,7 @@ impl LightShape {
     /// Point number `index` of `count` on the shape: across, up and towards the volume, each −1 … 1, so that as many
     /// lie in areas of the same size wherever that is looked at from.
     ///
-    /// Of a disc rings as wide as each other ([`on_rings`]); of a rectangle Fibonacci's lattice; of a ball the disc, each
+    /// Of a disc rings as wide as each other; of a rectangle Fibonacci's lattice; of a ball the disc, each
     /// point moved along its chord by the arcsine law: density 1/√(1 − r²), whose shadow along every direction is an even
     /// disc.
     pub fn point(self, index: u32, count: u32) -> DVec3 {
