@@ -18,6 +18,7 @@ use crate::gpu::light::packed::LightInput;
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::output::target::Shape;
 use crate::gpu::resources::cached::Cached;
+use crate::gpu::resources::tools::Tools;
 use crate::gpu::scatter::eye::SLABS_PER_STEP;
 use crate::gpu::scatter::voxels::Scattering;
 use crate::gpu::volume::materials::Materials;
@@ -116,7 +117,6 @@ impl Renderer {
             self.report.bricks_ms += start.elapsed().as_secs_f64() * 1000.0;
         }
         if role.is_none() {
-            let mut recyclable = loaded.value.take_unfinished();
             let wanted = Wanted {
                 context: &self.tools.context,
                 request: &request,
@@ -124,11 +124,7 @@ impl Renderer {
                 keys: &keys,
                 now: self.pictures,
             };
-            placed = loaded.value.place_lights(wanted, &mut recyclable)?;
-            if !recyclable.is_empty() {
-                recyclable.clear();
-                self.tools.pool.forget_groups();
-            }
+            placed = place_lights(&self.tools, &mut loaded.value, wanted)?;
             if placed.builds.is_empty() {
                 self.tools.pool.drop_ring();
             }
@@ -145,14 +141,10 @@ impl Renderer {
             let wanted =
                 Wanted { context: &self.tools.context, request: &request, options, keys: &keys, now };
             sky = loaded.value.place_sky(&self.tools, wanted)?;
-            if keys.combined.is_none() {
-                // And so it does lights that have a size.
-                let mut recyclable = loaded.value.take_unfinished();
-                placed = loaded.value.place_lights(wanted, &mut recyclable)?;
-                if !recyclable.is_empty() {
-                    recyclable.clear();
-                    self.tools.pool.forget_groups();
-                }
+            // And what there is of lights that have a size; rays find that of others.
+            let has_map = lit.shadowed().iter().any(|lit| lit.light.area.is_some());
+            if has_map && keys.combined.is_none() {
+                placed = place_lights(&self.tools, &mut loaded.value, wanted)?;
             }
         }
         let is_drawn = role.is_some();
@@ -244,6 +236,20 @@ impl Renderer {
             request,
         })
     }
+}
+
+/// Finds or makes the light of a picture, in what an interrupted one has left.
+fn place_lights(tools: &Tools, loaded: &mut Loaded, wanted: Wanted<'_>) -> Result<PlacedLights, GpuError> {
+    // Bind groups would keep alive what has only served to fill it.
+    let is_half_averaged =
+        loaded.lights.iter().any(|light| !light.is_complete() && light.key().samples() > 1);
+    let mut recyclable = loaded.take_unfinished();
+    let placed = loaded.place_lights(wanted, &mut recyclable)?;
+    if is_half_averaged || !recyclable.is_empty() {
+        drop(recyclable);
+        tools.pool.forget_groups();
+    }
+    Ok(placed)
 }
 
 /// What is to be classified anew.

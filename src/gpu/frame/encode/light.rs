@@ -40,8 +40,7 @@ impl Job<'_> {
             _ => None,
         };
         let scene = &gpu.volume.scene;
-        // Scattered sheets are not marched in tiles.
-        // A floor takes what has passed, whether that was read or not.
+        // Scattered sheets are not marched in tiles; and a floor takes what has passed, whether that was read or not.
         let has_floor = loaded.lights[build.slot].value.floor.is_some();
         let beyond = if build.scatters || has_floor || sheets.reach == EVERYWHERE {
             EVERYWHERE
