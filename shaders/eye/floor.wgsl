@@ -5,6 +5,7 @@
 #import "density/table.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
+#import "shading/light_volumes.wgsl"
 #import "shading/sky.wgsl"
 #import "common/space.wgsl"
 #import "sheets/tiles.wgsl"
@@ -53,16 +54,6 @@ var<private> floor_disc: Floor;
 // C₁ in rgb, C₀ in a: see sky/floor_map.wgsl.
 @group(0) @binding(5) var sky_map: texture_3d<f32>;
 
-// Of lights that have a size, a map of what gets to the floor; they have no points then.
-@group(2) @binding(0) var attenuation_0: texture_3d<f32>;
-@group(2) @binding(1) var attenuation_1: texture_3d<f32>;
-@group(2) @binding(2) var attenuation_2: texture_3d<f32>;
-@group(2) @binding(3) var attenuation_3: texture_3d<f32>;
-@group(2) @binding(4) var attenuation_4: texture_3d<f32>;
-@group(2) @binding(5) var attenuation_5: texture_3d<f32>;
-@group(2) @binding(6) var attenuation_6: texture_3d<f32>;
-@group(2) @binding(7) var attenuation_7: texture_3d<f32>;
-
 // Lights that are on; those that material attenuates come first.
 override LIGHTS: u32 = 1u;
 override SHADOWED: u32 = 1u;
@@ -94,6 +85,7 @@ fn place_on_map(place: vec3f) -> vec3f {
     return vec3f(dot(floor_disc.map_x, vec4f(place, 1.0)), dot(floor_disc.map_y, vec4f(place, 1.0)), 0.5);
 }
 
+// Lights that have a map of what gets there have no points.
 fn left_on_map(slot: u32, at: vec3f) -> f32 {
     switch (slot) {
         case 0u: { return textureSampleLevel(attenuation_0, clamped, at, 0.0).r; }

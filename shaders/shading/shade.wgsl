@@ -8,6 +8,7 @@
 #import "common/space.wgsl"
 #import "sheets/sheet_frame.wgsl"
 #import "density/cut.wgsl"
+#import "shading/light_volumes.wgsl"
 
 struct Eye {
     frame: SheetFrame,
@@ -45,14 +46,6 @@ struct Eye {
 
 @group(0) @binding(0) var<uniform> bound_eye: Eye;
 var<private> eye: Eye;
-@group(2) @binding(0) var attenuation_0: texture_3d<f32>;
-@group(2) @binding(1) var attenuation_1: texture_3d<f32>;
-@group(2) @binding(2) var attenuation_2: texture_3d<f32>;
-@group(2) @binding(3) var attenuation_3: texture_3d<f32>;
-@group(2) @binding(4) var attenuation_4: texture_3d<f32>;
-@group(2) @binding(5) var attenuation_5: texture_3d<f32>;
-@group(2) @binding(6) var attenuation_6: texture_3d<f32>;
-@group(2) @binding(7) var attenuation_7: texture_3d<f32>;
 
 // Lights that are on; those with an attenuation volume come first.
 override LIGHTS: u32 = 1u;

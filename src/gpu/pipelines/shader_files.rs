@@ -52,6 +52,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "scatter/slab.wgsl",
     "scatter/splat.wgsl",
     "scatter/voxels.wgsl",
+    "shading/light_volumes.wgsl",
     "shading/lights.wgsl",
     "shading/looked_up_light.wgsl",
     "shading/near_light.wgsl",
