@@ -3,10 +3,11 @@
 use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
 
-use eframe::egui::{self, Id, Painter, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo};
+use eframe::egui::{Id, Painter, Rect, Stroke, StrokeKind, Ui, Vec2};
 use glam::DVec3;
 
 use super::geometry::View;
+use super::grip::grip;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Hood, LightKind, SceneLight};
@@ -97,22 +98,15 @@ impl HoodHandle {
         let spot = dragged.or_else(|| Spot::seen(view, light)).filter(|_| has_cone(light))?;
         let at = spot.place(view, light);
         let seen = view.point(at)?;
-        let area = Rect::from_center_size(seen, Vec2::splat(2.0 * HALF_EDGE + 6.0));
-        let response = ui.interact(area, Id::unique("hood handle").with(index), Sense::drag());
         let name = text::lights::hood_handle(name);
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-        self.dragged = response.dragged().then_some(spot);
-        self.active = response.hovered() || response.dragged();
-        if self.active {
-            ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
-        }
+        let grip = grip(ui, seen, HALF_EDGE, Id::unique("hood handle").with(index), &name);
+        self.dragged = grip.is_dragged.then_some(spot);
+        self.active = grip.is_active;
         let edge = Vec2::splat(2.0 * HALF_EDGE + if self.active { 2.0 } else { 0.0 });
         let square = Rect::from_center_size(seen, edge);
         let outline = Stroke::new(1.5, theme::OUTLINE);
         painter.rect(square, 1.0, theme::color(light.color), outline, StrokeKind::Outside);
-        let pointer = response.interact_pointer_pos().filter(|_| response.dragged());
-        let moved = pointer.filter(|_| ui.input(|input| input.pointer.delta()) != Vec2::ZERO);
-        let half_angle_deg = spot.half_angle_deg(view, light, view.facing(at, moved?)?);
+        let half_angle_deg = spot.half_angle_deg(view, light, view.facing(at, grip.moved_to?)?);
         // Not so far that nobody could grab it any more.
         let hood = Hood { half_angle_deg, ..light.hood };
         let moved = spot.place(view, &SceneLight { hood, ..*light });

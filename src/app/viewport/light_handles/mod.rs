@@ -5,6 +5,7 @@
 //! Handles are painted by the window over the picture and are therefore never in an export.
 
 mod geometry;
+mod grip;
 mod guides;
 mod hood_handle;
 mod size_handle;

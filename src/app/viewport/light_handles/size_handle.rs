@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use eframe::egui::{self, Id, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+use eframe::egui::{Id, Painter, Pos2, Shape, Stroke, Ui};
 use glam::DVec3;
 
 use super::geometry::View;
+use super::grip::grip;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{LightArea, LightKind, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_SIZE, SceneLight};
@@ -158,20 +159,13 @@ impl SizeHandle {
         let out = shown.side(view, side);
         let edge = shown.middle + out;
         let seen = view.point(edge)?;
-        let area = Rect::from_center_size(seen, Vec2::splat(2.0 * RADIUS + 6.0));
-        let response = ui.interact(area, Id::unique("size handle").with(index), Sense::drag());
         let name = text::lights::size_handle(name);
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-        self.dragged = response.dragged().then_some(side);
-        self.active = response.hovered() || response.dragged();
-        if self.active {
-            ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
-        }
+        let grip = grip(ui, seen, RADIUS, Id::unique("size handle").with(index), &name);
+        self.dragged = grip.is_dragged.then_some(side);
+        self.active = grip.is_active;
         let radius = RADIUS + if self.active { 1.0 } else { 0.0 };
         painter.circle(seen, radius, theme::color(light.color), Stroke::new(1.5, theme::OUTLINE));
-        let pointer = response.interact_pointer_pos().filter(|_| response.dragged());
-        let moved = pointer.filter(|_| ui.input(|input| input.pointer.delta()) != Vec2::ZERO)?;
-        Some(shown.through(out, view.facing(edge, moved)?))
+        Some(shown.through(out, view.facing(edge, grip.moved_to?)?))
     }
 }
 
@@ -186,7 +180,7 @@ fn paint_outline(painter: &Painter, view: &View, shown: &Shown, light: &SceneLig
 mod tests {
     use super::*;
     use crate::model::{Camera, Light};
-    use eframe::egui::vec2;
+    use eframe::egui::{Rect, vec2};
 
     fn shown(light: &Light) -> (View, Shown) {
         let picture = Rect::from_min_size(Pos2::new(10.0, 20.0), vec2(800.0, 600.0));
