@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use super::report::{Samples, round};
-use super::{Bench, STEP_DEG, WARM_UP};
+use super::report::round;
+use super::{Bench, STEP_DEG};
 use crate::cli::CliError;
 use crate::model::{Kernel, LightShape, Resolution, ReverseKernel, Settings};
 
@@ -35,22 +35,11 @@ impl Bench<'_> {
             (settings.shadows.area.samples, settings.shadows.area.resolution) = (samples, resolution);
             settings
         };
-        let mut one_light = Samples::default();
-        let mut builds: Vec<_> = BUILDS.iter().map(|_| Samples::default()).collect();
-        for frame in 0..WARM_UP + usize::from(self.args.frames) {
-            let timed = frame >= WARM_UP;
-            let denser = |settings: &Settings| {
-                let mut settings = settings.clone();
-                let scale = 1.0 + 0.01 * (frame % 7) as f64;
-                settings.lights.iter_mut().for_each(|light| light.density_scale *= scale);
-                settings
-            };
-            self.frame(&denser(&unit), timed.then_some(&mut one_light))?;
-            for ((points, resolution), samples) in BUILDS.into_iter().zip(&mut builds) {
-                let settings = denser(&under_a_disc(points, resolution));
-                self.frame(&settings, timed.then_some(samples))?;
-            }
-        }
+        let looks = BUILDS.map(|(points, resolution)| under_a_disc(points, resolution));
+        let denser = |settings: &mut Settings, scale: f64| {
+            settings.lights.iter_mut().for_each(|light| light.density_scale *= scale);
+        };
+        let (one_light, builds) = self.fillings(&unit, &looks, denser)?;
         let unit = one_light.light_build();
         ratios.insert("one_light_ms".to_owned(), json!(round(unit)));
         for ((points, resolution), samples) in BUILDS.into_iter().zip(&builds) {

@@ -36,20 +36,10 @@ impl Bench<'_> {
             (settings.sky.directions, settings.sky.resolution) = (directions, resolution);
             settings
         };
-        let mut one_light = Samples::default();
-        let mut builds: Vec<_> = BUILDS.iter().map(|_| Samples::default()).collect();
-        for frame in 0..WARM_UP + usize::from(self.args.frames) {
-            let timed = frame >= WARM_UP;
-            let scale = 1.0 + 0.01 * (frame % 7) as f64;
-            let mut denser = lit.clone();
-            denser.lights.iter_mut().for_each(|light| light.density_scale *= scale);
-            self.frame(&denser, timed.then_some(&mut one_light))?;
-            for ((directions, resolution), samples) in BUILDS.into_iter().zip(&mut builds) {
-                let mut denser = under_a_sky(directions, resolution);
-                denser.sky.density_scale *= scale;
-                self.frame(&denser, timed.then_some(samples))?;
-            }
-        }
+        let looks = BUILDS.map(|(directions, resolution)| under_a_sky(directions, resolution));
+        // Lights stay as they are: what is timed is the sky.
+        let denser = |settings: &mut Settings, scale: f64| settings.sky.density_scale *= scale;
+        let (one_light, builds) = self.fillings(&lit, &looks, denser)?;
         let unit = one_light.light_build();
         ratios.insert("one_light_ms".to_owned(), json!(round(unit)));
         for ((directions, resolution), samples) in BUILDS.into_iter().zip(&builds) {
@@ -79,6 +69,31 @@ impl Bench<'_> {
         cases.push(self.case("tf-edit-one-light", &without, 0));
         cases.push(self.case("tf-edit-sky", &with, 0));
         Ok(())
+    }
+
+    /// Fillings of the volume of one light, and of what looks have beside it, in turn: each time `denser` changes what the
+    /// latter are made from by a factor.
+    pub(super) fn fillings(
+        &mut self,
+        one_light: &Settings,
+        looks: &[Settings],
+        denser: impl Fn(&mut Settings, f64),
+    ) -> Result<(Samples, Vec<Samples>), CliError> {
+        let mut unit = Samples::default();
+        let mut builds: Vec<_> = looks.iter().map(|_| Samples::default()).collect();
+        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+            let timed = frame >= WARM_UP;
+            let scale = 1.0 + 0.01 * (frame % 7) as f64;
+            let mut lit = one_light.clone();
+            lit.lights.iter_mut().for_each(|light| light.density_scale *= scale);
+            self.frame(&lit, timed.then_some(&mut unit))?;
+            for (look, samples) in looks.iter().zip(&mut builds) {
+                let mut look = look.clone();
+                denser(&mut look, scale);
+                self.frame(&look, timed.then_some(samples))?;
+            }
+        }
+        Ok((unit, builds))
     }
 
     /// Frames of two looks in turn, each changed by `change` from frame to frame.
