@@ -113,6 +113,11 @@ struct Shading {
     ray_step: f32,
     // Optical depth at which it ends.
     dark_depth: f32,
+    // Of light that matter without a surface scatters, the mean cosine of the angle by which it turns.
+    anisotropy: f32,
+    pad0: f32,
+    pad1: f32,
+    pad2: f32,
 }
 
 // What is lit: a sample of the volume.
@@ -151,14 +156,28 @@ fn received(shading: Shading, attenuation: f32) -> f32 {
     return 1.0 - shading.strength * (1.0 - light);
 }
 
-// The share of a light that diffuse reflection gives back: even from all sides where there is no surface.
-fn diffuse_share(light: Light, surface: Surface, facing: f32) -> f32 {
+// What matter without a surface scatters of light towards the eye, over the mean of all directions: Henyey and Greenstein's
+// phase function times 4π, (1 − g²) / (1 + g² − 2 g cos θ)^(3/2).
+fn scattered_share(shading: Shading, surface: Surface, to_light: vec3f) -> f32 {
+#if ANISOTROPIC
+    let g = shading.anisotropy;
+    // Light that goes on as it came turns by nothing.
+    let cosine = -dot(to_light, surface.to_eye);
+    let span = 1.0 + g * g - 2.0 * g * cosine;
+    return (1.0 - g * g) / (span * sqrt(span));
+#else
+    return 1.0;
+#endif
+}
+
+// The share of a light that diffuse reflection gives back, and what is given back where there is no surface.
+fn diffuse_share(light: Light, surface: Surface, facing: f32, amid: f32) -> f32 {
     var reflected = abs(facing);
     if (ONE_SIDED) {
         let outward = mix(max(-facing, 0.0), max(facing, 0.0), 0.5 + 0.5 * surface.side);
         reflected = mix(outward, reflected, light.two_sided);
     }
-    return mix(1.0, reflected, surface.surfaceness);
+    return mix(amid, reflected, surface.surfaceness);
 }
 
 // What one light adds of which a given share arrives.
@@ -168,7 +187,7 @@ fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
     let clear = select(1.0, abs(surface.side), ONE_SIDED);
     let facing = dot(surface.normal, to_light);
-    let diffuse = diffuse_share(light, surface, facing);
+    let diffuse = diffuse_share(light, surface, facing, scattered_share(shading, surface, to_light));
     let half_vector = to_light + surface.to_eye;
     // pow(0, x) is spared: some drivers make it NaN.
     let aligned = max(turned * dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);

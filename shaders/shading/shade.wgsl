@@ -5,6 +5,7 @@
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"
 #import "shading/sky_light.wgsl"
+#import "shading/bounces.wgsl"
 #import "common/space.wgsl"
 #import "sheets/sheet_frame.wgsl"
 #import "density/cut.wgsl"
@@ -41,6 +42,7 @@ struct Eye {
     // What attenuates light.
     shading_cut: Cut,
     sky: Sky,
+    bounces: Bounces,
     lights: array<Light, MAX_LIGHTS>,
 }
 
@@ -163,13 +165,31 @@ fn lit_through_material(surface: Surface) -> Lit {
     return lit;
 }
 
+// Some way in front of a surface, on the side from which light comes; amid matter, the sample itself. In index space.
+fn in_front(surface: Surface, way: f32) -> vec3f {
+    let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
+    return surface.point + to_index(eye.space, surface.normal) * (turned * surface.surfaceness * way);
+}
+
 // The light of the sky on a sample, as a share of its colour.
 fn lit_by_sky(surface: Surface) -> vec3f {
 #if SKY
-    // In front of a surface, on the side from which light comes.
-    let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
-    let ahead = to_index(eye.space, surface.normal) * (turned * surface.surfaceness * eye.sky.ahead);
-    return reflect_sky(eye.sky, surface, surface.point + ahead, eye.shading.strength);
+    return reflect_sky(eye.sky, surface, in_front(surface, eye.sky.ahead), eye.shading.strength);
+#else
+    return vec3f(0.0);
+#endif
+}
+
+#if BOUNCES
+@group(2) @binding(9) var bounced_texture: texture_3d<f32>;
+#endif
+
+// The light on a sample that material has scattered before, as a share of its colour.
+fn lit_by_bounces(surface: Surface) -> vec3f {
+#if BOUNCES
+    let bounces = eye.bounces;
+    let place = (in_front(surface, bounces.ahead) + 0.5) * bounces.lookup;
+    return bounces.share * textureSampleLevel(bounced_texture, clamped, place, 0.0).rgb;
 #else
     return vec3f(0.0);
 #endif
@@ -192,7 +212,8 @@ fn shade(found: Sampled, material: vec3f) -> vec3f {
         let direction = to_light(light, surface.position).direction;
         lit = add(lit, reflect_light(s, light, surface, direction, hood_share(light, direction)));
     }
-    return material * (s.emission + s.ambient + lit_by_sky(surface) + s.diffuse * lit.diffuse) + s.specular * lit.specular;
+    let around = lit_by_sky(surface) + lit_by_bounces(surface);
+    return material * (s.emission + s.ambient + around + s.diffuse * lit.diffuse) + s.specular * lit.specular;
 }
 
 // The gradient in scene space from differences of the sheets: per pixel to the right, per pixel down

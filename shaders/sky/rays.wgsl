@@ -23,6 +23,9 @@ struct SkyRays {
     layer: u32,
     pad0: f32,
     pad1: f32,
+    // The light that comes from there, where what is marched is light and not what is left of it (bounces/sweep.wgsl).
+    arriving: vec3f,
+    pad2: f32,
 }
 
 struct Sweep {

@@ -3,6 +3,7 @@
 //! One folder per part of a picture, in the order in which they build on each other; one file per pass, with the
 //! same name as its shader. Knows nothing of the window.
 
+mod bounces;
 mod context;
 mod eye;
 mod first_look;

@@ -23,6 +23,7 @@ pub use self::settings::length::Length;
 pub use self::settings::light::area::{
     LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
 };
+pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, Scattering};
 pub use self::settings::light::sky::{SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyRadiance};
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, SceneLight};
 pub use self::settings::quality::Quality;

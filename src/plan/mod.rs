@@ -27,8 +27,8 @@ pub use self::geometry::sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame
 pub use self::geometry::slice_order::SliceOrder;
 pub use self::geometry::sweep::{SweepFrame, sweep_directions};
 pub use keys::{
-    Attenuation, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, LitLight,
-    LitLights, OpacityKey, SkyKey, TablesKey,
+    Attenuation, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey,
+    LitLight, LitLights, OpacityKey, SkyKey, TablesKey,
 };
 pub use probe::{Arrival, Probe, probe};
 pub use request::{RenderOptions, Request, VolumeKey};

@@ -17,10 +17,12 @@
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
 //! | the light of a sky | `sky` | [`Reference::openness`], [`Reference::picture`] |
+//! | light that bounces | `bounces` | [`Reference::bounced`], [`Reference::picture`] |
 //! | the floor | `floor` | [`Reference::floor`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
 mod back_project;
+mod bounces;
 mod eye;
 mod field;
 mod floor;
@@ -37,6 +39,7 @@ mod sky;
 mod tests;
 
 pub use back_project::Attenuation;
+pub use bounces::{Bounced, Medium};
 pub use field::pyramid::Pyramid;
 pub use field::{Field, Rounding};
 pub use kernel::{cubic_b_spline, gaussian, tent};

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::Attenuation;
+use super::bounces::Bounced;
 use super::field::classified::Side;
 use super::field::pyramid::MAX_LEVEL;
 use super::kernel::Profile;
@@ -29,6 +30,8 @@ pub(super) struct Shader<'r> {
     remaining: Remaining,
     /// How open to the sky places are, where there is one that material attenuates.
     openness: Option<Openness>,
+    /// Light that has bounced, where any does.
+    bounced: Option<Bounced>,
     /// See [`sides`]; evenly over densities 0 … 1.
     sides: Vec<f64>,
 }
@@ -106,6 +109,7 @@ impl<'r> Shader<'r> {
             profile: reference.profile(Kernel::Prefiltered),
             remaining: reference.shading(),
             openness: settings.has_sky_volume().then(|| reference.openness()),
+            bounced: settings.has_bounces().then(|| reference.bounced()),
             sides: sides(&reference.gathered_table(Side::Eye)),
         }
     }
@@ -128,7 +132,9 @@ impl<'r> Shader<'r> {
         let side_lit = is_one_sided.then_some(side);
         let openness = self.openness.as_ref();
         let sky = self.reference.lit_by_sky(openness, point, surface.normal, surface.weight, side_lit);
-        let mut diffuse = sky.map(|light| flat + light);
+        let bounced = self.bounced.as_ref();
+        let bounced = self.reference.lit_by_bounces(bounced, point, surface.normal, surface.weight, side_lit);
+        let mut diffuse: [f64; 3] = std::array::from_fn(|c| flat + sky[c] + bounced[c]);
         let mut specular = [0.0; 3];
         for lamp in &self.lamps {
             let to_light = match lamp.light.kind {
@@ -143,8 +149,10 @@ impl<'r> Shader<'r> {
             } else {
                 facing.abs()
             };
-            // 1 where there is no surface.
-            let reflected = 1.0 + (reflected - 1.0) * surface.weight;
+            // Where there is no surface, what matter scatters towards the eye of light that comes from there.
+            let amid =
+                henyey_greenstein(self.reference.settings.scattering.anisotropy, -to_light.dot(to_eye));
+            let reflected = amid + (reflected - amid) * surface.weight;
             let half_way = (to_light + to_eye).normalize_or_zero();
             let mirrored = if outward.dot(to_light) > 0.0 {
                 side.abs() * surface.weight * outward.dot(half_way).max(0.0).powf(shading.shininess)
@@ -282,6 +290,11 @@ impl<'r> Shader<'r> {
             Projection::Perspective => (camera.eye() - place).normalize_or(backward),
         }
     }
+}
+
+/// The phase function of Henyey and Greenstein over that of matter which scatters evenly; `mean` is its mean cosine.
+fn henyey_greenstein(mean: f64, cosine: f64) -> f64 {
+    (1.0 - mean * mean) / (1.0 + mean * mean - 2.0 * mean * cosine).powf(1.5)
 }
 
 /// For each entry of a table the balance of rises and falls of extinction around it, each weighted by

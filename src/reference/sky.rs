@@ -43,7 +43,7 @@ impl Reference<'_> {
     /// The same from some directions, in blocks of so many voxels along an edge.
     pub fn openness_from(&self, directions: &[DVec3], divisor: usize) -> Openness {
         let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
-        let extinction = self.blocks(dims, divisor);
+        let extinction = self.sky_blocks(dims, divisor);
         let count: usize = dims.iter().product();
         let mut sums = vec![[0.0; 4]; count];
         for &towards in directions {
@@ -69,7 +69,7 @@ impl Reference<'_> {
             return Vec::new();
         }
         let divisor = sky.resolution.divisor();
-        let extinction = self.blocks(self.scene.dims.map(|n| n.div_ceil(divisor)), divisor);
+        let extinction = self.sky_blocks(self.scene.dims.map(|n| n.div_ceil(divisor)), divisor);
         let of = |towards| {
             let frame = SweepFrame::new(&self.scene, divisor, towards);
             let deposits = march(&frame, &extinction);
@@ -101,8 +101,20 @@ impl Reference<'_> {
         [[0, 1, 2].map(|c| (bare[c] + strength * (seen[c] - bare[c])).max(0.0)), bare]
     }
 
-    /// The mean extinction of eight places in each block, or of the one voxel that it is.
-    fn blocks(&self, dims: [usize; 3], divisor: usize) -> Vec<f64> {
+    /// What attenuates the light of a sky in each block.
+    fn sky_blocks(&self, dims: [usize; 3], divisor: usize) -> Vec<f64> {
+        let scale = self.settings.sky.density_scale;
+        self.blocks(dims, divisor, |_, extinction| [extinction * scale]).into_iter().flatten().collect()
+    }
+
+    /// The mean over eight places in each block, or over the one voxel that it is, of what follows from a place and its
+    /// extinction.
+    pub(super) fn blocks<const N: usize>(
+        &self,
+        dims: [usize; 3],
+        divisor: usize,
+        of_place: impl Fn(DVec3, f64) -> [f64; N] + Sync,
+    ) -> Vec<[f64; N]> {
         let table = self.gathered_table(Side::Lighting);
         let pyramid = self.gathered_pyramid(Side::Lighting);
         let profile = self.profile(Kernel::Prefiltered);
@@ -110,9 +122,10 @@ impl Reference<'_> {
         let level = (divisor as f64 / 2.0).max(1.0).log2();
         let offset = if divisor == 1 { 0.0 } else { divisor as f64 / 4.0 };
         let at = |point: DVec3| {
-            table.sample(pyramid.fetch(point + self.kernel_shift(), level))[3]
+            let extinction = table.sample(pyramid.fetch(point + self.kernel_shift(), level))[3]
                 * self.gathered_presence(&profile, point, level)
-                * self.share_that_shades(&remaining, point)
+                * self.share_that_shades(&remaining, point);
+            of_place(point, extinction)
         };
         let of_block = |block: usize| {
             let place = [block % dims[0], block / dims[0] % dims[1], block / (dims[0] * dims[1])];
@@ -121,7 +134,7 @@ impl Reference<'_> {
                 let side = |axis: usize| if corner >> axis & 1 == 0 { -offset } else { offset };
                 at(middle + DVec3::new(side(0), side(1), side(2)))
             });
-            self.settings.sky.density_scale * corners.sum::<f64>() / 8.0
+            corners.fold([0.0; N], |sum, found| std::array::from_fn(|c| sum[c] + found[c] / 8.0))
         };
         (0..dims.iter().product()).into_par_iter().map(of_block).collect()
     }
@@ -184,7 +197,7 @@ fn march(frame: &SweepFrame, extinction: &[f64]) -> Vec<f64> {
 }
 
 /// Between blocks, and to nothing within a block of the grid.
-fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
+pub(super) fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
     let low = at.floor();
     let share = at - low;
     let corner = |corner: usize| {

@@ -103,6 +103,16 @@ pub(crate) fn linear_extinction(per_voxel: f64) -> TransferFunction {
     }
 }
 
+/// A cloud of blobs of all densities, the same for the same seed.
+pub(crate) fn noise(n: usize, seed: u64) -> Volume {
+    let wave = |phase: u64, at: usize| (0.9 * at as f64 + (seed * phase) as f64).sin();
+    let of = |[x, y, z]: [usize; 3]| wave(3, x) * wave(5, y) + wave(7, z) * wave(11, x + y) + wave(13, y + z);
+    let values = (0..n * n * n)
+        .map(|at| (255.0 * (0.5 + 0.4 * of([at % n, at / n % n, at / n / n])).clamp(0.0, 1.0)) as u8)
+        .collect();
+    Volume::with_spacing("noise", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
+}
+
 /// A camera that looks along an axis of the volume from outside, without perspective.
 pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     Camera {

@@ -240,6 +240,17 @@ pub(crate) const OPENNESS_BESIDE_A_WALL: f64 = 0.03;
 /// Moments of the GPU beside those of the reference: sums over directions of numbers with 11 bits, and stored in such.
 pub(crate) const SAME_OPENNESS: Limit = Limit { max: 2e-3, rmse: 3e-4 };
 
+/// Light that has bounced on the GPU beside that of the reference, whose lights are about 1: numbers with 11 bits at every
+/// bounce, of which the last is told from the two before.
+pub(crate) const SAME_BOUNCED: Limit = Limit { max: 1.5e-3, rmse: 2e-4 };
+/// The same beside random walks, the root mean square of the difference over the mean of what has bounced, which is a part
+/// of all light: what blocks of a voxel and 64 directions leave, and walks, of which so many are within 1 %.
+pub(crate) const BOUNCED_BY_WALKS: f64 = 0.025;
+/// How far all light in a white furnace is from 1: what twelve bounces and their ratio leave of infinitely many.
+pub(crate) const FURNACE: f64 = 0.01;
+/// What a half space gives back of light, relative: 64 directions, and blocks of half an optical depth.
+pub(crate) const HALF_SPACE: f64 = 0.03;
+
 /// Worst error of what is left of a disc beside a half-plane, 8 to 64 voxels behind it: steps of 64 points.
 pub(crate) const PENUMBRA: f64 = 0.02;
 

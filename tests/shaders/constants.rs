@@ -81,7 +81,7 @@ const SIZES: [(&str, usize, usize, &[&str]); 8] = [
     ("BRICK_EDGE", BRICK_EDGE, 4, &["light/backproject", "light/combine", "light/raycast", "scatter/splat"]),
     ("BRICK_EDGE", BRICK_EDGE, 4, &["scatter/eye", "scatter/footprints", "scatter/normalise"]),
     ("CELL_EDGE", CELL_EDGE, 4, &["eye/gather", "light/backproject", "light/march", "light/raycast"]),
-    ("CELL_EDGE", CELL_EDGE, 4, &["sky/blocks"]),
+    ("CELL_EDGE", CELL_EDGE, 4, &["bounces/blocks", "sky/blocks"]),
     (
         "LISTED_PER_ROW",
         LISTED_PER_ROW as usize,
@@ -115,6 +115,13 @@ fn statements(source: &str) -> String {
 #[test]
 fn workgroups_have_the_size_that_the_dispatches_count_on() {
     let expected = [
+        ("bounces/blocks.wgsl", [4, 4, 4]),
+        ("bounces/first.wgsl", [4, 4, 4]),
+        ("bounces/gather.wgsl", [4, 4, 4]),
+        ("bounces/outcome.wgsl", [4, 4, 4]),
+        ("bounces/ratio.wgsl", [256, 1, 1]),
+        ("bounces/source.wgsl", [4, 4, 4]),
+        ("bounces/sweep.wgsl", [8, 8, 1]),
         ("eye/floor.wgsl", [8, 8, 1]),
         ("eye/gather.wgsl", [8, 8, 1]),
         // What LANES says, which the parser leaves open.

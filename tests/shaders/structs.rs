@@ -76,6 +76,7 @@ fn every_shared_struct_is_compared() {
     let files = [
         include_str!("../../src/gpu/pipelines/uniforms/mod.rs"),
         include_str!("../../src/gpu/pipelines/uniforms/light.rs"),
+        include_str!("../../src/gpu/pipelines/uniforms/bounces.rs"),
         include_str!("../../src/gpu/pipelines/uniforms/sky.rs"),
     ];
     let declared: BTreeSet<_> = files

@@ -13,7 +13,8 @@ mod windows;
 pub(super) mod work;
 
 pub(super) use self::panels::{
-    camera, corrections, cuts, data, floor, labels, lights, sampling, sections, shading, shadows, sky,
+    camera, corrections, cuts, data, floor, labels, lights, sampling, scattering, sections, shading, shadows,
+    sky,
 };
 pub(super) use self::shell::{commands, memory, menu, messages, opening, status};
 pub(super) use self::viewport::{compared, cut_handles, overlay, picture, probe};

@@ -226,7 +226,7 @@ impl RenderWorker {
         let mut options = self.options(*quality);
         let fills_before: u64 = scene.renderer.light_rebuilds().iter().sum();
         let context = scene.renderer.context().clone();
-        let (mut total_ms, mut light_ms, mut sky_ms) = (0.0, 0.0, 0.0);
+        let (mut total_ms, mut light_ms, mut around_ms) = (0.0, 0.0, 0.0);
         let mut job = scene.renderer.begin(&scene.dataset, request.clone(), &options)?;
         job.set_band(self.controller.rows(*quality, request.size));
         if let Some(exposure) = self.brightness.exposure(frame_request, *quality, job.report()) {
@@ -242,7 +242,7 @@ impl RenderWorker {
             total_ms += took_ms;
             match stage {
                 Some(Stage::LightMarch | Stage::LightBackproject) => light_ms += took_ms,
-                Some(Stage::Sky) => sky_ms += took_ms,
+                Some(Stage::Sky | Stage::Bounces) => around_ms += took_ms,
                 _ => {}
             }
             if !more {
@@ -280,7 +280,7 @@ impl RenderWorker {
         // How long a volume takes to be uploaded says nothing of the next picture.
         if runs.eye > 0 && runs.volume == 0 {
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
-            self.controller.learn_picture(*quality, pixels, total_ms - light_ms - sky_ms);
+            self.controller.learn_picture(*quality, pixels, total_ms - light_ms - around_ms);
         }
         if fills > fills_before {
             self.controller.learn_build(*quality, light_ms / (fills - fills_before) as f64);
@@ -347,11 +347,14 @@ fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: Quali
     }
 }
 
-/// Light volumes of full quality that a picture would have to fill; what is open of a sky takes about as long as one.
+/// Light volumes of full quality that a picture would have to fill; what is open of a sky takes about as long as one, and
+/// light that bounces as two.
 fn missing(settled: Option<&FrameKeys>, full: &FrameKeys) -> Missing {
     // The first look has filled them all.
     let Some(settled) = settled else { return Missing::default() };
     let lights = full.lights_missing_in(settled);
-    let count = lights + usize::from(full.sky.is_some() && full.sky != settled.sky);
+    let sky = usize::from(full.sky.is_some() && full.sky != settled.sky);
+    let bounces = 2 * usize::from(full.bounces.is_some() && full.bounces != settled.bounces);
+    let count = lights + sky + bounces;
     Missing { count, others: full.lights.iter().flatten().count() > lights }
 }

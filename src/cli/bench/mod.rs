@@ -6,7 +6,8 @@
 //! background does); *load* (from a file to its first picture, stage by stage) and *memory*; *read* (of that only what needs
 //! no adapter); *growth* (light volumes of clouds of growing size, splatted
 //! and by rays, with everything that saves work and without);
-//! *sky* and *area* (light from all around, and of a light that has a size, in units of one light's); *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
+//! *sky*, *area* and *scattering* (light from all around, of a light that has a size, and that bounces, in units of one
+//! light's); *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
 //! the picture that a volume is opened with).
 
 use std::path::PathBuf;
@@ -21,6 +22,7 @@ mod growth;
 mod load;
 mod paper;
 mod report;
+mod scattering;
 mod sky;
 
 use report::{Samples, round};
@@ -39,7 +41,7 @@ const WARM_UP: usize = 2;
 const STEP_DEG: f64 = 12.0;
 
 /// What there is to be measured.
-const CASES: [&str; 13] = [
+const CASES: [&str; 14] = [
     "orbit",
     "light-drag",
     "light-build",
@@ -52,6 +54,7 @@ const CASES: [&str; 13] = [
     "paper",
     "sky",
     "area",
+    "scattering",
     "first-look",
 ];
 
@@ -78,7 +81,8 @@ pub(super) struct BenchArgs {
     /// Timed frames per case
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
-    /// Only the case of this name; growth, which takes minutes, first-look, read, sky and area run only when asked for
+    /// Only the case of this name; growth, which takes minutes, first-look, read, sky, area and scattering run only
+    /// when asked for
     #[arg(long, value_name = "CASE", value_parser = CASES)]
     only: Option<String>,
     /// Allow cases that are not rendered at full resolution and with an exact kernel
@@ -93,7 +97,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let wants = |case: &str| {
         args.only
             .as_deref()
-            .map_or(!["growth", "first-look", "sky", "area"].contains(&case), |only| only == case)
+            .map_or(!["growth", "first-look", "sky", "area", "scattering"].contains(&case), |only| {
+                only == case
+            })
     };
     let mut cases = Vec::new();
     if args.only.as_deref() == Some("read") {
@@ -141,6 +147,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         }
         if wants("sky") {
             bench.sky(&mut cases, &mut found)?;
+        }
+        if wants("scattering") {
+            bench.scattering(&mut cases, &mut found)?;
         }
         if wants("first-look") {
             bench.first_look(&mut cases)?;

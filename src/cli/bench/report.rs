@@ -15,6 +15,7 @@ pub(super) struct Samples {
     light_backproject_ms: Vec<f64>,
     light_raycast_ms: Vec<f64>,
     sky_ms: Vec<f64>,
+    bounces_ms: Vec<f64>,
     bricks_ms: Vec<f64>,
     upload_ms: Vec<f64>,
     eye_gpu_ms: Vec<f64>,
@@ -38,6 +39,7 @@ impl Samples {
         self.light_backproject_ms.push(report.light_backproject_ms);
         self.light_raycast_ms.push(report.light_raycast_ms);
         self.sky_ms.push(report.sky_ms);
+        self.bounces_ms.push(report.bounces_ms);
         self.bricks_ms.push(report.bricks_ms);
         self.upload_ms.push(report.upload_ms);
         self.eye_gpu_ms.extend(report.eye_gpu_ms);
@@ -68,6 +70,11 @@ impl Samples {
         median(&self.sky_ms)
     }
 
+    /// Median of the filling of a volume of bounced light.
+    pub(super) fn bounces(&self) -> f64 {
+        median(&self.bounces_ms)
+    }
+
     /// Median of the eye pass.
     pub(super) fn eye(&self) -> f64 {
         median(&self.eye_ms)
@@ -90,6 +97,7 @@ impl Samples {
                 "light_backproject": round(median(&self.light_backproject_ms)),
                 "light_raycast": round(median(&self.light_raycast_ms)),
                 "sky": round(median(&self.sky_ms)),
+                "bounces": round(median(&self.bounces_ms)),
                 "bricks": round(median(&self.bricks_ms)),
                 "upload": round(median(&self.upload_ms)),
             },

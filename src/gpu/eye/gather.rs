@@ -1,7 +1,9 @@
 //! The eye pass: from density and attenuation to linear light.
 
 use crate::gpu::light::combine::CombinedLight;
-use crate::gpu::light::packed::{LightInput, LookedUp, light_bind_group, pack_light, pack_sky};
+use crate::gpu::light::packed::{
+    Around, LightInput, LookedUp, light_bind_group, pack_bounces, pack_light, pack_sky,
+};
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{
@@ -9,7 +11,6 @@ use crate::gpu::pipelines::variant::{
     is_cut,
 };
 use crate::gpu::resources::pass;
-use crate::gpu::sky::volume::SkyVolume;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{Context, GpuError, RenderOptions};
@@ -32,12 +33,12 @@ pub(crate) struct EyePass {
 
 impl EyePass {
     /// Sets up the pass under some lights, shadowed ones first; those that are combined are not among them; and under a
-    /// sky, if any.
+    /// sky and bounced light, if any.
     pub(crate) fn new(
         scene: &SceneSpace,
         settings: &Settings,
         window: PixelWindow,
-        (lights, combined, sky): (&[LightInput<'_>], Option<&CombinedLight>, Option<&SkyVolume>),
+        (lights, combined, around): (&[LightInput<'_>], Option<&CombinedLight>, Around<'_>),
         options: &RenderOptions,
     ) -> Self {
         let frame = picture_frame(settings, scene, window);
@@ -72,7 +73,8 @@ impl EyePass {
             seen: uniforms::Cut::new(&remains.region(scene)),
             faces: uniforms::Cut::new(&remains.region(scene).within(&Bounds::of_grid(scene.dims, 0.0))),
             shading_cut: uniforms::Cut::new(&shading_cut.region(scene)),
-            sky: pack_sky(settings, scene, sky),
+            sky: pack_sky(settings, scene, around.sky),
+            bounces: pack_bounces(settings, scene, around.bounces),
             lights: packed,
         };
         let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
@@ -241,6 +243,8 @@ impl GatherVariant {
                 sides: shading.sides,
                 classification: sampling.classification,
                 sky: SkyVariant::of(settings),
+                has_bounces: settings.has_bounces(),
+                is_anisotropic: settings.scattering.anisotropy != 0.0,
             },
             rays: casts_rays.then_some(shadows.deposit),
         }
@@ -308,5 +312,9 @@ pub(crate) fn pack_shading(
         bias: (shadows.bias_voxels * scene.smallest_edge()) as f32,
         ray_step: shadows.ray_step(scene) as f32,
         dark_depth: options.max_optical_depth(),
+        anisotropy: settings.scattering.anisotropy as f32,
+        pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
     }
 }

@@ -3,10 +3,11 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
+use super::kept::bounces::PlacedBounces;
+use super::kept::sky::PlacedSky;
 use super::light_build::LightBuild;
 use super::loaded::Loaded;
 use super::report::Report;
-use super::sky_cache::PlacedSky;
 use super::step::{Stage, Step, cut_into_bands};
 use super::targets::{Role, Targets};
 use crate::gpu::context::clock::Clock;
@@ -45,6 +46,8 @@ pub struct Job<'r> {
     pub(super) builds: Vec<LightBuild>,
     /// The volume of the sky's visibility.
     pub(super) sky: PlacedSky,
+    /// The volume of light that has bounced.
+    pub(super) bounces: PlacedBounces,
     /// Shades with the volume of each light, for the combined one to be filled.
     pub(super) combine: Option<EyePass>,
     pub(super) eye: EyePass,

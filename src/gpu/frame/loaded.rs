@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::data::Dataset;
+use crate::gpu::bounces::volume::BouncesVolume;
 use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::cached::Cached;
@@ -14,7 +15,7 @@ use crate::gpu::volume::presence::Presence;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::{Classification, Settings, SheetOrder};
-use crate::plan::{CombinedKey, FrameKeys, LightKey, Request, SkyKey, TablesKey};
+use crate::plan::{BouncesKey, CombinedKey, FrameKeys, LightKey, Request, SkyKey, TablesKey};
 
 /// What a picture is asked for, and of whom.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +45,8 @@ pub(crate) struct Loaded {
     pub combined: Option<Cached<CombinedKey, CombinedLight>>,
     /// How open to the sky places are.
     pub skies: Vec<Cached<SkyKey, SkyVolume>>,
+    /// Light that has bounced.
+    pub bounces: Vec<Cached<BouncesKey, BouncesVolume>>,
     /// Voxels for scattering, once a picture has asked for them.
     pub voxels: Option<Arc<ScatterVoxels>>,
 }
@@ -74,6 +77,7 @@ impl Loaded {
             lights: Vec::new(),
             combined: None,
             skies: Vec::new(),
+            bounces: Vec::new(),
             voxels: None,
         })
     }
@@ -170,6 +174,11 @@ impl Loaded {
     pub(crate) fn bytes(&self) -> u64 {
         let voxels = self.voxels.as_ref().map_or(0, |voxels| voxels.bytes());
         let materials = self.materials.iter().map(|materials| materials.bytes()).sum::<u64>();
-        self.volume.bytes() + materials + voxels + self.light_bytes() + self.sky_bytes()
+        self.volume.bytes()
+            + materials
+            + voxels
+            + self.light_bytes()
+            + self.sky_bytes()
+            + self.bounces_bytes()
     }
 }

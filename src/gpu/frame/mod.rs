@@ -3,13 +3,12 @@
 pub(super) mod encode;
 pub(super) mod fit;
 pub(super) mod job;
+pub(super) mod kept;
 pub(super) mod light_build;
-pub(super) mod light_cache;
 mod loaded;
 mod plan;
 pub(super) mod renderer;
 pub(super) mod report;
-mod sky_cache;
 pub(super) mod step;
 mod targets;
 #[cfg(test)]

@@ -5,16 +5,17 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::job::Job;
-use super::light_cache::PlacedLights;
+use super::kept::bounces::PlacedBounces;
+use super::kept::light::PlacedLights;
+use super::kept::sky::PlacedSky;
 use super::loaded::{Loaded, Wanted};
 use super::report::Report;
-use super::sky_cache::PlacedSky;
 use super::step::{Product, Side, Step};
 use super::targets::{Role, shown_key};
 use crate::data::Dataset;
 use crate::gpu::eye::gather::EyePass;
 use crate::gpu::light::combine;
-use crate::gpu::light::packed::LightInput;
+use crate::gpu::light::packed::{Around, LightInput};
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::output::target::Shape;
 use crate::gpu::resources::cached::Cached;
@@ -36,8 +37,17 @@ impl Renderer {
         let role = self.targets.holding(&keys, shape(request, options));
         // A product that comes to be shown beside the eye's picture is asked for here: the compiler sees to that.
         // The eye's key names everything that went into its picture.
-        let FrameKeys { volume: _, tables: _, lights: _, combined: _, sky: _, eye: _, floor, display: _ } =
-            &keys;
+        let FrameKeys {
+            volume: _,
+            tables: _,
+            lights: _,
+            combined: _,
+            sky: _,
+            bounces: _,
+            eye: _,
+            floor,
+            display: _,
+        } = &keys;
         role.is_some_and(|role| self.targets.get(role).floor.holds(floor))
     }
 
@@ -103,6 +113,7 @@ impl Renderer {
 
         let mut placed = PlacedLights::default();
         let mut sky = PlacedSky::default();
+        let mut bounces = PlacedBounces::default();
         let mut scattering = None;
         let mut role = self.targets.holding(&keys, shape);
         if role.is_none() || keys.floor.is_some() {
@@ -129,7 +140,9 @@ impl Renderer {
                 self.tools.pool.drop_ring();
             }
             sky = loaded.value.place_sky(&self.tools, wanted)?;
-            keys.eye = EyeKey::of(&request, options, &placed.keys, keys.combined.as_ref(), sky.key.as_ref());
+            bounces = loaded.value.place_bounces(&self.tools, wanted)?;
+            let around = (sky.key.as_ref(), bounces.key.as_ref());
+            keys.eye = EyeKey::of(&request, options, &placed.keys, keys.combined.as_ref(), around);
             keys.floor = FloorKey::of(&request, &keys.eye);
             // A preview may find that its lights are there at full resolution.
             role = self.targets.holding(&keys, shape);
@@ -163,13 +176,17 @@ impl Renderer {
             Role::Back
         };
         steps.extend(sky.steps());
+        steps.extend(bounces.steps());
 
         let value = &loaded.value;
         let volumes = inputs(&lit, &placed.slots, value);
         let window = options.window(&request);
-        let sky_volume = sky.slot.map(|slot| &value.skies[slot].value);
+        let around = Around {
+            sky: sky.slot.map(|slot| &value.skies[slot].value),
+            bounces: bounces.slot.map(|slot| &value.bounces[slot].value),
+        };
         let of_lights = |lights: &[LightInput<'_>]| {
-            EyePass::new(&value.volume.scene, &request.settings, window, (lights, None, sky_volume), options)
+            EyePass::new(&value.volume.scene, &request.settings, window, (lights, None, around), options)
         };
         let combine = placed.bricks_to_combine.is_some().then(|| of_lights(&volumes));
         let combined = value.combined.as_ref().filter(|_| keys.combined.is_some());
@@ -177,7 +194,7 @@ impl Renderer {
             Some(combined) => {
                 let unshadowed = inputs_of(lit.unshadowed(), &[], value);
                 let scene = &value.volume.scene;
-                let lights = (&unshadowed[..], Some(&combined.value), sky_volume);
+                let lights = (&unshadowed[..], Some(&combined.value), around);
                 EyePass::new(scene, &request.settings, window, lights, options)
             }
             None => of_lights(&volumes),
@@ -226,6 +243,7 @@ impl Renderer {
             slots: placed.slots,
             builds: placed.builds,
             sky,
+            bounces,
             combine,
             eye,
             scattering,

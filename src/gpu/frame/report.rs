@@ -28,6 +28,8 @@ pub struct Report {
     pub light_raycast_ms: f64,
     /// Milliseconds of the light of the sky.
     pub sky_ms: f64,
+    /// Milliseconds of light that bounces.
+    pub bounces_ms: f64,
     /// Milliseconds of the eye pass.
     pub eye_ms: f64,
     /// Milliseconds of the display pass and of reading back.
@@ -63,6 +65,8 @@ pub struct Runs {
     pub combined_light: u32,
     /// Volumes of the sky's visibility whose filling began.
     pub sky: u32,
+    /// Volumes of bounced light whose filling began.
+    pub bounces: u32,
     /// Pieces of the eye pass.
     pub eye: u32,
     /// Pieces of the floor pass.
@@ -80,6 +84,7 @@ impl Report {
             Stage::LightBackproject => (&mut self.light_backproject_ms, Some(&mut self.light_gpu_ms)),
             Stage::LightRaycast => (&mut self.light_raycast_ms, Some(&mut self.light_gpu_ms)),
             Stage::Sky => (&mut self.sky_ms, Some(&mut self.light_gpu_ms)),
+            Stage::Bounces => (&mut self.bounces_ms, Some(&mut self.light_gpu_ms)),
             Stage::Eye => (&mut self.eye_ms, Some(&mut self.eye_gpu_ms)),
             Stage::Display => (&mut self.readback_ms, None),
         };

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
+use crate::gpu::bounces::build::BounceStep;
 use crate::gpu::eye::floor;
 use crate::gpu::resources::part::Part;
 use crate::gpu::volume::transfer_tables::{Table, Tables};
@@ -22,6 +23,8 @@ pub enum Stage {
     LightRaycast,
     /// Light of the sky.
     Sky,
+    /// Light that bounces.
+    Bounces,
     /// The picture.
     Eye,
     /// Display colours of the picture.
@@ -80,6 +83,8 @@ pub(super) enum Product {
     CombinedLight,
     /// The volume of the sky's visibility.
     Sky,
+    /// The volume of light that has bounced.
+    Bounces,
     /// Linear light of the volume.
     Picture,
     Floor,
@@ -113,6 +118,8 @@ pub(super) enum Step {
     SkyBlocks,
     /// A batch of directions of a sky.
     SkyBatch(usize),
+    /// A piece of the filling of a volume of bounced light.
+    Bounce(BounceStep),
     /// Rows of the picture.
     Eye(Range<u32>),
     /// Slabs of the eye's scattered sheets.
@@ -134,6 +141,7 @@ impl Step {
             Self::Backproject(..) | Self::Average { .. } | Self::Combine(_) => Stage::LightBackproject,
             Self::Raycast(_) => Stage::LightRaycast,
             Self::SkyBlocks | Self::SkyBatch(_) => Stage::Sky,
+            Self::Bounce(_) => Stage::Bounces,
             Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => Stage::Eye,
             Self::Display => Stage::Display,
             Self::Finish(_) => return None,

@@ -88,6 +88,7 @@ impl Targets {
 
 /// The key of what a picture shows.
 pub(super) fn shown_key(keys: &FrameKeys) -> ShownKey {
-    let FrameKeys { volume: _, tables: _, lights: _, combined: _, sky: _, eye, floor, display } = keys;
+    let FrameKeys { volume: _, tables: _, lights: _, combined: _, sky: _, bounces: _, eye, floor, display } =
+        keys;
     ShownKey { eye: eye.clone(), floor: floor.clone(), display: display.clone() }
 }

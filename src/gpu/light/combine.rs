@@ -89,8 +89,8 @@ impl CombinedLight {
         let attenuation: Vec<_> =
             lights.iter().filter_map(|input| input.volume).map(|volume| &volume.view).collect();
         let Gpu { shaders, volume, .. } = gpu;
-        // The sky is no light that casts shadows.
-        let shading = ShadingVariant { sky: SkyVariant::None, ..shading };
+        // Neither the sky nor what has bounced is a light that casts shadows.
+        let shading = ShadingVariant { sky: SkyVariant::None, has_bounces: false, ..shading };
         let pipeline = shaders.pipeline(&CombineVariant { shading, ends: volume.ends_of_all() })?;
         let eye = gpu.uniform("Combine::eye", eye);
         let uniform = uniforms::Combine {

@@ -8,8 +8,17 @@
 use crate::gpu::GpuError;
 
 /// Names that stand in conditions alone, which drivers are not told.
-const TEXT_ALONE: [&str; 7] =
-    ["FACES", "MISSING", "PRECLASSIFY", "DIRECT", "BY_NEED", "KERNEL_GRADIENTS", "SKY"];
+const TEXT_ALONE: [&str; 9] = [
+    "FACES",
+    "MISSING",
+    "PRECLASSIFY",
+    "DIRECT",
+    "BY_NEED",
+    "KERNEL_GRADIENTS",
+    "SKY",
+    "BOUNCES",
+    "ANISOTROPIC",
+];
 
 /// Names that are override constants as well.
 const OVERRIDES: [&str; 2] = ["SHADOWED", "NEAR_STEPS"];

@@ -156,6 +156,10 @@ pub(crate) struct ShadingVariant {
     /// Before voxels are spread, or after.
     pub classification: Classification,
     pub sky: SkyVariant,
+    /// A volume says how much light has bounced.
+    pub has_bounces: bool,
+    /// Matter scatters more light forward, or back.
+    pub is_anisotropic: bool,
 }
 
 impl ShadingVariant {
@@ -169,6 +173,8 @@ impl ShadingVariant {
             constants.push(("COMBINED", 1.0));
         }
         constants.push(self.sky.constant());
+        constants.push(flag("BOUNCES", self.has_bounces));
+        constants.push(flag("ANISOTROPIC", self.is_anisotropic));
         constants
     }
 }

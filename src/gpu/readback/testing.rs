@@ -13,7 +13,7 @@ use crate::gpu::scatter::voxels::Scattering;
 use crate::gpu::volume::Gpu;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::{ImageSpec, Settings};
-use crate::plan::{FARTHEST, MarchTiles, Request, SkyKey, light_views};
+use crate::plan::{BouncesKey, FARTHEST, MarchTiles, Request, SkyKey, light_views};
 
 impl Renderer {
     /// Begins a picture, as [`Self::bands`] does, in parts with no more than `edge` samples along an edge, and no
@@ -55,16 +55,38 @@ impl Renderer {
     /// # Errors
     /// When the GPU cannot do it.
     pub fn openness(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Vec<[f32; 4]>, GpuError> {
-        let settings = &*settings.as_drawn(dataset.volume());
-        let size = [8, 8];
-        self.draw(dataset, settings, size, &RenderOptions::default())?;
-        let request =
-            Request { volume: dataset.volume().id(), settings: settings.clone(), size, coarse: None };
         let none = || GpuError::NothingDrawn("sky");
+        let request = self.drawn_request(dataset, settings)?;
         let key = SkyKey::of(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.value;
         let found = loaded.skies.iter().find(|sky| sky.holds(&key)).ok_or_else(none)?;
-        let floats = read_floats(self.context(), found.value.view.texture())?;
+        self.texels(&found.value.view)
+    }
+
+    /// The light that has bounced before it reaches each block of voxels: linear RGB, and 1.
+    ///
+    /// # Errors
+    /// When the GPU cannot do it.
+    pub fn bounced(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Vec<[f32; 4]>, GpuError> {
+        let none = || GpuError::NothingDrawn("scattering");
+        let request = self.drawn_request(dataset, settings)?;
+        let key = BouncesKey::of(&request).ok_or_else(none)?;
+        let loaded = &self.loaded.as_ref().ok_or_else(none)?.value;
+        let found = loaded.bounces.iter().find(|bounces| bounces.holds(&key)).ok_or_else(none)?;
+        self.texels(&found.value.view)
+    }
+
+    /// Draws a small picture, and says which.
+    fn drawn_request(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Request, GpuError> {
+        let settings = &*settings.as_drawn(dataset.volume());
+        let size = [8, 8];
+        self.draw(dataset, settings, size, &RenderOptions::default())?;
+        Ok(Request { volume: dataset.volume().id(), settings: settings.clone(), size, coarse: None })
+    }
+
+    /// The texels of a texture of four channels.
+    fn texels(&self, view: &wgpu::TextureView) -> Result<Vec<[f32; 4]>, GpuError> {
+        let floats = read_floats(self.context(), view.texture())?;
         Ok(floats.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2], texel[3]]).collect())
     }
 

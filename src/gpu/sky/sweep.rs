@@ -2,23 +2,26 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
+
+use super::blocks::BlocksPass;
 use super::floor_map::MAP_EDGE;
 use super::volume::{SUM_BYTES, SkyVolume};
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Ends, Variant, flag, is_cut};
+use crate::gpu::pipelines::variant::{Constants, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError, RenderOptions};
-use crate::model::{Classification, Settings};
-use crate::plan::{SkyKey, SweepFrame, stretch_reach, sweep_directions};
+use crate::model::Settings;
+use crate::plan::{SkyKey, SweepFrame, sweep_directions};
 
 /// Blocks times directions of a batch: some 0.2 s on a software adapter.
-const BATCH_BLOCKS: usize = 1 << 23;
+pub(crate) const BATCH_BLOCKS: usize = 1 << 23;
 
 /// Most layers of a 3D texture everywhere.
-const MOST_LAYERS: usize = 2048;
+pub(crate) const MOST_LAYERS: usize = 2048;
 
 /// The filling of a volume of the sky's visibility.
 #[derive(Debug)]
@@ -85,45 +88,17 @@ impl SkyBuild {
         volume: &SkyVolume,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let scene = &gpu.volume.scene;
-        let shading = settings.cuts.shading();
-        // Eight places, each as large as an eighth of a block; a voxel is one place.
-        let level = (volume.divisor as f64 / 2.0).max(1.0).log2();
-        let variant = BlocksVariant {
-            ends: gpu.volume.ends_of_all(),
-            is_cut: is_cut(shading),
-            classification: settings.sampling.classification,
+        let pass = BlocksPass {
+            shader: "sky/blocks.wgsl",
+            dims: volume.dims,
+            divisor: volume.divisor,
+            density_scale: self.density_scale,
+            albedo: 0.0,
+            tables,
+            settings,
+            options,
         };
-        let pipeline = gpu.shaders.pipeline(&variant)?;
-        let uniform = uniforms::Blocks {
-            dims: volume.dims.map(|n| n as u32),
-            voxel_step: volume.divisor as f32,
-            level: level as f32,
-            offset: if volume.divisor == 1 { 0.0 } else { volume.divisor as f32 / 4.0 },
-            edge: (scene.smallest_edge() * self.density_scale) as f32,
-            pad0: 0.0,
-            shading_cut: uniforms::Cut::new(&shading.region(scene)),
-        };
-        let uniform = gpu.uniform("Sky::blocks", uniform);
-        let own = gpu.bind(
-            "Sky::blocks",
-            &pipeline,
-            0,
-            &[
-                buffer("bound_blocks", &uniform),
-                buffer("table", tables.lighting.gathered()),
-                view_of("distances", &tables.light_distances),
-                view_of("extinction", &self.textures.blocks),
-            ],
-        );
-        // Places of a block lie at most as many cells from that of its middle as it has voxels in half its edge.
-        let seen = i32::from(stretch_reach(level)) + volume.divisor as i32 / 2;
-        let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
-        let pyramid = tables.lighting_pyramids(gpu.volume).own;
-        let of_volume = gpu.bind_pyramid_and_cells(&pipeline, dilation, pyramid);
-        let groups = volume.dims.map(|n| (n as u32 + 2).div_ceil(4));
-        pass::dispatch(encoder, "Sky::blocks", &pipeline, &[&own, &of_volume], groups);
-        Ok(())
+        pass.record(gpu, &[view_of("extinction", &self.textures.blocks)], encoder)
     }
 
     /// Follows light from the directions of a batch, and adds what arrives to what came before.
@@ -142,7 +117,7 @@ impl SkyBuild {
         // What is left over has no weight, and no rays.
         let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
         for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
-            *slot = pack(frame, edge, at * slices);
+            *slot = pack(frame, edge, at * slices, DVec3::ZERO);
         }
         let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
         let uniform = uniforms::Sweep {
@@ -250,8 +225,8 @@ impl Textures {
     }
 }
 
-/// The rays of a direction for the shaders; `edge` is that of a voxel.
-fn pack(frame: &SweepFrame, edge: f64, layer: usize) -> uniforms::SkyRays {
+/// The rays of a direction for the shaders, from which so much light arrives; `edge` is that of a voxel.
+pub(crate) fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3) -> uniforms::SkyRays {
     uniforms::SkyRays {
         towards: frame.towards.as_vec3().into(),
         weight: 1.0,
@@ -264,37 +239,17 @@ fn pack(frame: &SweepFrame, edge: f64, layer: usize) -> uniforms::SkyRays {
         layer: layer as u32,
         pad0: 0.0,
         pad1: 0.0,
-    }
-}
-
-/// What tells one pipeline that fills blocks from another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct BlocksVariant {
-    ends: Ends,
-    is_cut: bool,
-    classification: Classification,
-}
-
-impl Variant for BlocksVariant {
-    fn shader(&self) -> &'static str {
-        "sky/blocks.wgsl"
-    }
-
-    fn constants(&self) -> Constants {
-        let mut constants = self.ends.constants().to_vec();
-        constants.push(flag("CUT", self.is_cut));
-        constants.push(flag("PRECLASSIFY", self.classification == Classification::Pre));
-        // What places are fetched from is the pyramid.
-        constants.extend([("KERNEL", 2.0), ("STRETCH", 1.0)]);
-        constants
+        arriving: arriving.as_vec3().into(),
+        pad2: 0.0,
     }
 }
 
 /// What tells one pipeline of the two halves of a sweep from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct SweepVariant {
-    shader: &'static str,
-    directions: usize,
+pub(crate) struct SweepVariant {
+    pub shader: &'static str,
+    /// Directions of a batch, where one sum is made of them.
+    pub directions: usize,
 }
 
 impl Variant for SweepVariant {
@@ -304,7 +259,9 @@ impl Variant for SweepVariant {
 
     fn constants(&self) -> Constants {
         match self.shader {
-            "sky/moments.wgsl" | "sky/floor_map.wgsl" => vec![("DIRECTIONS", self.directions as f64)],
+            "sky/moments.wgsl" | "sky/floor_map.wgsl" | "bounces/gather.wgsl" => {
+                vec![("DIRECTIONS", self.directions as f64)]
+            }
             _ => Vec::new(),
         }
     }

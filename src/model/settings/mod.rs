@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kernel, LabelTable,
-    Length, Light, LightStorage, NearField, Quadrature, Sampling, ShadowAlgorithm, Shadows, SheetOrder, Sky,
-    Slabs, TransferFunction,
+    Length, Light, LightStorage, NearField, Quadrature, Sampling, Scattering, ShadowAlgorithm, Shadows,
+    SheetOrder, Sky, Slabs, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
@@ -58,6 +58,8 @@ pub struct Settings {
     pub shadows: Shadows,
     /// Light from all around.
     pub sky: Sky,
+    /// Light that bounces inside the volume.
+    pub scattering: Scattering,
     /// What of the volume is left out.
     pub cuts: Cuts,
     /// The floor under the volume.
@@ -87,6 +89,7 @@ impl Default for Settings {
             shading: Shading::default(),
             shadows: Shadows::default(),
             sky: Sky::default(),
+            scattering: Scattering::default(),
             cuts: Cuts::default(),
             floor: Floor::default(),
             sampling: Sampling::default(),
@@ -220,6 +223,12 @@ impl Settings {
         self.sky.is_on() && self.shadows.algorithm.is_on()
     }
 
+    /// Whether light bounces: where shadows are off nothing meets light.
+    pub fn has_bounces(&self) -> bool {
+        let Scattering { bounces, albedo, strength, .. } = self.scattering;
+        bounces > 0 && albedo > 0.0 && strength > 0.0 && self.shadows.algorithm.is_on()
+    }
+
     /// Whether voxels are scattered. Rays from every sample need the volume, so with them the
     /// picture is gathered whatever the engine.
     pub fn scatters(&self) -> bool {
@@ -239,7 +248,9 @@ impl Settings {
                 self.shading.specular == 0.0 && self.shadows.near_field == NearField::Off && shadowed > 4
             }
         };
-        wanted && shadowed > 0 && self.shadows.algorithm.has_volume()
+        // What depends on the eye is in no volume.
+        let is_even = self.scattering.anisotropy == 0.0;
+        wanted && is_even && shadowed > 0 && self.shadows.algorithm.has_volume()
     }
 
     /// Where rays from samples say how much light arrives. Only where light volumes of their own do from there on: in a

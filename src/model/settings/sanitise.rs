@@ -4,9 +4,10 @@
 use crate::data::single_line;
 use crate::model::{
     AreaShadows, Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light,
-    MAX_BIAS_VOXELS, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT,
-    MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, MIN_EXPOSURE,
-    Output, SKY_DIRECTIONS, Sampling, Settings, Shading, Shadows, Sky,
+    MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
+    MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME, MAX_PLANE_OFFSET,
+    MAX_POINTS, MIN_CROP, MIN_EXPOSURE, Output, SKY_DIRECTIONS, Sampling, Scattering, Settings, Shading,
+    Shadows, Sky,
 };
 
 impl Settings {
@@ -130,6 +131,14 @@ impl Settings {
         [zenith, horizon, ground].into_iter().for_each(rgb);
         number(tilt_deg, -360.0, 360.0, 0.0);
         number(turn_deg, -1e6, 1e6, 0.0);
+        number(density_scale, 0.0, 1e3, 1.0);
+        *directions = (*directions).clamp(*SKY_DIRECTIONS.start(), *SKY_DIRECTIONS.end());
+        let Scattering { bounces, albedo, strength, anisotropy, density_scale, directions, resolution: _ } =
+            &mut self.scattering;
+        *bounces = (*bounces).min(MAX_BOUNCES);
+        number(albedo, 0.0, 1.0, default.scattering.albedo);
+        number(strength, 0.0, 100.0, 1.0);
+        number(anisotropy, -MAX_ANISOTROPY, MAX_ANISOTROPY, 0.0);
         number(density_scale, 0.0, 1e3, 1.0);
         *directions = (*directions).clamp(*SKY_DIRECTIONS.start(), *SKY_DIRECTIONS.end());
         let length = self.opacity_unit.number();

@@ -1,5 +1,6 @@
 //! What linear pictures are made from: the volume as the eye sees it, and the floor under it.
 
+use super::bounces::BouncesKey;
 use super::light::LightKey;
 use super::lit_lights::{Attenuation, LitLights};
 use super::received::{LightLook, ReceivedLight};
@@ -31,6 +32,9 @@ pub struct EyeKey {
     /// The sky, and the volume that says how open to it each place is.
     sky: Option<SkyLook>,
     sky_volume: Option<SkyKey>,
+    /// Light that has bounced, in a volume, and what is shown of it; and where matter scatters light on its first bounce.
+    bounces: Option<(BouncesKey, f64)>,
+    anisotropy: f64,
     /// What rays to lights meet, where samples cast them.
     rays: Option<RaysKey>,
     options: RenderOptions,
@@ -89,13 +93,13 @@ impl RaysKey {
 
 impl EyeKey {
     /// The key of the picture that is made with these light volumes, one for each light of the settings that has
-    /// any, or with their combination; and with this volume of the sky.
+    /// any, or with their combination; and with these volumes of the sky and of bounced light.
     pub fn of(
         request: &Request,
         options: &RenderOptions,
         volumes: &[Option<LightKey>],
         combined: Option<&CombinedKey>,
-        sky_volume: Option<&SkyKey>,
+        (sky_volume, bounces): (Option<&SkyKey>, Option<&BouncesKey>),
     ) -> Self {
         let Request { volume: _, settings, size: _, coarse: _ } = request;
         let Settings {
@@ -112,6 +116,7 @@ impl EyeKey {
             shading,
             shadows,
             sky: _,
+            scattering,
             cuts,
             floor: _,
             sampling: _,
@@ -143,6 +148,8 @@ impl EyeKey {
             combined: combined.cloned(),
             sky: SkyLook::of(settings),
             sky_volume: sky_volume.cloned(),
+            bounces: bounces.map(|key| (key.clone(), scattering.strength * scattering.albedo)),
+            anisotropy: scattering.anisotropy,
             rays: casts_rays.then(|| RaysKey::of(settings)),
             options: computing(options),
         }

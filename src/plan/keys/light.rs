@@ -78,6 +78,7 @@ impl LightKey {
             shading: _,
             shadows,
             sky: _,
+            scattering: _,
             cuts,
             floor: _,
             sampling:

@@ -3,6 +3,7 @@
 //! A product is kept together with its key, and is stale exactly when the key that a picture needs differs.
 //! Settings are taken apart without `..`, so that a new field does not compile until it is classified.
 
+mod bounces;
 mod combined;
 mod display;
 mod eye;
@@ -14,6 +15,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub use bounces::BouncesKey;
 pub use combined::CombinedKey;
 pub use display::DisplayKey;
 pub use eye::{EyeKey, FloorKey};
@@ -38,6 +40,8 @@ pub struct FrameKeys {
     pub combined: Option<CombinedKey>,
     /// How open to the sky each place is, where there is one.
     pub sky: Option<SkyKey>,
+    /// Light that has bounced, where any does.
+    pub bounces: Option<BouncesKey>,
     /// Linear light of the volume.
     pub eye: EyeKey,
     /// Linear light on the floor, if there is one.
@@ -53,7 +57,8 @@ impl FrameKeys {
             (0..request.settings.lights.len()).map(|index| LightKey::of(request, index)).collect();
         let combined = CombinedKey::of(request, options);
         let sky = SkyKey::of(request);
-        let eye = EyeKey::of(request, options, &lights, combined.as_ref(), sky.as_ref());
+        let bounces = BouncesKey::of(request);
+        let eye = EyeKey::of(request, options, &lights, combined.as_ref(), (sky.as_ref(), bounces.as_ref()));
         Self {
             volume: request.shown_volume(),
             tables: TablesKey::of(request),
@@ -62,6 +67,7 @@ impl FrameKeys {
             lights,
             combined,
             sky,
+            bounces,
             eye,
         }
     }

@@ -12,6 +12,7 @@ use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
 mod area_lights;
+mod bounces;
 mod gather;
 mod labels;
 mod limit;

@@ -8,6 +8,7 @@ use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
 
 mod absorption;
 mod area_lights;
+mod bounces;
 mod brightness;
 mod kernels;
 mod labels;

@@ -220,6 +220,7 @@ fn brightness(settings: &Settings) -> Settings {
         shading,
         shadows,
         sky,
+        scattering,
         cuts,
         floor: _,
         sampling,
@@ -243,6 +244,7 @@ fn brightness(settings: &Settings) -> Settings {
         shading: shading.clone(),
         shadows: Shadows { keep_balanced: true, ..shadows.clone() },
         sky: sky.clone(),
+        scattering: scattering.clone(),
         cuts: cuts.clone(),
         // Both engines make the same picture.
         sampling: Sampling { engine: Engine::Gather, ..sampling.clone() },

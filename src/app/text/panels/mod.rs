@@ -8,6 +8,7 @@ pub(in crate::app) mod floor;
 pub(in crate::app) mod labels;
 pub(in crate::app) mod lights;
 pub(in crate::app) mod sampling;
+pub(in crate::app) mod scattering;
 pub(in crate::app) mod sections;
 pub(in crate::app) mod shading;
 pub(in crate::app) mod shadows;

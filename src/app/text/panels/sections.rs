@@ -4,6 +4,7 @@ pub(crate) const LABELS: &str = "Labels";
 pub(crate) const LIGHTS: &str = "Lights";
 pub(crate) const SHADOWS: &str = "Shadows";
 pub(crate) const SKY: &str = "Sky";
+pub(crate) const SCATTERING: &str = "Scattering";
 pub(crate) const SHADING: &str = "Shading";
 pub(crate) const CUTS: &str = "Cut";
 pub(crate) const FLOOR: &str = "Floor";

@@ -27,6 +27,7 @@ fn name_of(stage: Stage) -> &'static str {
         Stage::Pyramid => "preparing the volume",
         Stage::LightMarch | Stage::LightBackproject | Stage::LightRaycast => "filling the light volume",
         Stage::Sky => "following the light of the sky",
+        Stage::Bounces => "letting light bounce",
         Stage::Eye | Stage::Display => "drawing the picture",
     }
 }

@@ -229,7 +229,9 @@ mod tests {
         assert_eq!(presets.len(), PRESETS.len() - 1);
         let usual = Settings::default();
         // Those of light are for any curve.
-        let differs = |look: &Settings| look.transfer != usual.transfer || look.sky != usual.sky;
+        let differs = |look: &Settings| {
+            look.transfer != usual.transfer || look.sky != usual.sky || look.scattering != usual.scattering
+        };
         assert!(presets.iter().all(|look| differs(&look.settings)));
     }
 }

@@ -9,8 +9,9 @@ use super::plan::inputs;
 use super::step::{Product, Step};
 use super::targets::shown_key;
 use crate::gpu::GpuError;
+use crate::gpu::bounces::build::{BounceStep, Look};
 use crate::gpu::eye::floor;
-use crate::gpu::light::packed::LookedUp;
+use crate::gpu::light::packed::{Around, LookedUp};
 use crate::gpu::output::display::display;
 use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::sky::volume::SkyVolume;
@@ -56,6 +57,7 @@ impl Job<'_> {
             Step::Combine(bricks) => self.encode_combine(bricks, encoder),
             Step::SkyBlocks => self.encode_sky(None, encoder),
             Step::SkyBatch(batch) => self.encode_sky(Some(*batch), encoder),
+            Step::Bounce(step) => self.encode_bounce(*step, encoder),
             Step::Eye(rows) => self.encode_eye(rows, encoder),
             Step::ScatterEye(slabs) => self.encode_scatter_eye(slabs, encoder),
             Step::Floor(rows) => {
@@ -121,6 +123,13 @@ impl Job<'_> {
                     self.sky.build = None;
                     self.tools.pool.forget_groups();
                 }
+                Product::Bounces => {
+                    if let Some(slot) = self.bounces.slot {
+                        self.loaded.value.bounces[slot].finish();
+                    }
+                    self.bounces.build = None;
+                    self.tools.pool.forget_groups();
+                }
                 Product::Picture => target.light.finish(),
                 Product::Floor => target.floor.finish(),
                 Product::Shown => {
@@ -172,11 +181,10 @@ impl Job<'_> {
         let loaded = &self.loaded.value;
         let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
         let picture = &self.targets.get(self.role).light.value.plane.view;
-        let sky = self.sky_volume().map(|volume| &volume.view);
         self.eye.draw(
             gpu,
             tables,
-            LookedUp { attenuation: &self.looked_up(), sky },
+            LookedUp { attenuation: &self.looked_up(), around: self.around() },
             picture,
             rows.clone(),
             encoder,
@@ -202,8 +210,7 @@ impl Job<'_> {
             fresh
         };
         let picture = &self.targets.get(self.role).light.value.plane.view;
-        let sky = self.sky_volume().map(|volume| &volume.view);
-        let looked_up = LookedUp { attenuation: &self.looked_up(), sky };
+        let looked_up = LookedUp { attenuation: &self.looked_up(), around: self.around() };
         sheets.draw(gpu, scattering, &self.eye, tables, looked_up, picture, slabs.clone(), encoder)?;
         self.eye_sheets = Some(sheets);
         Ok(())
@@ -214,7 +221,35 @@ impl Job<'_> {
         Some(&self.loaded.value.skies.get(self.sky.slot?)?.value)
     }
 
-    /// Records a step of the filling: blocks first, or a batch of directions.
+    /// Light from all around that the picture looks up.
+    fn around(&self) -> Around<'_> {
+        let bounces = self.bounces.slot.and_then(|slot| self.loaded.value.bounces.get(slot));
+        Around { sky: self.sky_volume(), bounces: bounces.map(|known| &known.value) }
+    }
+
+    /// Records a step of the filling of a volume of bounced light.
+    fn encode_bounce(
+        &mut self,
+        step: BounceStep,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let loaded = &self.loaded.value;
+        let Some(build) = &self.bounces.build else { return Ok(()) };
+        let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();
+        self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
+        self.report.runs.bounces += u32::from(step == BounceStep::Blocks);
+        let Some(volume) = self.around().bounces else { return Ok(()) };
+        let gpu = Gpu::new(self.tools, &loaded.volume);
+        let look = Look {
+            tables: &loaded.tables.value,
+            settings: &self.request.settings,
+            options: &self.options,
+            lit: &self.lit,
+        };
+        build.record(gpu, look, volume, step, encoder)
+    }
+
+    /// Records a step of the filling of a sky's volume: blocks first, or a batch of directions.
     pub(super) fn encode_sky(
         &mut self,
         batch: Option<usize>,

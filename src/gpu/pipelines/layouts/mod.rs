@@ -1,6 +1,7 @@
 //! What every shader binds, by the names that it gives its bindings: group by group, with their numbers, kinds and
 //! sizes. Compared with the shaders themselves by a test (`tests/shaders/bindings.rs`).
 
+mod bounces;
 mod light;
 mod sky;
 
@@ -63,8 +64,8 @@ const LIGHTS: &[Slot] = &[
     Slot::sampled(7, ATTENUATION[7], Shape::Volume),
 ];
 
-/// The same, and the volume of what is open of the sky.
-const LIGHTS_AND_SKY: &[Slot] = &[
+/// The same, and the volumes of what is open of the sky and of bounced light.
+const LIGHTS_AND_AROUND: &[Slot] = &[
     LIGHTS[0],
     LIGHTS[1],
     LIGHTS[2],
@@ -74,6 +75,7 @@ const LIGHTS_AND_SKY: &[Slot] = &[
     LIGHTS[6],
     LIGHTS[7],
     Slot::sampled(8, "sky_texture", Shape::Volume),
+    Slot::sampled(9, "bounced_texture", Shape::Volume),
 ];
 
 /// A level of the pyramid in the making.
@@ -116,10 +118,10 @@ pub(crate) type Layouts = &'static [(&'static str, Groups)];
 
 /// Every compute shader, and what it binds.
 pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, Groups)> {
-    [OTHERS, light::LAYOUTS, sky::LAYOUTS].into_iter().flatten()
+    [OTHERS, bounces::LAYOUTS, light::LAYOUTS, sky::LAYOUTS].into_iter().flatten()
 }
 
-/// All but those of light and sky.
+/// All but those of light, sky and bounces.
 const OTHERS: Layouts = &[
     (
         "eye/floor.wgsl",
@@ -149,7 +151,7 @@ const OTHERS: Layouts = &[
                 GRADIENTS,
             ],
             VOLUME_AND_LIGHTING,
-            LIGHTS_AND_SKY,
+            LIGHTS_AND_AROUND,
         ],
     ),
     ("output/display.wgsl", &[DISPLAY]),
@@ -159,7 +161,7 @@ const OTHERS: Layouts = &[
         &[
             &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume), LIGHTING_TABLE, GRADIENTS],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS, PRESENCE_TEXTURE, LIGHTING_PYRAMID],
-            LIGHTS_AND_SKY,
+            LIGHTS_AND_AROUND,
         ],
     ),
     (
@@ -174,7 +176,7 @@ const OTHERS: Layouts = &[
                 Slot::list(6, "voxels", 4, Access::Read),
             ],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE],
-            LIGHTS_AND_SKY,
+            LIGHTS_AND_AROUND,
             &[Slot::uniform::<uniforms::Phase>(0, "bound_phase")],
         ],
     ),

@@ -4,7 +4,8 @@ use super::{CLAMPED, GRID, Layouts, NEAREST, PYRAMID_TEXTURE, TABLE};
 use crate::gpu::pipelines::binding::{Access, Format, Shape, Slot};
 use crate::gpu::pipelines::uniforms;
 
-const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
+/// Rays through blocks.
+pub(super) const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
 
 /// Shaders in `shaders/sky`.
 pub(super) const LAYOUTS: Layouts = &[

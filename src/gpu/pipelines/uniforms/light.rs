@@ -46,6 +46,10 @@ pub struct Shading {
     pub bias: f32,
     pub ray_step: f32,
     pub dark_depth: f32,
+    pub anisotropy: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
 }
 
 /// `light/raycast.wgsl`.

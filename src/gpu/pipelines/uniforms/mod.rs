@@ -6,9 +6,11 @@
     expect(missing_docs, reason = "each field is documented where the shader declares it")
 )]
 
+mod bounces;
 mod light;
 mod sky;
 
+pub use self::bounces::{Bounce, Bounces, First};
 pub use self::light::{Average, FloorShadow, Light, Raycast, Shading};
 pub use self::sky::{Blocks, FloorMap, MAX_SKY_RAYS, Sky, SkyRays, Sweep};
 
@@ -281,6 +283,7 @@ pub struct Eye {
     pub faces: Cut,
     pub shading_cut: Cut,
     pub sky: Sky,
+    pub bounces: Bounces,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 

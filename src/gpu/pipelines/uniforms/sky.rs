@@ -18,7 +18,7 @@ pub struct Sky {
     pub ahead: f32,
 }
 
-/// `sky/blocks.wgsl`.
+/// `sky/places.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Blocks {
@@ -27,7 +27,7 @@ pub struct Blocks {
     pub level: f32,
     pub offset: f32,
     pub edge: f32,
-    pub pad0: f32,
+    pub albedo: f32,
     pub shading_cut: Cut,
 }
 
@@ -46,6 +46,8 @@ pub struct SkyRays {
     pub layer: u32,
     pub pad0: f32,
     pub pad1: f32,
+    pub arriving: [f32; 3],
+    pub pad2: f32,
 }
 
 /// `sky/rays.wgsl`.

@@ -7,8 +7,8 @@ use serde_json::Value;
 use super::*;
 use crate::data::{Shown, ValueRange, ValueRanges, VolumeId};
 use crate::model::{
-    Camera, ControlPoint, LabelLook, Light, LightKind, Settings, Sky, SkyMode, TransferFunction, apply_path,
-    to_json,
+    Camera, ControlPoint, LabelLook, Light, LightKind, Scattering, Settings, Sky, SkyMode, TransferFunction,
+    apply_path, to_json,
 };
 
 fn request() -> Request {
@@ -27,9 +27,16 @@ fn request() -> Request {
     Request { volume: VolumeId { content_id: 1, ranges }, settings, size: [100, 80], coarse: None }
 }
 
+/// With light that bounces.
+fn bouncing() -> Request {
+    let mut request = request();
+    request.settings.scattering = Scattering { bounces: 4, ..Scattering::default() };
+    request
+}
+
 /// With a table of labels.
 fn of_labels() -> Request {
-    let mut request = request();
+    let mut request = bouncing();
     request.settings.labels.entry(1);
     *request.settings.labels.entry(2) = LabelLook { visible: false, ..LabelLook::of(2) };
     request
@@ -48,6 +55,8 @@ enum Effect {
     Eye,
     /// What is open of it is found anew.
     Sky,
+    /// Light bounces anew.
+    Bounces,
     OneLight,
     AllLights,
 }
@@ -57,6 +66,7 @@ fn effect(before: &FrameKeys, after: &FrameKeys) -> Effect {
         1 => Effect::OneLight,
         n if n > 1 => Effect::AllLights,
         _ if after.sky.is_some() && after.sky != before.sky => Effect::Sky,
+        _ if after.bounces.is_some() && after.bounces != before.bounces => Effect::Bounces,
         _ if after.eye != before.eye => Effect::Eye,
         _ if after.floor != before.floor => Effect::Floor,
         _ if after.display != before.display => Effect::Display,
@@ -82,10 +92,10 @@ fn every_setting_causes_what_the_design_says() {
         ("camera.fit", "frame", Effect::Eye),
         ("camera.projection", "orthographic", Effect::Eye),
         ("lights.1.name", "Fill", Effect::Nothing),
-        ("lights.1.color", "[1,0,0]", Effect::Eye),
-        ("lights.1.intensity", "2", Effect::Eye),
-        ("lights.1.on", "false", Effect::Eye),
-        ("lights.1.casts_shadows", "false", Effect::Eye),
+        ("lights.1.color", "[1,0,0]", Effect::Bounces),
+        ("lights.1.intensity", "2", Effect::Bounces),
+        ("lights.1.on", "false", Effect::Bounces),
+        ("lights.1.casts_shadows", "false", Effect::Bounces),
         // Further out is where a parallel light was before.
         ("lights.1.position", "[0,6,0]", Effect::Nothing),
         ("lights.1.position", "[0,6,1]", Effect::OneLight),
@@ -106,7 +116,7 @@ fn every_setting_causes_what_the_design_says() {
         ("range", r#"{"typed": [0, 2]}"#, Effect::AllLights),
         // Beyond what the range holds: it is widened.
         ("transfer.points.1.value", "1.2", Effect::AllLights),
-        ("transfer.points.0.color", "[1,0,0]", Effect::Eye),
+        ("transfer.points.0.color", "[1,0,0]", Effect::Bounces),
         ("transfer.points.1.opacity", "0.4", Effect::AllLights),
         ("transfer.points.1.value", "0.9", Effect::AllLights),
         ("transfer.interpolation", "extinction", Effect::AllLights),
@@ -114,7 +124,7 @@ fn every_setting_causes_what_the_design_says() {
         ("lighting.linked", "false", Effect::AllLights),
         ("lighting.curve.interpolation", "extinction", Effect::Nothing),
         ("opacity_unit", r#"{"mm": 3}"#, Effect::AllLights),
-        ("shading.emission", "0.1", Effect::Eye),
+        ("shading.emission", "0.1", Effect::Bounces),
         ("shading.ambient", "0.1", Effect::Eye),
         ("shading.diffuse", "0.1", Effect::Eye),
         ("shading.specular", "0.1", Effect::Eye),
@@ -129,7 +139,7 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.gain", "2", Effect::Eye),
         // Rays nearby take its place.
         ("shadows.bias_voxels", "1", Effect::Nothing),
-        ("shadows.balance", "1.5", Effect::Eye),
+        ("shadows.balance", "1.5", Effect::Bounces),
         ("shadows.keep_balanced", "true", Effect::Nothing),
         ("shadows.first_touch", "true", Effect::AllLights),
         ("shadows.deposit", "front", Effect::AllLights),
@@ -144,18 +154,26 @@ fn every_setting_causes_what_the_design_says() {
         // Of points.
         ("shadows.area.samples", "16", Effect::Nothing),
         ("shadows.area.resolution", "full", Effect::Nothing),
-        ("sky.mode", "off", Effect::Eye),
-        ("sky.mode", "white", Effect::Eye),
-        ("sky.intensity", "0.1", Effect::Eye),
-        ("sky.zenith", "[1,0,0]", Effect::Eye),
-        ("sky.horizon", "[1,0,0]", Effect::Eye),
-        ("sky.ground", "[1,0,0]", Effect::Eye),
-        ("sky.tilt_deg", "30", Effect::Eye),
-        ("sky.turn_deg", "30", Effect::Eye),
+        ("sky.mode", "off", Effect::Bounces),
+        ("sky.mode", "white", Effect::Bounces),
+        ("sky.intensity", "0.1", Effect::Bounces),
+        ("sky.zenith", "[1,0,0]", Effect::Bounces),
+        ("sky.horizon", "[1,0,0]", Effect::Bounces),
+        ("sky.ground", "[1,0,0]", Effect::Bounces),
+        ("sky.tilt_deg", "30", Effect::Bounces),
+        ("sky.turn_deg", "30", Effect::Bounces),
         ("sky.density_scale", "0.5", Effect::Sky),
         ("sky.directions", "14", Effect::Sky),
         ("sky.resolution", "full", Effect::Sky),
-        ("transfer.mixing", "seen", Effect::Eye),
+        ("scattering.bounces", "0", Effect::Eye),
+        ("scattering.bounces", "5", Effect::Bounces),
+        ("scattering.albedo", "0.5", Effect::Bounces),
+        ("scattering.strength", "2", Effect::Eye),
+        ("scattering.anisotropy", "0.5", Effect::Eye),
+        ("scattering.density_scale", "0.5", Effect::Bounces),
+        ("scattering.directions", "26", Effect::Bounces),
+        ("scattering.resolution", "half", Effect::Bounces),
+        ("transfer.mixing", "seen", Effect::Bounces),
         ("lighting.curve.mixing", "seen", Effect::Nothing),
         ("cuts.crop", r#"{"on": true}"#, Effect::Nothing),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, Effect::AllLights),
@@ -190,12 +208,12 @@ fn every_setting_causes_what_the_design_says() {
         ("volume.value_scale.intercept", "-1024", Effect::Nothing),
     ];
     for (path, value, expected) in &table {
-        assert_eq!(&effect_of(&request(), path, value), expected, "{path} = {value}");
+        assert_eq!(&effect_of(&bouncing(), path, value), expected, "{path} = {value}");
     }
     // Of a look of labels.
     for (path, value, expected) in [
         ("labels.1.name", "Liver", Effect::Nothing),
-        ("labels.1.color", "[1,0,0]", Effect::Eye),
+        ("labels.1.color", "[1,0,0]", Effect::Bounces),
         ("labels.1.opacity", "0.5", Effect::AllLights),
         ("labels.1.visible", "false", Effect::AllLights),
         ("labels", r#"{"1": {}, "2": {"visible": false}}"#, Effect::Nothing),
@@ -238,6 +256,22 @@ fn collect(tree: &Value, path: String, leaves: &mut Vec<String>) {
         }
         _ => leaves.push(path),
     }
+}
+
+#[test]
+fn without_bounces_lights_and_sky_have_colours_for_nothing() {
+    for (path, value) in [
+        ("lights.1.color", "[1,0,0]"),
+        ("lights.1.intensity", "2"),
+        ("transfer.points.0.color", "[1,0,0]"),
+        ("shading.emission", "0.1"),
+        ("sky.intensity", "0.1"),
+        ("scattering.anisotropy", "0.5"),
+    ] {
+        assert_eq!(effect_of(&request(), path, value), Effect::Eye, "{path}");
+    }
+    assert_eq!(effect_of(&request(), "scattering.albedo", "0.5"), Effect::Nothing);
+    assert_eq!(effect_of(&request(), "scattering.bounces", "2"), Effect::Bounces);
 }
 
 #[test]

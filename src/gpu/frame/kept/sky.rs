@@ -1,8 +1,8 @@
 //! Which volume of the sky's visibility a picture needs, and which are kept.
 
-use super::loaded::{Loaded, Wanted};
-use super::step::{Product, Step};
 use crate::gpu::GpuError;
+use crate::gpu::frame::loaded::{Loaded, Wanted};
+use crate::gpu::frame::step::{Product, Step};
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::resources::tools::Tools;
 use crate::gpu::sky::sweep::SkyBuild;
@@ -15,7 +15,7 @@ const MOST_KEPT: usize = 3;
 
 /// The sky of a picture: where its volume is, and what must be done before.
 #[derive(Debug, Default)]
-pub(super) struct PlacedSky {
+pub(in crate::gpu::frame) struct PlacedSky {
     /// What the volume is made from; `None` without one.
     pub key: Option<SkyKey>,
     /// Its place among those that are kept.
@@ -26,7 +26,7 @@ pub(super) struct PlacedSky {
 
 impl PlacedSky {
     /// The steps that fill it.
-    pub(super) fn steps(&self) -> Vec<Step> {
+    pub(in crate::gpu::frame) fn steps(&self) -> Vec<Step> {
         let Some(build) = &self.build else { return Vec::new() };
         let mut steps = vec![Step::SkyBlocks];
         steps.extend((0..build.batches()).map(Step::SkyBatch));
@@ -40,7 +40,11 @@ impl Loaded {
     ///
     /// # Errors
     /// When memory is out.
-    pub(super) fn place_sky(&mut self, tools: &Tools, wanted: Wanted<'_>) -> Result<PlacedSky, GpuError> {
+    pub(in crate::gpu::frame) fn place_sky(
+        &mut self,
+        tools: &Tools,
+        wanted: Wanted<'_>,
+    ) -> Result<PlacedSky, GpuError> {
         let Wanted { context, request, keys, now, .. } = wanted;
         let known = self.skies.len();
         self.skies.retain(Cached::is_complete);

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::light_build::LightBuild;
-use super::loaded::{Loaded, Wanted};
 use crate::data::BRICK_EDGE;
+use crate::gpu::frame::light_build::LightBuild;
+use crate::gpu::frame::loaded::{Loaded, Wanted};
 use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::{Filling, LightVolume};
 use crate::gpu::resources::cached::Cached;
@@ -28,7 +28,7 @@ const WIDEST: f64 = MAX_STRETCH_LEVEL;
 
 /// The light of a picture: where it is, and what must be done before.
 #[derive(Debug, Default)]
-pub(super) struct PlacedLights {
+pub(in crate::gpu::frame) struct PlacedLights {
     /// Key of every light's volume; `None` for lights without.
     pub keys: Vec<Option<LightKey>>,
     /// Place of every light's volume among those that are kept.
@@ -133,7 +133,7 @@ impl Loaded {
     ///
     /// # Errors
     /// When memory is out.
-    pub(super) fn place_lights(
+    pub(in crate::gpu::frame) fn place_lights(
         &mut self,
         wanted: Wanted<'_>,
         recyclable: &mut Vec<LightVolume>,

@@ -1,0 +1,52 @@
+// What light meets that is scattered, block by block of voxels: the mean extinction of eight places in each, as optical
+// depth per shortest edge of a voxel, and what of it scatters light, for each colour: extinction × albedo × colour.
+#import "sky/places.wgsl"
+
+// The look of the eye, whose colours are those of what light bounces off.
+@group(0) @binding(4) var<storage, read> look_table: TransferTable;
+// What the eye makes of voxels that are classified before they are spread.
+@group(0) @binding(5) var look_pyramid: texture_3d<f32>;
+// Scattering in rgb, extinction in a.
+@group(0) @binding(6) var<storage, read_write> scattering: array<vec4f>;
+// The same for rays, which find no light yet: in rgb what blocks give off, per shortest edge.
+@group(0) @binding(7) var medium: texture_storage_3d<rgba16float, write>;
+
+// More would be no darker: half of it ends all light within a voxel, and 16 bits hold it.
+const MOST_EXTINCTION = 1024.0;
+
+// Linear colour at an index-space point.
+fn color_at(p: vec3f) -> vec3f {
+#if PRECLASSIFY
+    let found = textureSampleLevel(look_pyramid, clamped, (p + 4.5) * grid.pyramid_scale, blocks.level);
+    return clamp(found.gba / max(found.r, 1e-20), vec3f(0.0), vec3f(1.0));
+#else
+    let at = table_entry(pyramid(p, blocks.level));
+    return mix(look_table.entries[at.low].rgb, look_table.entries[at.low + 1u].rgb, at.fraction);
+#endif
+}
+
+@compute @workgroup_size(4, 4, 4)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    blocks = bound_blocks;
+    grid = bound_grid;
+    if (any(id >= blocks.dims + 2u)) {
+        return;
+    }
+    var sum = vec4f(0.0);
+    if (may_attenuate(id)) {
+        for (var corner = 0u; corner < 8u; corner += 1u) {
+            let p = place_in(id, corner);
+            let extinction = extinction_at(p);
+            if (extinction > 0.0) {
+                sum += extinction * vec4f(color_at(p) * blocks.albedo, 1.0);
+            }
+        }
+    }
+    sum *= blocks.edge / 8.0;
+    sum *= min(MOST_EXTINCTION / max(sum.a, 1e-9), 1.0);
+    textureStore(medium, id, vec4f(0.0, 0.0, 0.0, sum.a));
+    if (all(id >= vec3u(1u)) && all(id <= blocks.dims)) {
+        let at = id - 1u;
+        scattering[(at.z * blocks.dims.y + at.y) * blocks.dims.x + at.x] = sum;
+    }
+}

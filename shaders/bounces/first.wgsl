@@ -1,0 +1,95 @@
+// The light that reaches blocks without having been scattered, of the lights and of the sky, and what blocks give off of it
+// and by themselves.
+//
+// Of a light whose brightness is that of a white surface which faces it, E/π, the mean over all directions is a quarter:
+// E / 4π.
+#import "bounces/bounce.wgsl"
+#import "common/slab_mean.wgsl"
+#import "common/space.wgsl"
+#import "shading/lights.wgsl"
+
+struct First {
+    space: Space,
+    // Of the texture of blocks, with those around the grid: one over its size.
+    block_scale: vec3f,
+    // Voxels along the edge of a block.
+    voxel_step: f32,
+    // Lights that are on …
+    count: u32,
+    // … of which so many come first that material attenuates.
+    shadowed: u32,
+    // Smallest edge of a voxel, in scene units.
+    edge: f32,
+    // What blocks give off of their colour by themselves, over the albedo.
+    emission: f32,
+    pad0: vec3f,
+    // 1 where the sums are the sky's light.
+    has_sky: f32,
+    lights: array<Light, MAX_LIGHTS>,
+}
+
+@group(0) @binding(0) var<uniform> bound_first: First;
+var<private> scene: First;
+@group(0) @binding(1) var medium: texture_3d<f32>;
+@group(0) @binding(2) var clamped: sampler;
+@group(0) @binding(5) var<storage, read> sums: array<vec4f>;
+// What blocks give off per shortest edge before light bounces.
+@group(0) @binding(6) var<storage, read_write> first: array<vec4f>;
+
+// What is left of a light in a block of some extinction, on the mean over it as sheets have it, along a ray whose steps are a
+// block long.
+fn left_of(light: Light, block: vec3f, extinction: f32, towards: Towards) -> f32 {
+    let along = to_index(scene.space, towards.direction) / scene.voxel_step;
+    let step = 1.0 / max(max(abs(along.x), abs(along.y)), abs(along.z));
+    let scale = light.extinction_scale / scene.edge;
+    let own = slab_mean(extinction * min(step, towards.distance) * scale);
+    var depth = 0.0;
+    var way = 0.5 * step;
+    loop {
+        // A block of nothing lies around the grid.
+        let length = min(step, towards.distance - way);
+        let place = block + along * (way + 0.5 * length);
+        if (length <= 0.0 || any(place < vec3f(-1.0)) || any(place > vec3f(bounce.dims))) {
+            break;
+        }
+        depth += textureSampleLevel(medium, clamped, (place + 1.5) * scene.block_scale, 0.0).a * length * scale;
+        if (depth > 20.0) {
+            break;
+        }
+        way += length;
+    }
+    return own * exp(-depth);
+}
+
+@compute @workgroup_size(4, 4, 4)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    bounce = bound_bounce;
+    scene = bound_first;
+    if (any(id >= bounce.dims)) {
+        return;
+    }
+    let at = number_of(id);
+    let found = scattering[at];
+    if (found.a <= 0.0) {
+        return;
+    }
+    let block = vec3f(id);
+    let position = place_of(scene.space, (block + 0.5) * scene.voxel_step - 0.5);
+    var light = sums[at].rgb * (bounce.share * scene.has_sky) + scene.emission;
+    for (var i = 0u; i < scene.count; i += 1u) {
+        // Not from a copy: an index that varies would keep that as an array in memory.
+        let whole = bound_first.lights[i];
+        var arriving = 0.0;
+        for (var number = 0u; number < whole.points; number += 1u) {
+            let one = point_of(whole, number);
+            let towards = to_light(one, position);
+            var left = hood_share(one, towards.direction);
+            if (i < scene.shadowed && left > 0.0) {
+                left *= left_of(one, block, found.a, towards);
+            }
+            arriving += left;
+        }
+        light += whole.color * (0.25 * arriving / f32(whole.points));
+    }
+    first[at] = vec4f(found.rgb * light, 0.0);
+}

@@ -1,0 +1,32 @@
+// The light that blocks receive from all around: its sum over the directions of a batch, gathered from the rays around
+// their middles and added to those of the batches before.
+#import "sky/rays.wgsl"
+#import "bounces/bounce.wgsl"
+
+@group(0) @binding(1) var sheets: texture_3d<f32>;
+@group(0) @binding(2) var clamped: sampler;
+@group(0) @binding(5) var<storage, read_write> sums: array<vec4f>;
+
+// Directions of a batch.
+override DIRECTIONS: u32 = 4u;
+
+@compute @workgroup_size(4, 4, 4)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    sweep = bound_sweep;
+    bounce = bound_bounce;
+    if (any(id >= sweep.dims)) {
+        return;
+    }
+    let at = number_of(id);
+    if (scattering[at].a < bounce.least) {
+        return;
+    }
+    var sum = sums[at].rgb * sweep.has_sums;
+    for (var i = 0u; i < DIRECTIONS; i += 1u) {
+        let rays = bound_sweep.rays[i];
+        let ray = place_among(rays, vec3f(id));
+        let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
+        sum += rays.weight * textureSampleLevel(sheets, clamped, place, 0.0).rgb;
+    }
+    sums[at] = vec4f(sum, 0.0);
+}

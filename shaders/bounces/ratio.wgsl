@@ -1,0 +1,46 @@
+// How much the last bounce brought of what the one before did, for each colour: ρ = ⟨dₙ, dₙ₋₁⟩ / ⟨dₙ₋₁, dₙ₋₁⟩ over all
+// blocks that scatter light. Further bounces bring ρ of that each, in all ρ / (1 − ρ) of it.
+#import "bounces/bounce.wgsl"
+
+@group(0) @binding(5) var<storage, read> sums: array<vec4f>;
+@group(0) @binding(7) var<storage, read> last: array<vec4f>;
+@group(0) @binding(8) var<storage, read> change: array<vec4f>;
+@group(0) @binding(9) var<storage, read_write> ratio: array<vec4f>;
+
+// In one group, whose threads take every so many blocks: the order of the sums is always the same.
+const THREADS = 256u;
+
+// So slow a decay is mistaken for none at all: bounces that bring as much as those before say little of the end.
+const MOST_RATIO = 0.98;
+
+var<workgroup> products: array<vec3f, THREADS>;
+var<workgroup> squares: array<vec3f, THREADS>;
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_index) thread: u32) {
+    bounce = bound_bounce;
+    let count = bounce.dims.x * bounce.dims.y * bounce.dims.z;
+    var product = vec3f(0.0);
+    var square = vec3f(0.0);
+    for (var at = thread; at < count; at += THREADS) {
+        if (scattering[at].a > 0.0) {
+            let before = change[at].rgb;
+            product += (sums[at].rgb * bounce.share - last[at].rgb) * before;
+            square += before * before;
+        }
+    }
+    products[thread] = product;
+    squares[thread] = square;
+    workgroupBarrier();
+    for (var half = THREADS / 2u; half > 0u; half /= 2u) {
+        if (thread < half) {
+            products[thread] += products[thread + half];
+            squares[thread] += squares[thread + half];
+        }
+        workgroupBarrier();
+    }
+    if (thread == 0u) {
+        let found = products[0] / max(squares[0], vec3f(1e-20));
+        ratio[0] = vec4f(clamp(found, vec3f(0.0), vec3f(MOST_RATIO)), 0.0);
+    }
+}

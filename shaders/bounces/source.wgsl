@@ -1,0 +1,47 @@
+// What blocks give off for the next bounce: that of unscattered light, and of the light that the last one has brought. How
+// much more that is than the bounce before brought is kept. Every other time what all further bounces would bring is told
+// from the last two (bounces/ratio.wgsl), and light goes on bouncing from there: the end is reached in fewer.
+#import "bounces/bounce.wgsl"
+
+@group(0) @binding(5) var<storage, read> sums: array<vec4f>;
+@group(0) @binding(6) var<storage, read> first: array<vec4f>;
+// What the bounce before had brought, and how much more that was than the one before that.
+@group(0) @binding(7) var<storage, read_write> last: array<vec4f>;
+@group(0) @binding(8) var<storage, read_write> change: array<vec4f>;
+@group(0) @binding(9) var medium: texture_storage_3d<rgba16float, write>;
+
+@group(0) @binding(10) var<storage, read> ratio: array<vec4f>;
+
+// Whether any bounce was.
+override HAS_BOUNCED: bool = true;
+// Whether the end is told.
+override LEAPS: bool = false;
+
+@compute @workgroup_size(4, 4, 4)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    bounce = bound_bounce;
+    if (any(id >= bounce.dims)) {
+        return;
+    }
+    let at = number_of(id);
+    let found = scattering[at];
+    if (found.a < bounce.least) {
+        return;
+    }
+    var light = vec3f(0.0);
+    if (HAS_BOUNCED) {
+        let before = last[at].rgb;
+        let brought = sums[at].rgb * bounce.share - before;
+        light = before + brought;
+        if (LEAPS) {
+            light = max(before + brought / (1.0 - ratio[0].rgb), vec3f(0.0));
+        }
+        change[at] = vec4f(brought, 0.0);
+    } else {
+        change[at] = vec4f(0.0);
+    }
+    last[at] = vec4f(light, 0.0);
+    if (found.a > 0.0) {
+        textureStore(medium, id + 1u, vec4f(first[at].rgb + found.rgb * light, found.a));
+    }
+}

@@ -1,0 +1,39 @@
+//! Section "Scattering": light that bounces inside the volume.
+
+use eframe::egui::Ui;
+
+use super::super::text;
+use super::super::text::common::TIMES;
+use super::Panels;
+use super::controls::{Number, advanced, choice};
+use super::shadows::RESOLUTIONS;
+use crate::model::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
+
+/// Shows the section.
+pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
+    let (scattering, defaults) = (&mut panels.settings.scattering, &panels.defaults.scattering);
+    let mut bounces = f64::from(scattering.bounces);
+    let number = Number::new(text::scattering::BOUNCES, 0.0..=f64::from(MAX_BOUNCES)).decimals(0);
+    number.show(ui, &mut bounces, f64::from(defaults.bounces));
+    scattering.bounces = bounces.round().clamp(0.0, f64::from(MAX_BOUNCES)) as u32;
+    ui.add_enabled_ui(scattering.bounces > 0, |ui| {
+        let albedo = Number::new(text::scattering::ALBEDO, 0.0..=1.0);
+        albedo.show(ui, &mut scattering.albedo, defaults.albedo);
+        let density = Number::new(text::scattering::DENSITY, 0.01..=4.0).unit(TIMES).log();
+        density.show(ui, &mut scattering.density_scale, defaults.density_scale);
+        let strength = Number::new(text::scattering::STRENGTH, 0.0..=4.0).unit(TIMES);
+        strength.show(ui, &mut scattering.strength, defaults.strength);
+    });
+    let anisotropy = Number::new(text::scattering::ANISOTROPY, -MAX_ANISOTROPY..=MAX_ANISOTROPY);
+    anisotropy.show(ui, &mut scattering.anisotropy, defaults.anisotropy);
+    ui.add_enabled_ui(scattering.bounces > 0, |ui| {
+        advanced(ui, "scattering", |ui| {
+            let (least, most) = (f64::from(*SKY_DIRECTIONS.start()), f64::from(*SKY_DIRECTIONS.end()));
+            let mut directions = f64::from(scattering.directions);
+            let number = Number::new(text::scattering::DIRECTIONS, least..=most).decimals(0);
+            number.show(ui, &mut directions, f64::from(defaults.directions));
+            scattering.directions = directions.round().clamp(least, most) as u32;
+            choice(ui, text::shadows::RESOLUTION, &mut scattering.resolution, &RESOLUTIONS);
+        });
+    });
+}

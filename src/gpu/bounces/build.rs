@@ -1,0 +1,425 @@
+//! The filling of a volume of light that has bounced.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::volume::{BouncesVolume, NUMBERS_BYTES};
+use crate::gpu::light::packed::pack_light;
+use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{Constants, Only, Variant, flag};
+use crate::gpu::resources::pass;
+use crate::gpu::sky::blocks::BlocksPass;
+use crate::gpu::sky::sweep::{BATCH_BLOCKS, MOST_LAYERS, SweepVariant, pack};
+use crate::gpu::volume::transfer_tables::Tables;
+use crate::gpu::volume::{Gpu, texture_3d};
+use crate::gpu::{Context, GpuError, RenderOptions};
+use crate::model::{MAX_LIGHTS, Settings};
+use crate::plan::{BouncesKey, LitLights, SweepFrame, sweep_directions};
+
+/// Most texels of the rays of a batch: 128 MiB.
+const BATCH_TEXELS: usize = 1 << 24;
+
+/// A piece of the filling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum BounceStep {
+    /// What light meets.
+    Blocks,
+    /// A batch of directions in which the sky's light is followed, or that of a bounce.
+    Batch { of_sky: bool, bounce: u32, batch: usize },
+    /// What unscattered light makes blocks give off.
+    First,
+    /// What so many bounces make them give off for the next.
+    Source { bounce: u32 },
+    /// What all bounces have brought.
+    Outcome,
+}
+
+/// What of a picture bounced light is made from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Look<'a> {
+    pub tables: &'a Tables,
+    pub settings: &'a Settings,
+    pub options: &'a RenderOptions,
+    pub lit: &'a LitLights,
+}
+
+/// The filling of a volume of light that has bounced.
+#[derive(Debug)]
+pub(crate) struct BouncesBuild {
+    /// Rays in every direction.
+    frames: Vec<SweepFrame>,
+    /// Directions of a batch.
+    each: usize,
+    bounces: u32,
+    /// Points that stand for a light that has a size.
+    points: u32,
+    has_sky: bool,
+    textures: Textures,
+}
+
+/// What only the filling needs.
+#[derive(Debug)]
+struct Textures {
+    /// What blocks give off, and their optical depth, with one of nothing around the grid.
+    medium: wgpu::TextureView,
+    /// The light along rays: columns and rows of them, and a layer for each slice of each direction.
+    sheets: wgpu::TextureView,
+    sheet_size: [usize; 3],
+    /// What blocks scatter, and their optical depth.
+    scattering: wgpu::Buffer,
+    /// What they give off of unscattered light.
+    first: wgpu::Buffer,
+    /// What a bounce brings them.
+    sums: wgpu::Buffer,
+    /// What the bounce before had brought.
+    last: wgpu::Buffer,
+    /// How much more that was than the one before that.
+    change: wgpu::Buffer,
+    /// What a bounce brings of what the last did.
+    ratio: wgpu::Buffer,
+    bytes: u64,
+}
+
+impl BouncesBuild {
+    /// Lays out the filling of a volume.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(
+        gpu: Gpu<'_>,
+        key: &BouncesKey,
+        has_sky: bool,
+        volume: &BouncesVolume,
+    ) -> Result<Self, GpuError> {
+        let scene = &gpu.volume.scene;
+        let frames: Vec<_> = sweep_directions(key.directions())
+            .into_iter()
+            .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
+            .collect();
+        let each = directions_of_a_batch(volume.dims, &frames);
+        let textures = Textures::new(gpu.context, volume, &frames, each)?;
+        Ok(Self { frames, each, bounces: key.bounces(), points: key.points(), has_sky, textures })
+    }
+
+    /// Its pieces, in order.
+    pub(crate) fn steps(&self) -> Vec<BounceStep> {
+        let batches = |of_sky: bool, bounce: u32| {
+            let count = self.frames.len().div_ceil(self.each);
+            (0..count).map(move |batch| BounceStep::Batch { of_sky, bounce, batch })
+        };
+        let mut steps = vec![BounceStep::Blocks];
+        if self.has_sky {
+            steps.extend(batches(true, 0));
+        }
+        steps.push(BounceStep::First);
+        for bounce in 0..self.bounces {
+            steps.push(BounceStep::Source { bounce });
+            steps.extend(batches(false, bounce));
+        }
+        steps.push(BounceStep::Outcome);
+        steps
+    }
+
+    /// Bytes that only the filling needs.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.textures.bytes
+    }
+
+    /// Records a piece.
+    pub(crate) fn record(
+        &self,
+        gpu: Gpu<'_>,
+        look: Look<'_>,
+        volume: &BouncesVolume,
+        step: BounceStep,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        match step {
+            BounceStep::Blocks => self.fill_blocks(gpu, look, volume, encoder),
+            BounceStep::Batch { of_sky, bounce, batch } => {
+                let taken = batch * self.each..((batch + 1) * self.each).min(self.frames.len());
+                let everywhere = !of_sky && bounce + 2 >= self.bounces;
+                let sky = of_sky.then_some(look.settings);
+                self.fill_batch(gpu, volume, (taken, everywhere), sky, encoder)
+            }
+            BounceStep::First => self.fill_first(gpu, look, volume, encoder),
+            BounceStep::Source { bounce } => {
+                let shared = self.shared(gpu, volume, bounce + 1 == self.bounces);
+                // The last leaps, and every other before it: two bounces tell where to.
+                let leaps = bounce > 1 && (self.bounces - bounce).is_multiple_of(2);
+                if leaps {
+                    self.whole(gpu, &Only("bounces/ratio.wgsl"), &shared, volume, encoder)?;
+                }
+                let source = SourceVariant { has_bounced: bounce > 0, leaps };
+                self.whole(gpu, &source, &shared, volume, encoder)
+            }
+            BounceStep::Outcome => {
+                let shared = self.shared(gpu, volume, true);
+                self.whole(gpu, &Only("bounces/ratio.wgsl"), &shared, volume, encoder)?;
+                self.whole(gpu, &Only("bounces/outcome.wgsl"), &shared, volume, encoder)
+            }
+        }
+    }
+
+    /// What passes over blocks share; all of them, or those in which light is scattered.
+    fn shared(&self, gpu: Gpu<'_>, volume: &BouncesVolume, everywhere: bool) -> wgpu::Buffer {
+        let uniform = uniforms::Bounce {
+            dims: volume.dims.map(|n| n as u32),
+            share: 1.0 / self.frames.len() as f32,
+            least: if everywhere { -1.0 } else { f32::MIN_POSITIVE },
+            pad0: 0.0,
+            pad1: 0.0,
+            pad2: 0.0,
+        };
+        gpu.uniform("Bounces::shared", uniform)
+    }
+
+    fn fill_blocks(
+        &self,
+        gpu: Gpu<'_>,
+        Look { tables, settings, options, .. }: Look<'_>,
+        volume: &BouncesVolume,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let scattering = &settings.scattering;
+        let pass = BlocksPass {
+            shader: "bounces/blocks.wgsl",
+            dims: volume.dims,
+            divisor: volume.divisor,
+            density_scale: scattering.density_scale,
+            albedo: scattering.albedo,
+            tables,
+            settings,
+            options,
+        };
+        let entries = [
+            buffer("look_table", tables.eye.gathered()),
+            view_of("look_pyramid", &tables.pyramids(gpu.volume).own.all),
+            buffer("scattering", &self.textures.scattering),
+            view_of("medium", &self.textures.medium),
+        ];
+        pass.record(gpu, &entries, encoder)
+    }
+
+    /// Follows light in the directions of a batch, that of blocks or of a sky, and adds what arrives to what came before.
+    fn fill_batch(
+        &self,
+        gpu: Gpu<'_>,
+        volume: &BouncesVolume,
+        (taken, everywhere): (Range<usize>, bool),
+        sky: Option<&Settings>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Textures { medium, sheets, sheet_size, scattering, sums, .. } = &self.textures;
+        let edge = gpu.volume.scene.smallest_edge();
+        let slices = volume.dims.into_iter().max().unwrap_or(1);
+        let radiance = sky.and_then(|settings| settings.sky.radiance(settings.camera.up));
+        let arriving = |towards: DVec3| {
+            radiance.map_or(DVec3::ZERO, |sky| {
+                DVec3::from(std::array::from_fn(|c| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0)))
+            })
+        };
+        let has_sums = if taken.start == 0 { 0.0 } else { 1.0 };
+        let frames = &self.frames[taken];
+        // What is left over has no weight, and no rays.
+        let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
+        for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
+            *slot = pack(frame, edge, at * slices, arriving(frame.towards));
+        }
+        let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
+        let uniform = uniforms::Sweep {
+            dims: volume.dims.map(|n| n as u32),
+            share: 0.0,
+            block_scale: reciprocal(volume.dims.map(|n| n + 2)),
+            has_sums,
+            sheet_scale: reciprocal(*sheet_size),
+            pad0: 0.0,
+            rays,
+        };
+        let uniform = gpu.uniform("Bounces::sweep", uniform);
+        let clamped = || sampler("clamped", &gpu.volume.clamped);
+
+        let sweep =
+            gpu.shaders.pipeline(&SweepVariant { shader: "bounces/sweep.wgsl", directions: self.each })?;
+        let entries = [
+            buffer("bound_sweep", &uniform),
+            view_of("medium", medium),
+            clamped(),
+            view_of("sheets", sheets),
+        ];
+        let own = gpu.bind("Bounces::sweep", &sweep, 0, &entries);
+        let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);
+        let groups = [across(0), across(1), frames.len() as u32];
+        pass::dispatch(encoder, "Bounces::sweep", &sweep, &[&own], groups);
+
+        let gather =
+            gpu.shaders.pipeline(&SweepVariant { shader: "bounces/gather.wgsl", directions: self.each })?;
+        let shared = self.shared(gpu, volume, everywhere);
+        let entries = [
+            buffer("bound_sweep", &uniform),
+            view_of("sheets", sheets),
+            clamped(),
+            buffer("bound_bounce", &shared),
+            buffer("scattering", scattering),
+            buffer("sums", sums),
+        ];
+        let own = gpu.bind("Bounces::gather", &gather, 0, &entries);
+        pass::dispatch(encoder, "Bounces::gather", &gather, &[&own], groups_of(volume));
+        Ok(())
+    }
+
+    fn fill_first(
+        &self,
+        gpu: Gpu<'_>,
+        Look { settings, lit, .. }: Look<'_>,
+        volume: &BouncesVolume,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let scene = &gpu.volume.scene;
+        let mut lights = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
+        for (slot, lit) in lights.iter_mut().zip(lit.all()) {
+            let whole = pack_light(&lit.light, None, scene, settings);
+            *slot = uniforms::Light { points: whole.points.min(self.points), ..whole };
+        }
+        let uniform = uniforms::First {
+            space: uniforms::Space::new(scene),
+            block_scale: volume.dims.map(|n| 1.0 / (n + 2) as f32),
+            voxel_step: volume.divisor as f32,
+            count: lit.all().len() as u32,
+            shadowed: lit.shadowed().len() as u32,
+            edge: scene.smallest_edge() as f32,
+            emission: (settings.shading.emission / settings.scattering.albedo.max(1e-9)) as f32,
+            pad0: [0.0; 3],
+            has_sky: f32::from(u8::from(self.has_sky)),
+            lights,
+        };
+        let uniform = gpu.uniform("Bounces::first", uniform);
+        let shared = self.shared(gpu, volume, false);
+        let pipeline = gpu.shaders.pipeline(&Only("bounces/first.wgsl"))?;
+        let entries = [
+            buffer("bound_first", &uniform),
+            view_of("medium", &self.textures.medium),
+            sampler("clamped", &gpu.volume.clamped),
+            buffer("bound_bounce", &shared),
+            buffer("scattering", &self.textures.scattering),
+            buffer("sums", &self.textures.sums),
+            buffer("first", &self.textures.first),
+        ];
+        let own = gpu.bind("Bounces::first", &pipeline, 0, &entries);
+        pass::dispatch(encoder, "Bounces::first", &pipeline, &[&own], groups_of(volume));
+        Ok(())
+    }
+
+    /// Records a pass over blocks that reads what was gathered.
+    fn whole(
+        &self,
+        gpu: Gpu<'_>,
+        variant: &impl Variant,
+        shared: &wgpu::Buffer,
+        volume: &BouncesVolume,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Textures { medium, scattering, first, sums, last, change, ratio, .. } = &self.textures;
+        let shader = variant.shader();
+        let mut entries: Vec<Named<'_>> =
+            vec![buffer("bound_bounce", shared), buffer("sums", sums), buffer("last", last)];
+        match shader {
+            "bounces/source.wgsl" => entries.extend([
+                buffer("scattering", scattering),
+                buffer("first", first),
+                buffer("change", change),
+                view_of("medium", medium),
+                buffer("ratio", ratio),
+            ]),
+            "bounces/ratio.wgsl" => entries.extend([
+                buffer("scattering", scattering),
+                buffer("change", change),
+                buffer("ratio", ratio),
+            ]),
+            _ => entries.extend([buffer("ratio", ratio), view_of("bounced", &volume.view)]),
+        }
+        let pipeline = gpu.shaders.pipeline(variant)?;
+        let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
+        let groups = if shader == "bounces/ratio.wgsl" { [1; 3] } else { groups_of(volume) };
+        pass::dispatch(encoder, "Bounces::whole", &pipeline, &[&own], groups);
+        Ok(())
+    }
+}
+
+/// As many directions in a batch as it has room for, and as many in each.
+fn directions_of_a_batch(dims: [usize; 3], frames: &[SweepFrame]) -> usize {
+    let blocks: usize = dims.iter().product();
+    let slices = dims.into_iter().max().unwrap_or(1);
+    let [width, height] =
+        [0, 1].map(|side| frames.iter().map(|frame| frame.size[side] as usize).max().unwrap_or(1));
+    let most = (BATCH_BLOCKS / blocks.max(1))
+        .min(MOST_LAYERS / slices)
+        .min(BATCH_TEXELS / (width * height * slices))
+        .clamp(1, uniforms::MAX_SKY_RAYS);
+    frames.len().div_ceil(frames.len().div_ceil(most))
+}
+
+fn groups_of(volume: &BouncesVolume) -> [u32; 3] {
+    volume.dims.map(|n| (n as u32).div_ceil(4))
+}
+
+impl Textures {
+    fn new(
+        context: &Context,
+        volume: &BouncesVolume,
+        frames: &[SweepFrame],
+        each: usize,
+    ) -> Result<Self, GpuError> {
+        let dims = volume.dims;
+        let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
+        let format = wgpu::TextureFormat::Rgba16Float;
+        let slices = dims.into_iter().max().unwrap_or(1);
+        let across = |side: usize| frames.iter().map(|frame| frame.size[side] as usize).max().unwrap_or(1);
+        let sheet_size = [across(0), across(1), slices * each];
+        let medium_size = dims.map(|n| n + 2);
+        let medium = context.texture(&texture_3d("Bounces::medium", medium_size, format, usages))?;
+        let sheets = context.texture(&texture_3d("Bounces::sheets", sheet_size, format, usages))?;
+        let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
+        let list = |label, count: u64| {
+            context.empty_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: NUMBERS_BYTES * count,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            })
+        };
+        let blocks = texels(dims);
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self {
+            medium: view(&medium),
+            sheets: view(&sheets),
+            sheet_size,
+            scattering: list("Bounces::scattering", blocks),
+            first: list("Bounces::first", blocks),
+            sums: list("Bounces::sums", blocks),
+            last: list("Bounces::last", blocks),
+            change: list("Bounces::change", blocks),
+            ratio: list("Bounces::ratio", 1),
+            bytes: 8 * (texels(medium_size) + texels(sheet_size)) + NUMBERS_BYTES * (5 * blocks + 1),
+        })
+    }
+}
+
+/// What tells the first source from those of bounces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct SourceVariant {
+    has_bounced: bool,
+    leaps: bool,
+}
+
+impl Variant for SourceVariant {
+    fn shader(&self) -> &'static str {
+        "bounces/source.wgsl"
+    }
+
+    fn constants(&self) -> Constants {
+        vec![flag("HAS_BOUNCED", self.has_bounced), flag("LEAPS", self.leaps)]
+    }
+}

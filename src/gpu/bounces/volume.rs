@@ -1,0 +1,57 @@
+//! The volume of light that has bounced.
+
+use crate::gpu::sky::volume::divisor_for;
+use crate::gpu::volume::texture_3d;
+use crate::gpu::{Context, GpuError};
+use crate::model::Resolution;
+
+/// Bytes of four numbers of a block.
+pub(crate) const NUMBERS_BYTES: u64 = 16;
+
+/// Most texels that the rays of one direction may take: 256 MiB of sheets of colours.
+const MOST_TEXELS: u64 = 1 << 25;
+
+/// Light that has been scattered before it reaches a block of voxels: its mean over all directions.
+#[derive(Debug)]
+pub(crate) struct BouncesVolume {
+    /// Blocks along x, y and z.
+    pub dims: [usize; 3],
+    /// Voxels along the edge of a block.
+    pub divisor: usize,
+    /// Linear RGB.
+    pub view: wgpu::TextureView,
+    /// Counts up with every use; the least recently used goes first.
+    pub last_used: u64,
+}
+
+impl BouncesVolume {
+    /// Makes the texture; nothing is filled yet.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(context: &Context, grid: [usize; 3], resolution: Resolution) -> Result<Self, GpuError> {
+        let most_sums = context.device.limits().max_storage_buffer_binding_size / NUMBERS_BYTES;
+        let divisor = divisor_for(grid, resolution, (MOST_TEXELS, most_sums));
+        let dims = grid.map(|n| n.div_ceil(divisor));
+        let texture = context.texture(&texture_3d(
+            "BouncesVolume::texture",
+            dims,
+            wgpu::TextureFormat::Rgba16Float,
+            wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+        ))?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self { dims, divisor, view, last_used: 0 })
+    }
+
+    /// Index space to texture coordinates: (p + ½) × lookup.
+    pub(crate) fn lookup(&self) -> [f32; 3] {
+        self.dims.map(|n| 1.0 / (n * self.divisor) as f32)
+    }
+
+    /// Bytes of its texture.
+    pub(crate) fn bytes(&self) -> u64 {
+        8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
+    }
+}

@@ -1,0 +1,81 @@
+//! Which volume of bounced light a picture needs, and which are kept.
+
+use crate::gpu::GpuError;
+use crate::gpu::bounces::build::BouncesBuild;
+use crate::gpu::bounces::volume::BouncesVolume;
+use crate::gpu::frame::loaded::{Loaded, Wanted};
+use crate::gpu::frame::step::{Product, Step};
+use crate::gpu::resources::cached::Cached;
+use crate::gpu::resources::tools::Tools;
+use crate::gpu::volume::Gpu;
+use crate::plan::BouncesKey;
+
+/// Volumes that are kept: that of the picture, that of its previews, and one that undoing a change finds again.
+const MOST_KEPT: usize = 3;
+
+/// The bounced light of a picture: where its volume is, and what must be done before.
+#[derive(Debug, Default)]
+pub(in crate::gpu::frame) struct PlacedBounces {
+    /// What the volume is made from; `None` without one.
+    pub key: Option<BouncesKey>,
+    /// Its place among those that are kept.
+    pub slot: Option<usize>,
+    /// Its filling, if it must be filled first.
+    pub build: Option<BouncesBuild>,
+}
+
+impl PlacedBounces {
+    /// The steps that fill it.
+    pub(in crate::gpu::frame) fn steps(&self) -> Vec<Step> {
+        let Some(build) = &self.build else { return Vec::new() };
+        let mut steps: Vec<_> = build.steps().into_iter().map(Step::Bounce).collect();
+        steps.push(Step::Finish(Product::Bounces));
+        steps
+    }
+}
+
+impl Loaded {
+    /// Finds or makes room for the volume that a picture or preview needs.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(in crate::gpu::frame) fn place_bounces(
+        &mut self,
+        tools: &Tools,
+        wanted: Wanted<'_>,
+    ) -> Result<PlacedBounces, GpuError> {
+        let Wanted { context, request, keys, now, .. } = wanted;
+        let known = self.bounces.len();
+        self.bounces.retain(Cached::is_complete);
+        if self.bounces.len() < known {
+            tools.pool.forget_groups();
+        }
+        let Some(full) = &keys.bounces else { return Ok(PlacedBounces::default()) };
+        let coarse = request.coarse.map(|_| full.coarse());
+        let find = |key: &BouncesKey| self.bounces.iter().position(|known| known.holds(key));
+        let found = find(full).or_else(|| coarse.as_ref().and_then(find));
+        if let Some(slot) = found {
+            self.bounces[slot].value.last_used = now;
+            let key = self.bounces[slot].key().clone();
+            return Ok(PlacedBounces { key: Some(key), slot: Some(slot), build: None });
+        }
+        let key = coarse.unwrap_or_else(|| full.clone());
+        if self.bounces.len() >= MOST_KEPT {
+            let oldest = (0..self.bounces.len()).min_by_key(|&at| self.bounces[at].value.last_used);
+            oldest.map(|at| self.bounces.swap_remove(at));
+        }
+        tools.pool.forget_groups();
+        let mut fresh = BouncesVolume::new(context, self.volume.volume.dims(), key.resolution())?;
+        fresh.last_used = now;
+        let slot = self.bounces.len();
+        let has_sky = request.settings.sky.is_on();
+        let build = BouncesBuild::new(Gpu::new(tools, &self.volume), &key, has_sky, &fresh)?;
+        self.bounces.push(Cached::unfilled(key.clone(), fresh));
+        Ok(PlacedBounces { key: Some(key), slot: Some(slot), build: Some(build) })
+    }
+
+    /// Bytes of all volumes of bounced light.
+    pub(crate) fn bounces_bytes(&self) -> u64 {
+        self.bounces.iter().map(|known| known.value.bytes()).sum()
+    }
+}

@@ -1,0 +1,100 @@
+//! What attenuates light, as mean extinctions of blocks of voxels.
+
+use crate::gpu::pipelines::binding::{Named, buffer, view_of};
+use crate::gpu::pipelines::uniforms;
+use crate::gpu::pipelines::variant::{Constants, Ends, Variant, flag, is_cut};
+use crate::gpu::resources::pass;
+use crate::gpu::volume::Gpu;
+use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::{GpuError, RenderOptions};
+use crate::model::{Classification, Settings};
+use crate::plan::stretch_reach;
+
+/// The filling of blocks, by a shader that imports `sky/places.wgsl`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BlocksPass<'a> {
+    pub shader: &'static str,
+    /// Blocks along x, y and z.
+    pub dims: [usize; 3],
+    /// Voxels along the edge of a block.
+    pub divisor: usize,
+    /// Multiplies the extinction.
+    pub density_scale: f64,
+    /// What of light that is met is scattered.
+    pub albedo: f64,
+    pub tables: &'a Tables,
+    pub settings: &'a Settings,
+    pub options: &'a RenderOptions,
+}
+
+impl BlocksPass<'_> {
+    /// Records it; what is filled and what more the shader reads is among the `entries`.
+    pub(crate) fn record(
+        &self,
+        gpu: Gpu<'_>,
+        entries: &[Named<'_>],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Self { shader, dims, divisor, density_scale, albedo, tables, settings, options } = *self;
+        let scene = &gpu.volume.scene;
+        let shading = settings.cuts.shading();
+        // Eight places, each as large as an eighth of a block; a voxel is one place.
+        let level = (divisor as f64 / 2.0).max(1.0).log2();
+        let variant = BlocksVariant {
+            shader,
+            ends: gpu.volume.ends_of_all(),
+            is_cut: is_cut(shading),
+            classification: settings.sampling.classification,
+        };
+        let pipeline = gpu.shaders.pipeline(&variant)?;
+        let uniform = uniforms::Blocks {
+            dims: dims.map(|n| n as u32),
+            voxel_step: divisor as f32,
+            level: level as f32,
+            offset: if divisor == 1 { 0.0 } else { divisor as f32 / 4.0 },
+            edge: (scene.smallest_edge() * density_scale) as f32,
+            albedo: albedo as f32,
+            shading_cut: uniforms::Cut::new(&shading.region(scene)),
+        };
+        let uniform = gpu.uniform("Blocks::uniform", uniform);
+        let mut own = vec![
+            buffer("bound_blocks", &uniform),
+            buffer("table", tables.lighting.gathered()),
+            view_of("distances", &tables.light_distances),
+        ];
+        own.extend_from_slice(entries);
+        let own = gpu.bind("Blocks::own", &pipeline, 0, &own);
+        // Places of a block lie at most as many cells from that of its middle as it has voxels in half its edge.
+        let seen = i32::from(stretch_reach(level)) + divisor as i32 / 2;
+        let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
+        let pyramid = tables.lighting_pyramids(gpu.volume).own;
+        let of_volume = gpu.bind_pyramid_and_cells(&pipeline, dilation, pyramid);
+        let groups = dims.map(|n| (n as u32 + 2).div_ceil(4));
+        pass::dispatch(encoder, "Blocks::pass", &pipeline, &[&own, &of_volume], groups);
+        Ok(())
+    }
+}
+
+/// What tells one pipeline that fills blocks from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct BlocksVariant {
+    shader: &'static str,
+    ends: Ends,
+    is_cut: bool,
+    classification: Classification,
+}
+
+impl Variant for BlocksVariant {
+    fn shader(&self) -> &'static str {
+        self.shader
+    }
+
+    fn constants(&self) -> Constants {
+        let mut constants = self.ends.constants().to_vec();
+        constants.push(flag("CUT", self.is_cut));
+        constants.push(flag("PRECLASSIFY", self.classification == Classification::Pre));
+        // What places are fetched from is the pyramid.
+        constants.extend([("KERNEL", 2.0), ("STRETCH", 1.0)]);
+        constants
+    }
+}

@@ -1,0 +1,188 @@
+//! Light that bounces against the reference: the volume of it, and pictures.
+
+use chiaroscuro::data::{Dataset, Volume};
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{
+    Classification, CropBox, CutEffect, Engine, Hood, Light, LightKind, LightShape, Resolution, Scattering,
+    Settings, ShadowAlgorithm, Sides, Sky, SkyMode,
+};
+use chiaroscuro::reference::{Bounced, Fault, Options, Reference};
+use glam::DVec3;
+
+use super::check_volume;
+use super::presence::{two_lobes, waves};
+use crate::common::context;
+use crate::compare::{compare, flat32};
+use crate::scenes;
+use crate::thresholds::{BOUNCED_BY_WALKS, SAME_BOUNCED};
+
+const N: usize = 22;
+
+fn bouncing(settings: Settings) -> Settings {
+    let scattering = Scattering { bounces: 4, albedo: 0.8, directions: 14, ..Scattering::default() };
+    Settings { scattering, ..settings }
+}
+
+fn creature() -> Volume {
+    scenes::creature(N, DVec3::new(1.0, 1.0, 1.4))
+}
+
+/// Under three lights, one of which has a size, and a sky, and giving off light itself.
+fn everything() -> Settings {
+    let mut settings = bouncing(scenes::look());
+    settings.lights[0].color = [1.0, 0.8, 0.6];
+    settings.lights.push(Light {
+        shape: LightShape::Disc,
+        size: 0.4,
+        hood: Hood { on: true, ..Hood::default() },
+        ..scenes::light(LightKind::Perspective, [-1.0, 1.4, 0.9])
+    });
+    settings.lights.push(Light {
+        casts_shadows: false,
+        intensity: 0.3,
+        ..scenes::light(LightKind::Parallel, [0.3, 0.2, -1.0])
+    });
+    settings.sky = Sky { mode: SkyMode::Gradient, tilt_deg: 20.0, directions: 14, ..Sky::default() };
+    settings.shading.emission = 0.2;
+    settings
+}
+
+fn cut() -> Settings {
+    let mut settings = bouncing(scenes::look());
+    settings.cuts.crop =
+        CropBox { on: true, low: [0.0, 0.2, 0.0], high: [0.6, 1.0, 0.9], effect: CutEffect::Removed };
+    settings
+}
+
+/// The light of a reference as the GPU lays it out.
+fn flat(bounced: &Bounced) -> Vec<f64> {
+    let [r, g, b] = &bounced.light;
+    (0..r.len()).flat_map(|at| [r[at], g[at], b[at], 1.0]).collect()
+}
+
+fn light(volume: &Volume, settings: &Settings) -> Vec<f64> {
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    flat32(&renderer.bounced(&Dataset::new(volume.clone()), settings).expect("light is read back"))
+}
+
+#[test]
+fn light_that_has_bounced_is_what_the_reference_says() {
+    for (what, volume, settings) in [
+        ("creature", creature(), bouncing(scenes::look())),
+        ("everything", creature(), everything()),
+        ("cut", creature(), cut()),
+        ("missing voxels", waves(N, DVec3::ONE, true), bouncing(two_lobes())),
+    ] {
+        for (resolution, classification) in [
+            (Resolution::Full, Classification::Post),
+            (Resolution::Half, Classification::Pre),
+            (Resolution::Quarter, Classification::Post),
+        ] {
+            let mut settings = settings.clone();
+            settings.scattering.resolution = resolution;
+            settings.sampling.classification = classification;
+            let expected = Reference::new(&volume, &settings, Options::default()).bounced();
+            let what = format!("{what}, {resolution:?}, {classification:?}");
+            compare(&what, &light(&volume, &settings), &flat(&expected), SAME_BOUNCED).expect("the same");
+        }
+    }
+}
+
+#[test]
+fn mistakes_in_it_are_noticed() {
+    let volume = creature();
+    let mut settings = everything();
+    settings.scattering.resolution = Resolution::Half;
+    let right = light(&volume, &settings);
+    let of = |settings: &Settings, fault: Fault| {
+        let options = Options { fault, ..Options::default() };
+        flat(&Reference::new(&volume, settings, options).bounced())
+    };
+    let differs = |what: &str, change: &dyn Fn(&mut Settings)| {
+        let mut wrong = settings.clone();
+        change(&mut wrong);
+        let wrong = of(&wrong, Fault::None);
+        assert!(compare(what, &right, &wrong, SAME_BOUNCED).is_err(), "{what} is not noticed");
+    };
+    assert!(compare("shifted", &right, &of(&settings, Fault::ShiftedKernel), SAME_BOUNCED).is_err());
+    differs("5 % more is scattered", &|settings| settings.scattering.albedo *= 1.05);
+    differs("5 % denser", &|settings| settings.scattering.density_scale *= 1.05);
+    differs("one bounce alone", &|settings| settings.scattering.bounces = 1);
+    differs("a direction less", &|settings| settings.scattering.directions -= 1);
+    differs("no light of its own", &|settings| settings.shading.emission = 0.0);
+    differs("no hood", &|settings| settings.lights[1].hood.on = false);
+    differs("a shadow of a light without", &|settings| settings.lights[2].casts_shadows = true);
+    differs("another colour", &|settings| settings.lights[0].color = [1.0; 3]);
+    differs("no sky", &|settings| settings.sky.mode = SkyMode::Off);
+    differs("upside down", &|settings| settings.sky.tilt_deg = 160.0);
+    differs("another transfer function", &|settings| {
+        settings.transfer.points.iter_mut().for_each(|point| point.color[1] *= 0.9);
+    });
+}
+
+#[test]
+fn pictures_with_light_that_bounces() {
+    let check = |what: &str, settings: &Settings| check_volume(what, creature(), settings, None);
+    let lit = bouncing(scenes::look());
+    check("bouncing", &lit);
+    check("cut", &cut());
+    check("everything", &everything());
+    let mut two = lit.clone();
+    (two.shading.sides, two.scattering.strength) = (Sides::Two, 2.5);
+    check("both sides, brighter", &two);
+    let mut direct = lit.clone();
+    direct.shadows.algorithm = ShadowAlgorithm::Direct;
+    check("rays to the light", &direct);
+    let mut scattered = lit.clone();
+    scattered.sampling.engine = Engine::Scatter;
+    check("scattered", &scattered);
+    let mut forward = lit.clone();
+    (forward.scattering.anisotropy, forward.scattering.bounces) = (0.6, 0);
+    forward.shading.surface_gradient = 0.5;
+    check("forward", &forward);
+    forward.scattering.anisotropy = -0.4;
+    check("back", &forward);
+}
+
+/// Random walks know nothing of blocks' rays, of bounces or of how their end is told.
+#[test]
+fn light_that_has_bounced_is_what_random_walks_say() {
+    const WALKS: u32 = 30_000;
+    let cloud = |seed: u64| scenes::noise(16, seed);
+    for (what, seed, per_voxel, albedo) in
+        [("thin", 1, 0.15, 0.95), ("even", 2, 0.5, 0.9), ("dense", 3, 1.2, 0.8)]
+    {
+        let volume = cloud(seed);
+        let mut settings = bouncing(scenes::look());
+        settings.transfer = scenes::linear_extinction(per_voxel);
+        settings.transfer.points[1].color = [1.0, 0.8, 0.5];
+        settings.lights[0].color = [1.0, 0.9, 0.8];
+        settings.sky = Sky { mode: SkyMode::Gradient, ..Sky::default() };
+        settings.shading.emission = 0.1;
+        settings.scattering = Scattering {
+            bounces: 12,
+            albedo,
+            directions: 64,
+            resolution: Resolution::Full,
+            ..Scattering::default()
+        };
+        let reference = Reference::new(&volume, &settings, Options::default());
+        let medium = reference.medium();
+        let found = light(&volume, &settings);
+        // Every so many blocks, some of them at the faces of the grid.
+        let at: Vec<usize> = (0..medium.extinction.len()).step_by(157).collect();
+        let mut squares = 0.0;
+        let mut sum = 0.0;
+        for &at in &at {
+            let walked = reference.bounced_by_walks(&medium, at, WALKS, seed);
+            for c in 0..3 {
+                squares += (found[4 * at + c] - walked[c]).powi(2);
+                sum += walked[c];
+            }
+        }
+        let count = 3.0 * at.len() as f64;
+        let share = (squares / count).sqrt() / (sum / count);
+        println!("{what}: rmse {:.2} % of the mean, {:.4}", 100.0 * share, sum / count);
+        assert!(share <= BOUNCED_BY_WALKS, "{what}: {share}");
+    }
+}

@@ -1,0 +1,149 @@
+//! Light that bounces in scenes where the light is known in closed form: on the reference, and on the GPU.
+
+use chiaroscuro::data::{Dataset, Samples, Volume};
+use chiaroscuro::gpu::Renderer;
+use chiaroscuro::model::{DensityRange, LightKind, Resolution, Scattering, Settings, Sky, SkyMode};
+use chiaroscuro::reference::{Options, Reference};
+use glam::DVec3;
+
+use crate::common::{context, render};
+use crate::scenes::{self, linear_extinction};
+use crate::thresholds::{FURNACE, HALF_SPACE};
+
+/// Voxels that are full where `full` says so.
+fn volume(dims: [usize; 3], full: impl Fn([usize; 3]) -> f64) -> Volume {
+    let [nx, ny, nz] = dims;
+    let place = |at: usize| [at % nx, at / nx % ny, at / (nx * ny)];
+    let values: Vec<u8> = (0..nx * ny * nz).map(|at| (255.0 * full(place(at))).round() as u8).collect();
+    Volume::with_spacing("bounces", dims, DVec3::ONE, Samples::U8(values)).expect("a volume")
+}
+
+fn look(per_voxel: f64, (bounces, albedo, directions): (u32, f64, u32)) -> Settings {
+    let scattering =
+        Scattering { bounces, albedo, directions, resolution: Resolution::Full, ..Scattering::default() };
+    Settings {
+        transfer: linear_extinction(per_voxel),
+        range: DensityRange::Full,
+        scattering,
+        lights: Vec::new(),
+        ..scenes::look()
+    }
+}
+
+/// Light that has bounced, of the red channel, by the reference and the GPU.
+fn found(volume: &Volume, settings: &Settings) -> [Vec<f64>; 2] {
+    let reference = Reference::new(volume, settings, Options::default()).bounced();
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let light = renderer.bounced(&Dataset::new(volume.clone()), settings).expect("light is read back");
+    let [red, _, _] = reference.light;
+    [red, light.iter().map(|texel| f64::from(texel[0])).collect()]
+}
+
+/// In a white furnace, a sky that is 1 everywhere, matter that absorbs nothing cannot be seen: what is in the way of the sky
+/// gives back as much. What has bounced is what is not open of the sky, whatever the densities.
+#[test]
+fn what_absorbs_nothing_vanishes_in_a_white_furnace() {
+    let dims = [20, 17, 23];
+    let volume = volume(dims, |[x, y, z]| if (x / 3 + y / 4 + z / 5) % 3 == 0 { 1.0 } else { 0.25 });
+    let mut settings = look(0.3, (12, 1.0, 26));
+    settings.sky = Sky {
+        mode: SkyMode::White,
+        intensity: 1.0,
+        directions: 26,
+        resolution: Resolution::Full,
+        ..Sky::default()
+    };
+    let openness = Reference::new(&volume, &settings, Options::default()).openness();
+    for bounced in found(&volume, &settings) {
+        let all = bounced.iter().zip(&openness.mean).map(|(bounced, open)| bounced + open);
+        let (least, most) =
+            all.fold((f64::MAX, f64::MIN), |(least, most), light| (least.min(light), most.max(light)));
+        println!("light in a white furnace: {least:.4} to {most:.4}");
+        assert!(least >= 1.0 - FURNACE && most <= 1.0 + FURNACE, "{least} to {most}");
+    }
+}
+
+/// Chandrasekhar's H of matter that scatters evenly (Radiative Transfer 1950, §39), at μ = 1, by its integral equation:
+/// 1/H(μ) = √(1 − ϖ) + ϖ/2 ∫ μ′ H(μ′) / (μ + μ′) dμ′.
+fn chandrasekhar(albedo: f64) -> f64 {
+    let n = 400;
+    let cosine = |i: usize| (i as f64 + 0.5) / n as f64;
+    let mut h = vec![1.0; n];
+    let inverse = |h: &[f64], cosine_of: f64| {
+        let sum: f64 = (0..n).map(|i| cosine(i) * h[i] / (cosine_of + cosine(i))).sum();
+        (1.0 - albedo).sqrt() + 0.5 * albedo * sum / n as f64
+    };
+    for _ in 0..300 {
+        h = (0..n).map(|i| 1.0 / inverse(&h, cosine(i))).collect();
+    }
+    1.0 / inverse(&h, 1.0)
+}
+
+/// Of light that falls straight on a half space which scatters evenly, 1 − √(1 − ϖ) H(1) comes back; the rest is absorbed.
+#[test]
+fn a_half_space_gives_back_what_chandrasekhar_says() {
+    const PER_VOXEL: f64 = 0.6;
+    const EMPTY: usize = 2;
+    // An optical depth of 15, and to the sides of 10.
+    let dims = [33, 33, 27];
+    let slab = volume(dims, |[_, _, z]| if z >= EMPTY { 1.0 } else { 0.0 });
+    for albedo in [0.8, 0.9] {
+        let mut settings = look(PER_VOXEL, (12, albedo, 40));
+        settings.lights = vec![scenes::light(LightKind::Parallel, [0.0, 0.0, -1.0])];
+        let medium = Reference::new(&slab, &settings, Options::default()).medium();
+        let edge = slab.scene().smallest_edge();
+        let right = 1.0 - (1.0 - albedo).sqrt() * chandrasekhar(albedo);
+        for bounced in found(&slab, &settings) {
+            // Down the middle column, what unscattered light is left, E/π = 1, and what is absorbed of all light.
+            let (mut left, mut absorbed) = (1.0, 0.0);
+            for z in 0..dims[2] {
+                let at = (z * dims[1] + dims[1] / 2) * dims[0] + dims[0] / 2;
+                let depth = medium.extinction[at] * edge;
+                let passed = (-depth).exp();
+                let mean = if depth > 0.0 { (1.0 - passed) / depth } else { 1.0 };
+                absorbed += (1.0 - albedo) * depth * (left * mean + 4.0 * bounced[at]);
+                left *= passed;
+            }
+            println!("albedo {albedo}: {:.4} comes back, {right:.4} in closed form", 1.0 - absorbed);
+            assert!((1.0 - absorbed - right).abs() <= HALF_SPACE * right, "{albedo}: {absorbed}");
+        }
+    }
+}
+
+/// Twice the light is twice as much that has bounced, and what two lights bring is the sum.
+#[test]
+fn bounced_light_is_linear_in_the_lights() {
+    let volume = scenes::noise(14, 5);
+    let lit = |lights: Vec<chiaroscuro::model::Light>| {
+        let mut settings = look(0.4, (1, 0.9, 14));
+        settings.lights = lights;
+        found(&volume, &settings)
+    };
+    let one = scenes::light(LightKind::Parallel, [1.0, 0.4, 0.3]);
+    let mut other = scenes::light(LightKind::Perspective, [-0.5, 1.5, 1.0]);
+    other.intensity = 0.7;
+    let [a, b, both] = [lit(vec![one.clone()]), lit(vec![other.clone()]), lit(vec![one, other])];
+    for engine in 0..2 {
+        for at in 0..both[engine].len() {
+            let sum = a[engine][at] + b[engine][at];
+            assert!((both[engine][at] - sum).abs() <= 1e-3 * sum.max(0.05), "{} {sum}", both[engine][at]);
+        }
+    }
+}
+
+/// Without albedo, without bounces or without brightness nothing bounces: the same bytes.
+#[test]
+fn nothing_bounces_where_it_is_off() {
+    let dataset = Dataset::new(scenes::noise(20, 7));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut picture = |scattering: Scattering| {
+        let settings = Settings { scattering, ..scenes::look() };
+        render(&mut renderer, &dataset, &settings, [64, 48]).light
+    };
+    let off = picture(Scattering::default());
+    let on = Scattering { bounces: 3, ..Scattering::default() };
+    assert_eq!(picture(Scattering { albedo: 0.0, ..on.clone() }), off);
+    assert_eq!(picture(Scattering { strength: 0.0, ..on.clone() }), off);
+    assert_eq!(picture(Scattering { bounces: 0, density_scale: 0.1, ..on.clone() }), off);
+    assert_ne!(picture(on), off);
+}
