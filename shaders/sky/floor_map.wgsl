@@ -1,6 +1,7 @@
 // What a floor sees of the sky: for places on a map of it the light that falls on a surface which faces up, as moments over
 // the directions above, C₀ = 4 ⟨T max(n·ω, 0)⟩ and C₁ = 4 ⟨T max(n·ω, 0) ω⟩: E/π = l₀ C₀ + l₁ · C₁. Places lie beside and
-// under the grid, too: light that has passed it has the transmittance of the ray where that left it.
+// under the grid, too: light that has passed it has the transmittance of the ray where that left it. The cosine is in the
+// directions, which are denser above.
 #import "sky/rays.wgsl"
 #import "sky/near.wgsl"
 
@@ -13,9 +14,6 @@ struct FloorMap {
     size: u32,
     along_y: vec3f,
     pad0: f32,
-    // Where the floor faces, in scene space.
-    up: vec3f,
-    pad1: f32,
 }
 
 @group(0) @binding(1) var<uniform> bound_map: FloorMap;
@@ -61,7 +59,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             passed_by(rays, low + vec2f(1.0, 1.0), n, size),
             f.x,
         );
-        sum += rays.weight * mix(near, far, f.y) * max(dot(map.up, rays.towards), 0.0) * vec4f(rays.towards, 1.0);
+        sum += rays.weight * mix(near, far, f.y) * vec4f(rays.towards, 1.0);
     }
     sums[at] = sum;
     textureStore(moments, vec3u(id.xy, 0u), sum * map.share);

@@ -3,9 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Reference;
-use super::shade::linear_from_srgb;
 use super::shadow_ray::ShadowRays;
+use super::{Reference, linear_from_srgb};
 use crate::model::{LightKind, Projection, SceneLight, ShadowAlgorithm};
 use crate::plan::SweepFrame;
 

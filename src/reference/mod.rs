@@ -16,13 +16,13 @@
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
-//! | the light of a sky | `sky` | [`Reference::openness`], [`Reference::picture`] |
-//! | light that bounces | `bounces` | [`Reference::bounced`], [`Reference::picture`] |
+//! | the light of a sky | `around/sky` | [`Reference::openness`], [`Reference::picture`] |
+//! | light that bounces | `around/bounces` | [`Reference::bounced`], [`Reference::picture`] |
 //! | the floor | `floor` | [`Reference::floor`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
+mod around;
 mod back_project;
-mod bounces;
 mod eye;
 mod field;
 mod floor;
@@ -34,17 +34,16 @@ mod remains;
 mod shade;
 mod shadow_ray;
 mod sheet;
-mod sky;
 #[cfg(test)]
 mod tests;
 
+pub use around::bounces::{Bounced, Medium};
+pub use around::sky::Openness;
 pub use back_project::Attenuation;
-pub use bounces::{Bounced, Medium};
 pub use field::pyramid::Pyramid;
 pub use field::{Field, Rounding};
 pub use kernel::{cubic_b_spline, gaussian, tent};
 pub use light::ViewSheets;
-pub use sky::Openness;
 
 use glam::DVec3;
 
@@ -236,4 +235,10 @@ impl<'a> Reference<'a> {
 /// The kernels' width relative to the right one.
 fn kernel_width(fault: Fault) -> f64 {
     if fault == Fault::WiderKernel { 1.05 } else { 1.0 }
+}
+
+/// One sRGB component to linear light (IEC 61966-2-1); the reference has its own.
+fn linear_from_srgb(encoded: f32) -> f64 {
+    let encoded = f64::from(encoded);
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

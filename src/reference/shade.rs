@@ -3,15 +3,15 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::around::bounces::Bounced;
+use super::around::sky::Openness;
 use super::back_project::Attenuation;
-use super::bounces::Bounced;
 use super::field::classified::Side;
 use super::field::pyramid::MAX_LEVEL;
 use super::kernel::Profile;
 use super::remains::cut::Remaining;
 use super::shadow_ray::ShadowRays;
-use super::sky::Openness;
-use super::{Fault, Reference, gather};
+use super::{Fault, Reference, gather, linear_from_srgb};
 use crate::model::{
     BakedTransfer, Kernel, Light, LightKind, NearField, Projection, SceneLight, ShadowAlgorithm, Sides,
 };
@@ -61,12 +61,6 @@ enum Attenuated<'r> {
     Not,
     Volume(&'r Attenuation),
     Rays(Box<ShadowRays<'r>>),
-}
-
-/// One sRGB component to linear light (IEC 61966-2-1); the reference has its own.
-pub(super) fn linear_from_srgb(encoded: f32) -> f64 {
-    let encoded = f64::from(encoded);
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// What the gradient says about a sample.

@@ -243,9 +243,9 @@ pub(crate) const SAME_OPENNESS: Limit = Limit { max: 2e-3, rmse: 3e-4 };
 /// Light that has bounced on the GPU beside that of the reference, whose lights are about 1: numbers with 11 bits at every
 /// bounce, of which the last is told from the two before.
 pub(crate) const SAME_BOUNCED: Limit = Limit { max: 1.5e-3, rmse: 2e-4 };
-/// The same beside random walks, the root mean square of the difference over the mean of what has bounced, which is a part
-/// of all light: what blocks of a voxel and 64 directions leave, and walks, of which so many are within 1 %.
-pub(crate) const BOUNCED_BY_WALKS: f64 = 0.025;
+/// All light within matter beside random walks, the root mean square of the difference over the mean: what blocks of a voxel
+/// and 64 directions leave, and walks, of which so many are within 1 %.
+pub(crate) const LIGHT_BY_WALKS: f64 = 0.02;
 /// How far all light in a white furnace is from 1: what twelve bounces and their ratio leave of infinitely many.
 pub(crate) const FURNACE: f64 = 0.01;
 /// What a half space gives back of light, relative: 64 directions, and blocks of half an optical depth.

@@ -265,7 +265,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         ("eye/gather.wgsl", layout!(Sky { red, green, blue, lookup, ahead })),
         ("sky/blocks.wgsl", layout!(Blocks { dims, voxel_step, level, offset, edge, albedo, shading_cut })),
-        ("sky/floor_map.wgsl", layout!(FloorMap { origin, share, along_x, size, along_y, pad0, up, pad1 })),
+        ("sky/floor_map.wgsl", layout!(FloorMap { origin, share, along_x, size, along_y, pad0 })),
         (
             "sky/sweep.wgsl",
             layout!(SkyRays {

@@ -8,8 +8,12 @@ use crate::cli::CliError;
 use crate::model::{Kernel, Resolution, ReverseKernel, Settings, SkyMode};
 
 /// Bounces, directions and resolutions that are timed.
-const BUILDS: [(u32, u32, Resolution); 3] =
-    [(4, 6, Resolution::Quarter), (8, 14, Resolution::Quarter), (8, 14, Resolution::Half)];
+const BUILDS: [(u32, u32, Resolution); 4] = [
+    (3, 14, Resolution::Quarter),
+    (4, 64, Resolution::Quarter),
+    (8, 64, Resolution::Quarter),
+    (4, 64, Resolution::Half),
+];
 
 impl Bench<'_> {
     /// Fillings of the volume of bounced light in units of B, the filling of one parallel light with the B-spline both ways;

@@ -1,39 +1,46 @@
 //! The filling of a volume of light that has bounced.
 
-use std::ops::Range;
-
 use glam::DVec3;
 
-use super::volume::{BouncesVolume, NUMBERS_BYTES};
+use super::textures::{Textures, directions_of_a_batch};
+use super::volume::BouncesVolume;
 use crate::gpu::light::packed::pack_light;
 use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{Constants, Only, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::sky::blocks::BlocksPass;
-use crate::gpu::sky::sweep::{BATCH_BLOCKS, MOST_LAYERS, SweepVariant, pack};
+use crate::gpu::sky::sweep::{SweepVariant, pack};
+use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::Tables;
-use crate::gpu::volume::{Gpu, texture_3d};
-use crate::gpu::{Context, GpuError, RenderOptions};
+use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{MAX_LIGHTS, Settings};
 use crate::plan::{BouncesKey, LitLights, SweepFrame, sweep_directions};
-
-/// Most texels of the rays of a batch: 128 MiB.
-const BATCH_TEXELS: usize = 1 << 24;
 
 /// A piece of the filling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BounceStep {
     /// What light meets.
     Blocks,
-    /// A batch of directions in which the sky's light is followed, or that of a bounce.
-    Batch { of_sky: bool, bounce: u32, batch: usize },
+    /// A batch of directions in which light is followed, and whose.
+    Batch(Followed, usize),
     /// What unscattered light makes blocks give off.
     First,
     /// What so many bounces make them give off for the next.
     Source { bounce: u32 },
     /// What all bounces have brought.
     Outcome,
+}
+
+/// Whose light is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Followed {
+    /// A sky's.
+    Sky,
+    /// What blocks give off, for what it makes them give off in turn.
+    Bounce,
+    /// The same for the last time, in more directions: what is seen.
+    Last,
 }
 
 /// What of a picture bounced light is made from.
@@ -48,8 +55,8 @@ pub(crate) struct Look<'a> {
 /// The filling of a volume of light that has bounced.
 #[derive(Debug)]
 pub(crate) struct BouncesBuild {
-    /// Rays in every direction.
-    frames: Vec<SweepFrame>,
+    /// Rays in the directions of a bounce, and in those of the last.
+    frames: [Vec<SweepFrame>; 2],
     /// Directions of a batch.
     each: usize,
     bounces: u32,
@@ -57,29 +64,6 @@ pub(crate) struct BouncesBuild {
     points: u32,
     has_sky: bool,
     textures: Textures,
-}
-
-/// What only the filling needs.
-#[derive(Debug)]
-struct Textures {
-    /// What blocks give off, and their optical depth, with one of nothing around the grid.
-    medium: wgpu::TextureView,
-    /// The light along rays: columns and rows of them, and a layer for each slice of each direction.
-    sheets: wgpu::TextureView,
-    sheet_size: [usize; 3],
-    /// What blocks scatter, and their optical depth.
-    scattering: wgpu::Buffer,
-    /// What they give off of unscattered light.
-    first: wgpu::Buffer,
-    /// What a bounce brings them.
-    sums: wgpu::Buffer,
-    /// What the bounce before had brought.
-    last: wgpu::Buffer,
-    /// How much more that was than the one before that.
-    change: wgpu::Buffer,
-    /// What a bounce brings of what the last did.
-    ratio: wgpu::Buffer,
-    bytes: u64,
 }
 
 impl BouncesBuild {
@@ -94,32 +78,43 @@ impl BouncesBuild {
         volume: &BouncesVolume,
     ) -> Result<Self, GpuError> {
         let scene = &gpu.volume.scene;
-        let frames: Vec<_> = sweep_directions(key.directions())
-            .into_iter()
-            .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
-            .collect();
-        let each = directions_of_a_batch(volume.dims, &frames);
-        let textures = Textures::new(gpu.context, volume, &frames, each)?;
+        let frames = [key.directions_of_a_bounce(), key.directions()].map(|directions| {
+            sweep_directions(directions)
+                .into_iter()
+                .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
+                .collect::<Vec<_>>()
+        });
+        let rays = [0, 1]
+            .map(|side| frames.iter().flatten().map(|frame| frame.size[side] as usize).max().unwrap_or(1));
+        let each = directions_of_a_batch(volume.dims, rays);
+        let textures = Textures::new(gpu.context, volume, rays, each)?;
         Ok(Self { frames, each, bounces: key.bounces(), points: key.points(), has_sky, textures })
     }
 
     /// Its pieces, in order.
     pub(crate) fn steps(&self) -> Vec<BounceStep> {
-        let batches = |of_sky: bool, bounce: u32| {
-            let count = self.frames.len().div_ceil(self.each);
-            (0..count).map(move |batch| BounceStep::Batch { of_sky, bounce, batch })
+        let batches = |followed: Followed| {
+            let count = self.frames(followed).len().div_ceil(self.each);
+            (0..count).map(move |batch| BounceStep::Batch(followed, batch))
         };
         let mut steps = vec![BounceStep::Blocks];
         if self.has_sky {
-            steps.extend(batches(true, 0));
+            steps.extend(batches(Followed::Sky));
         }
         steps.push(BounceStep::First);
         for bounce in 0..self.bounces {
             steps.push(BounceStep::Source { bounce });
-            steps.extend(batches(false, bounce));
+            let is_last = bounce + 1 == self.bounces;
+            steps.extend(batches(if is_last { Followed::Last } else { Followed::Bounce }));
         }
         steps.push(BounceStep::Outcome);
         steps
+    }
+
+    /// Rays along which light is followed.
+    fn frames(&self, followed: Followed) -> &[SweepFrame] {
+        let [bounce, last] = &self.frames;
+        if followed == Followed::Last { last } else { bounce }
     }
 
     /// Bytes that only the filling needs.
@@ -138,17 +133,14 @@ impl BouncesBuild {
     ) -> Result<(), GpuError> {
         match step {
             BounceStep::Blocks => self.fill_blocks(gpu, look, volume, encoder),
-            BounceStep::Batch { of_sky, bounce, batch } => {
-                let taken = batch * self.each..((batch + 1) * self.each).min(self.frames.len());
-                let everywhere = !of_sky && bounce + 2 >= self.bounces;
-                let sky = of_sky.then_some(look.settings);
-                self.fill_batch(gpu, volume, (taken, everywhere), sky, encoder)
+            BounceStep::Batch(followed, batch) => {
+                self.fill_batch(gpu, look.settings, volume, (followed, batch), encoder)
             }
             BounceStep::First => self.fill_first(gpu, look, volume, encoder),
             BounceStep::Source { bounce } => {
-                let shared = self.shared(gpu, volume, bounce + 1 == self.bounces);
-                // The last leaps, and every other before it: two bounces tell where to.
-                let leaps = bounce > 1 && (self.bounces - bounce).is_multiple_of(2);
+                let shared = self.shared(gpu, volume, Followed::Bounce);
+                // The last but one leaps, and every other before it: two bounces tell where to.
+                let leaps = bounce > 1 && (self.bounces - 1 - bounce).is_multiple_of(2);
                 if leaps {
                     self.whole(gpu, &Only("bounces/ratio.wgsl"), &shared, volume, encoder)?;
                 }
@@ -156,19 +148,18 @@ impl BouncesBuild {
                 self.whole(gpu, &source, &shared, volume, encoder)
             }
             BounceStep::Outcome => {
-                let shared = self.shared(gpu, volume, true);
-                self.whole(gpu, &Only("bounces/ratio.wgsl"), &shared, volume, encoder)?;
+                let shared = self.shared(gpu, volume, Followed::Last);
                 self.whole(gpu, &Only("bounces/outcome.wgsl"), &shared, volume, encoder)
             }
         }
     }
 
-    /// What passes over blocks share; all of them, or those in which light is scattered.
-    fn shared(&self, gpu: Gpu<'_>, volume: &BouncesVolume, everywhere: bool) -> wgpu::Buffer {
+    /// What passes over blocks share: those in which light is scattered, or for the last bounce all of them.
+    fn shared(&self, gpu: Gpu<'_>, volume: &BouncesVolume, followed: Followed) -> wgpu::Buffer {
         let uniform = uniforms::Bounce {
             dims: volume.dims.map(|n| n as u32),
-            share: 1.0 / self.frames.len() as f32,
-            least: if everywhere { -1.0 } else { f32::MIN_POSITIVE },
+            share: 1.0 / self.frames(followed).len() as f32,
+            least: if followed == Followed::Last { -1.0 } else { f32::MIN_POSITIVE },
             pad0: 0.0,
             pad1: 0.0,
             pad2: 0.0,
@@ -207,22 +198,21 @@ impl BouncesBuild {
     fn fill_batch(
         &self,
         gpu: Gpu<'_>,
+        settings: &Settings,
         volume: &BouncesVolume,
-        (taken, everywhere): (Range<usize>, bool),
-        sky: Option<&Settings>,
+        (followed, batch): (Followed, usize),
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Textures { medium, sheets, sheet_size, scattering, sums, .. } = &self.textures;
         let edge = gpu.volume.scene.smallest_edge();
         let slices = volume.dims.into_iter().max().unwrap_or(1);
-        let radiance = sky.and_then(|settings| settings.sky.radiance(settings.camera.up));
+        let radiance = settings.sky.radiance(settings.camera.up).filter(|_| followed == Followed::Sky);
         let arriving = |towards: DVec3| {
             radiance.map_or(DVec3::ZERO, |sky| {
                 DVec3::from(std::array::from_fn(|c| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0)))
             })
         };
-        let has_sums = if taken.start == 0 { 0.0 } else { 1.0 };
-        let frames = &self.frames[taken];
+        let frames = self.frames(followed).chunks(self.each).nth(batch).unwrap_or_default();
         // What is left over has no weight, and no rays.
         let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
         for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
@@ -233,7 +223,7 @@ impl BouncesBuild {
             dims: volume.dims.map(|n| n as u32),
             share: 0.0,
             block_scale: reciprocal(volume.dims.map(|n| n + 2)),
-            has_sums,
+            has_sums: if batch == 0 { 0.0 } else { 1.0 },
             sheet_scale: reciprocal(*sheet_size),
             pad0: 0.0,
             rays,
@@ -256,7 +246,7 @@ impl BouncesBuild {
 
         let gather =
             gpu.shaders.pipeline(&SweepVariant { shader: "bounces/gather.wgsl", directions: self.each })?;
-        let shared = self.shared(gpu, volume, everywhere);
+        let shared = self.shared(gpu, volume, followed);
         let entries = [
             buffer("bound_sweep", &uniform),
             view_of("sheets", sheets),
@@ -296,7 +286,7 @@ impl BouncesBuild {
             lights,
         };
         let uniform = gpu.uniform("Bounces::first", uniform);
-        let shared = self.shared(gpu, volume, false);
+        let shared = self.shared(gpu, volume, Followed::Sky);
         let pipeline = gpu.shaders.pipeline(&Only("bounces/first.wgsl"))?;
         let entries = [
             buffer("bound_first", &uniform),
@@ -323,22 +313,23 @@ impl BouncesBuild {
     ) -> Result<(), GpuError> {
         let Textures { medium, scattering, first, sums, last, change, ratio, .. } = &self.textures;
         let shader = variant.shader();
-        let mut entries: Vec<Named<'_>> =
-            vec![buffer("bound_bounce", shared), buffer("sums", sums), buffer("last", last)];
+        let mut entries: Vec<Named<'_>> = vec![buffer("bound_bounce", shared), buffer("sums", sums)];
         match shader {
             "bounces/source.wgsl" => entries.extend([
                 buffer("scattering", scattering),
                 buffer("first", first),
+                buffer("last", last),
                 buffer("change", change),
                 view_of("medium", medium),
                 buffer("ratio", ratio),
             ]),
             "bounces/ratio.wgsl" => entries.extend([
                 buffer("scattering", scattering),
+                buffer("last", last),
                 buffer("change", change),
                 buffer("ratio", ratio),
             ]),
-            _ => entries.extend([buffer("ratio", ratio), view_of("bounced", &volume.view)]),
+            _ => entries.push(view_of("bounced", &volume.view)),
         }
         let pipeline = gpu.shaders.pipeline(variant)?;
         let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
@@ -348,63 +339,8 @@ impl BouncesBuild {
     }
 }
 
-/// As many directions in a batch as it has room for, and as many in each.
-fn directions_of_a_batch(dims: [usize; 3], frames: &[SweepFrame]) -> usize {
-    let blocks: usize = dims.iter().product();
-    let slices = dims.into_iter().max().unwrap_or(1);
-    let [width, height] =
-        [0, 1].map(|side| frames.iter().map(|frame| frame.size[side] as usize).max().unwrap_or(1));
-    let most = (BATCH_BLOCKS / blocks.max(1))
-        .min(MOST_LAYERS / slices)
-        .min(BATCH_TEXELS / (width * height * slices))
-        .clamp(1, uniforms::MAX_SKY_RAYS);
-    frames.len().div_ceil(frames.len().div_ceil(most))
-}
-
 fn groups_of(volume: &BouncesVolume) -> [u32; 3] {
     volume.dims.map(|n| (n as u32).div_ceil(4))
-}
-
-impl Textures {
-    fn new(
-        context: &Context,
-        volume: &BouncesVolume,
-        frames: &[SweepFrame],
-        each: usize,
-    ) -> Result<Self, GpuError> {
-        let dims = volume.dims;
-        let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
-        let format = wgpu::TextureFormat::Rgba16Float;
-        let slices = dims.into_iter().max().unwrap_or(1);
-        let across = |side: usize| frames.iter().map(|frame| frame.size[side] as usize).max().unwrap_or(1);
-        let sheet_size = [across(0), across(1), slices * each];
-        let medium_size = dims.map(|n| n + 2);
-        let medium = context.texture(&texture_3d("Bounces::medium", medium_size, format, usages))?;
-        let sheets = context.texture(&texture_3d("Bounces::sheets", sheet_size, format, usages))?;
-        let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
-        let list = |label, count: u64| {
-            context.empty_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: NUMBERS_BYTES * count,
-                usage: wgpu::BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            })
-        };
-        let blocks = texels(dims);
-        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self {
-            medium: view(&medium),
-            sheets: view(&sheets),
-            sheet_size,
-            scattering: list("Bounces::scattering", blocks),
-            first: list("Bounces::first", blocks),
-            sums: list("Bounces::sums", blocks),
-            last: list("Bounces::last", blocks),
-            change: list("Bounces::change", blocks),
-            ratio: list("Bounces::ratio", 1),
-            bytes: 8 * (texels(medium_size) + texels(sheet_size)) + NUMBERS_BYTES * (5 * blocks + 1),
-        })
-    }
 }
 
 /// What tells the first source from those of bounces.

@@ -5,4 +5,5 @@
 //! gathered makes them give off more, bounce by bounce. What infinitely many would bring is told from the last two.
 
 pub(super) mod build;
+mod textures;
 pub(super) mod volume;

@@ -1,9 +1,8 @@
 //! The eye pass: from density and attenuation to linear light.
 
+use super::looked_up::{Around, LookedUp, light_bind_group, pack_bounces, pack_sky};
 use crate::gpu::light::combine::CombinedLight;
-use crate::gpu::light::packed::{
-    Around, LightInput, LookedUp, light_bind_group, pack_bounces, pack_light, pack_sky,
-};
+use crate::gpu::light::packed::{LightInput, pack_light};
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{

@@ -2,3 +2,4 @@
 
 pub(super) mod floor;
 pub(super) mod gather;
+pub(super) mod looked_up;

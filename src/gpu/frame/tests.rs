@@ -91,6 +91,7 @@ fn memory_can_be_refused_here_and_there_in_a_scattered_picture() {
 fn memory_can_be_refused_anywhere_under_a_sky() {
     let (dataset, mut settings) = scene();
     settings.sky.mode = SkyMode::Gradient;
+    settings.scattering.bounces = 1;
     settings.shadows.storage = LightStorage::Combined;
     settings.floor.on = true;
     refused_anywhere(&settings, &dataset, 1);

@@ -7,7 +7,7 @@ use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums};
 use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::eye::gather::{EyePass, SamplingVariant};
-use crate::gpu::light::packed::{LookedUp, light_bind_group};
+use crate::gpu::eye::looked_up::{LookedUp, light_bind_group};
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::variant::{Constants, Only, ShadingVariant, Variant, flag};
 use crate::gpu::resources::pass;

@@ -6,7 +6,7 @@ use super::voxels::Scattering;
 use crate::data::BRICK_EDGE;
 use crate::gpu::GpuError;
 use crate::gpu::eye::gather::EyePass;
-use crate::gpu::light::packed::{LookedUp, light_bind_group};
+use crate::gpu::eye::looked_up::{LookedUp, light_bind_group};
 use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::uniforms::Phase;

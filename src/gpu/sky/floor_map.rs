@@ -52,8 +52,6 @@ impl FloorMap {
             size: MAP_EDGE,
             along_y: along(front),
             pad0: 0.0,
-            up: self.place.up.direction().as_vec3().into(),
-            pad1: 0.0,
         }
     }
 }

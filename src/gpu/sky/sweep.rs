@@ -15,7 +15,7 @@ use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::Settings;
-use crate::plan::{SkyKey, SweepFrame, sweep_directions};
+use crate::plan::{SkyKey, SweepFrame, directions_above, sweep_directions};
 
 /// Blocks times directions of a batch: some 0.2 s on a software adapter.
 pub(crate) const BATCH_BLOCKS: usize = 1 << 23;
@@ -28,6 +28,8 @@ pub(crate) const MOST_LAYERS: usize = 2048;
 pub(crate) struct SkyBuild {
     /// Rays from every direction, in the order in which they are followed.
     frames: Vec<SweepFrame>,
+    /// Rays from above, for a floor: those from all around would draw petals under what is small.
+    above: Vec<SweepFrame>,
     /// Directions of a batch.
     each: usize,
     /// What multiplies the extinction.
@@ -57,19 +59,28 @@ impl SkyBuild {
     /// When memory is out.
     pub(crate) fn new(gpu: Gpu<'_>, key: &SkyKey, volume: &SkyVolume) -> Result<Self, GpuError> {
         let scene = &gpu.volume.scene;
-        let frames: Vec<_> = sweep_directions(key.directions())
-            .into_iter()
-            .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
-            .collect();
+        let frames_of = |directions: Vec<DVec3>| {
+            let frames =
+                directions.into_iter().map(|towards| SweepFrame::new(scene, volume.divisor, towards));
+            frames.collect::<Vec<_>>()
+        };
+        let frames = frames_of(sweep_directions(key.directions()));
+        let up = volume.floor.as_ref().map(|floor| floor.place.up.direction());
+        let above = up.map_or_else(Vec::new, |up| frames_of(directions_above(up, key.directions())));
         let blocks: usize = volume.dims.iter().product();
         let slices = volume.dims.into_iter().max().unwrap_or(1);
         let each = (BATCH_BLOCKS / blocks.max(1)).min(MOST_LAYERS / slices).clamp(1, uniforms::MAX_SKY_RAYS);
-        let textures = Textures::new(gpu.context, volume, &frames, each)?;
-        Ok(Self { frames, each, density_scale: key.density_scale(), textures })
+        let textures = Textures::new(gpu.context, volume, frames.iter().chain(&above), each)?;
+        Ok(Self { frames, above, each, density_scale: key.density_scale(), textures })
     }
 
     /// Batches of directions.
     pub(crate) fn batches(&self) -> usize {
+        self.batches_around() + self.above.len().div_ceil(self.each)
+    }
+
+    /// Those from all around, which come first.
+    fn batches_around(&self) -> usize {
         self.frames.len().div_ceil(self.each)
     }
 
@@ -111,8 +122,11 @@ impl SkyBuild {
     ) -> Result<(), GpuError> {
         let Textures { blocks, sheets, sheet_size, sums, .. } = &self.textures;
         let edge = gpu.volume.scene.smallest_edge();
-        let taken: Range<usize> = batch * self.each..((batch + 1) * self.each).min(self.frames.len());
-        let frames = &self.frames[taken.clone()];
+        let around = self.batches_around();
+        let (all, batch, is_above) =
+            if batch < around { (&self.frames, batch, false) } else { (&self.above, batch - around, true) };
+        let taken: Range<usize> = batch * self.each..((batch + 1) * self.each).min(all.len());
+        let frames = &all[taken.clone()];
         let slices = volume.dims.into_iter().max().unwrap_or(1);
         // What is left over has no weight, and no rays.
         let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
@@ -141,6 +155,9 @@ impl SkyBuild {
         let groups = [across(0), across(1), frames.len() as u32];
         pass::dispatch(encoder, "Sky::sweep", &sweep, &[&own], groups);
 
+        if is_above {
+            return self.fill_floor(gpu, volume, &uniform, taken.end, encoder);
+        }
         let gather =
             gpu.shaders.pipeline(&SweepVariant { shader: "sky/moments.wgsl", directions: self.each })?;
         let entries = [
@@ -153,7 +170,7 @@ impl SkyBuild {
         let own = gpu.bind("Sky::moments", &gather, 0, &entries);
         let groups = volume.dims.map(|n| (n as u32).div_ceil(4));
         pass::dispatch(encoder, "Sky::moments", &gather, &[&own], groups);
-        self.fill_floor(gpu, volume, &uniform, taken.end, encoder)
+        Ok(())
     }
 
     /// Adds what the floor sees of a batch of directions, the last before `taken`, to what came before.
@@ -166,9 +183,7 @@ impl SkyBuild {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let (Some(floor), Some(sums)) = (&volume.floor, &self.textures.floor_sums) else { return Ok(()) };
-        let up = floor.place.up.direction();
-        let open: f64 = self.frames[..taken].iter().map(|frame| frame.towards.dot(up).max(0.0)).sum();
-        let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / open.max(1e-9));
+        let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / taken as f64);
         let uniform = gpu.uniform("Sky::floor_map", uniform);
         let variant = SweepVariant { shader: "sky/floor_map.wgsl", directions: self.each };
         let pipeline = gpu.shaders.pipeline(&variant)?;
@@ -186,17 +201,17 @@ impl SkyBuild {
 }
 
 impl Textures {
-    fn new(
+    fn new<'a>(
         context: &Context,
         volume: &SkyVolume,
-        frames: &[SweepFrame],
+        frames: impl Iterator<Item = &'a SweepFrame> + Clone,
         each: usize,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims;
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = context.storage_format;
         let slices = dims.into_iter().max().unwrap_or(1);
-        let across = |side: usize| frames.iter().map(|frame| frame.size[side] as usize).max().unwrap_or(1);
+        let across = |side: usize| frames.clone().map(|frame| frame.size[side] as usize).max().unwrap_or(1);
         let sheet_size = [across(0), across(1), slices * each];
         let block_size = dims.map(|n| n + 2);
         let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;

@@ -1,7 +1,7 @@
 //! Presets that come with the program: transfer functions and materials by domain.
 //!
 //! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the range that the
-//! look chooses (`"_values": "relative"`). Those of light are for any data: they have a sky, and mostly no other light.
+//! look chooses (`"_values": "relative"`). Those of light are for any data: they have a sky, and say whether light bounces.
 //! Those of the paper also say how shadows and sheets are made, as the paper has it, and that of the benchmarks says
 //! everything; by all others camera, lights, shadows and sampling stay as they are.
 
@@ -25,7 +25,7 @@ macro_rules! presets {
 }
 
 /// All of them, domain by domain.
-pub const PRESETS: [Preset; 19] = presets![
+pub const PRESETS: [Preset; 22] = presets![
     "ct/bone",
     "ct/muscle_and_skin",
     "ct/angiography",
@@ -41,6 +41,9 @@ pub const PRESETS: [Preset; 19] = presets![
     "light/overcast",
     "light/window",
     "light/hollows",
+    "light/wax",
+    "light/cloud",
+    "light/ink_drawing",
     "paper/lobster",
     "paper/fuel",
     "paper/chair",

@@ -28,6 +28,21 @@ pub fn sweep_directions(count: u32) -> Vec<DVec3> {
     ordered
 }
 
+/// Unit vectors towards `count` parts of the half of the sky above, which light a surface that faces `up` equally.
+///
+/// Even over the disc under that half, they lie denser above than near the horizon, as the cosine has it: a spiral with
+/// rᵢ = √((i + ½)/K) at the angle iπ(3 − √5).
+pub fn directions_above(up: DVec3, count: u32) -> Vec<DVec3> {
+    let golden = PI * (3.0 - 5f64.sqrt());
+    let (right, front) = up.any_orthonormal_pair();
+    let direction = |i: u32| {
+        let square = (f64::from(i) + 0.5) / f64::from(count);
+        let (sin, cos) = (golden * f64::from(i)).sin_cos();
+        (right * cos + front * sin) * square.sqrt() + up * (1.0 - square).sqrt()
+    };
+    (0..count).map(direction).collect()
+}
+
 /// Parallel rays through a grid of blocks of voxels, which cross its slices along one axis of the grid in their middles: a
 /// place in every slice is between the same four rays all along a step.
 ///
@@ -132,6 +147,19 @@ mod tests {
             // Nowhere is farther from all of them than 80°.
             let farthest = all.iter().map(|a| some.iter().map(|b| a.dot(*b)).fold(-1.0, f64::max));
             assert!(farthest.fold(1.0, f64::min) > 80f64.to_radians().cos(), "{taken}");
+        }
+    }
+
+    #[test]
+    fn directions_above_light_what_faces_up_equally() {
+        for up in [DVec3::Z, DVec3::NEG_Y] {
+            let all = directions_above(up, 64);
+            let mean = all.iter().sum::<DVec3>() / 64.0;
+            // The mean of ω cos θ over π, over that of cos θ.
+            assert!((mean - up * 2.0 / 3.0).length() < 0.01, "{mean}");
+            assert!(
+                all.iter().all(|towards| towards.dot(up) > 0.05 && (towards.length() - 1.0).abs() < 1e-12)
+            );
         }
     }
 

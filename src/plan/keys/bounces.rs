@@ -33,10 +33,10 @@ pub struct BouncesKey {
 /// Most points that stand for a light: what has bounced shows no edge of a shadow.
 const MOST_POINTS: u32 = 8;
 
-/// Previews follow so many bounces, in so many directions: the end of the series is told from them as from more.
-const PREVIEW_BOUNCES: u32 = 4;
+/// Previews follow so many bounces, in so many directions: the end of the series is told from them nearly as from more.
+const PREVIEW_BOUNCES: u32 = 3;
 /// See [`PREVIEW_BOUNCES`].
-const PREVIEW_DIRECTIONS: u32 = 6;
+const PREVIEW_DIRECTIONS: u32 = 14;
 
 impl BouncesKey {
     /// The key of the volume that a picture needs; `None` where no light bounces.
@@ -79,7 +79,7 @@ impl BouncesKey {
     pub fn coarse(&self) -> Self {
         Self {
             bounces: self.bounces.min(PREVIEW_BOUNCES),
-            directions: PREVIEW_DIRECTIONS,
+            directions: self.directions.min(PREVIEW_DIRECTIONS),
             resolution: Resolution::Quarter,
             points: 1,
             ..self.clone()
@@ -91,9 +91,14 @@ impl BouncesKey {
         self.bounces
     }
 
-    /// In how many directions light is followed.
+    /// In how many directions light is followed on its last bounce.
     pub fn directions(&self) -> u32 {
         self.directions
+    }
+
+    /// And on all before.
+    pub fn directions_of_a_bounce(&self) -> u32 {
+        Scattering::directions_of_a_bounce(self.directions)
     }
 
     /// How finely.

@@ -21,6 +21,8 @@ enum Cost {
     Eye,
     /// What is open of the sky, and the picture.
     Sky,
+    /// Light that bounces, and the picture.
+    Bounces,
     /// So many light volumes, and the picture.
     Lights(u32),
     /// Everything, from the upload on.
@@ -33,7 +35,8 @@ fn cost(runs: Runs) -> Cost {
         Runs { volume: 1.., .. } => panic!("the volume is there: {runs:?}"),
         Runs { light_volumes, eye: 1.., .. } if light_volumes > 0 => Cost::Lights(light_volumes),
         Runs { light_volumes: 0, sky: 1, eye: 1.., .. } => Cost::Sky,
-        Runs { light_volumes: 0, sky: 0, eye: 1.., .. } => Cost::Eye,
+        Runs { light_volumes: 0, sky: 0, bounces: 1, eye: 1.., .. } => Cost::Bounces,
+        Runs { light_volumes: 0, sky: 0, bounces: 0, eye: 1.., .. } => Cost::Eye,
         Runs { light_volumes: 0, eye: 0, floor: 1.., display: 1, .. } => Cost::Floor,
         Runs { light_volumes: 0, eye: 0, floor: 0, display: 1, tables: 0, .. } => Cost::Display,
         runs if runs == Runs::default() => Cost::Nothing,
@@ -181,6 +184,32 @@ fn a_sky_costs_a_picture_unless_something_else_is_in_its_way() {
         let changed = apply_path(&lit, path, value).expect("a setting");
         let runs = bench.runs(&lit, &changed, &RenderOptions::default());
         assert_eq!((cost(runs), runs.sky), (expected, filled), "{path} = {value}");
+    }
+}
+
+/// Light bounces anew where lights, colours or what is in its way are others, and never because of the view.
+#[test]
+fn light_that_bounces_is_kept_while_the_camera_turns() {
+    let bench = Bench::new();
+    let lit = apply_path(&home(), "scattering.bounces", "2").expect("a setting");
+    let lit = apply_path(&lit, "scattering.directions", "6").expect("a setting");
+    for (path, value, expected, filled) in [
+        ("camera.azimuth_deg", "10", Cost::Eye, 0),
+        ("scattering.strength", "2", Cost::Eye, 0),
+        ("scattering.anisotropy", "0.3", Cost::Eye, 0),
+        ("scattering.bounces", "0", Cost::Eye, 0),
+        ("shadows.strength", "0.5", Cost::Eye, 0),
+        ("shading.diffuse", "0.5", Cost::Eye, 0),
+        ("lights.1.color", "[1,0,0]", Cost::Bounces, 1),
+        ("transfer.points.0.color", "[1,0,0]", Cost::Bounces, 1),
+        ("shading.emission", "0.5", Cost::Bounces, 1),
+        ("scattering.albedo", "0.5", Cost::Bounces, 1),
+        ("lights.1.position", "[0,6,1]", Cost::Lights(1), 1),
+        ("transfer.points.1.opacity", "0.4", Cost::Lights(3), 1),
+    ] {
+        let changed = apply_path(&lit, path, value).expect("a setting");
+        let runs = bench.runs(&lit, &changed, &RenderOptions::default());
+        assert_eq!((cost(runs), runs.bounces), (expected, filled), "{path} = {value}");
     }
 }
 

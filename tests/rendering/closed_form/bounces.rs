@@ -88,7 +88,7 @@ fn a_half_space_gives_back_what_chandrasekhar_says() {
     let dims = [33, 33, 27];
     let slab = volume(dims, |[_, _, z]| if z >= EMPTY { 1.0 } else { 0.0 });
     for albedo in [0.8, 0.9] {
-        let mut settings = look(PER_VOXEL, (12, albedo, 40));
+        let mut settings = look(PER_VOXEL, (12, albedo, 26));
         settings.lights = vec![scenes::light(LightKind::Parallel, [0.0, 0.0, -1.0])];
         let medium = Reference::new(&slab, &settings, Options::default()).medium();
         let edge = slab.scene().smallest_edge();

@@ -11,7 +11,7 @@ use super::targets::shown_key;
 use crate::gpu::GpuError;
 use crate::gpu::bounces::build::{BounceStep, Look};
 use crate::gpu::eye::floor;
-use crate::gpu::light::packed::{Around, LookedUp};
+use crate::gpu::eye::looked_up::{Around, LookedUp};
 use crate::gpu::output::display::display;
 use crate::gpu::scatter::eye::EyeScatter;
 use crate::gpu::sky::volume::SkyVolume;

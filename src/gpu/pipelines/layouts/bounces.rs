@@ -51,16 +51,7 @@ pub(super) const LAYOUTS: Layouts = &[
             Slot::list(5, "sums", 16, Access::ReadWrite),
         ]],
     ),
-    (
-        "bounces/outcome.wgsl",
-        &[&[
-            BOUNCE,
-            SUMS,
-            Slot::list(7, "last", 16, Access::Read),
-            Slot::list(9, "ratio", 16, Access::Read),
-            Slot::target(10, "bounced", Shape::Volume, SIXTEEN_BITS),
-        ]],
-    ),
+    ("bounces/outcome.wgsl", &[&[BOUNCE, SUMS, Slot::target(10, "bounced", Shape::Volume, SIXTEEN_BITS)]]),
     (
         "bounces/ratio.wgsl",
         &[&[

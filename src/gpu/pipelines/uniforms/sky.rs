@@ -73,6 +73,4 @@ pub struct FloorMap {
     pub size: u32,
     pub along_y: [f32; 3],
     pub pad0: f32,
-    pub up: [f32; 3],
-    pub pad1: f32,
 }

@@ -27,10 +27,18 @@ pub struct Scattering {
     pub anisotropy: f64,
     /// Multiplies the extinction that bouncing light meets: less lets it in deeper.
     pub density_scale: f64,
-    /// In how many directions light is followed at every bounce.
+    /// In how many directions light is followed on its last bounce, the one that is seen.
     pub directions: u32,
     /// How finely.
     pub resolution: Resolution,
+}
+
+impl Scattering {
+    /// In how many directions light is followed on all bounces but the last, of which there are `directions`: what they leave
+    /// uneven, the last evens out.
+    pub fn directions_of_a_bounce(directions: u32) -> u32 {
+        (directions / 4).clamp(6, 14)
+    }
 }
 
 impl Default for Scattering {
@@ -41,7 +49,7 @@ impl Default for Scattering {
             strength: 1.0,
             anisotropy: 0.0,
             density_scale: 1.0,
-            directions: 14,
+            directions: 64,
             resolution: Resolution::Quarter,
         }
     }

@@ -60,3 +60,19 @@ fn removing_a_light_rebuilds_nothing() {
     next.settings.lights.remove(0);
     assert_eq!(effect(&keys(&request()), &keys(&next)), Effect::Eye);
 }
+
+#[test]
+fn without_bounces_lights_and_sky_have_colours_for_nothing() {
+    for (path, value) in [
+        ("lights.1.color", "[1,0,0]"),
+        ("lights.1.intensity", "2"),
+        ("transfer.points.0.color", "[1,0,0]"),
+        ("shading.emission", "0.1"),
+        ("sky.intensity", "0.1"),
+        ("scattering.anisotropy", "0.5"),
+    ] {
+        assert_eq!(effect_of(&request(), path, value), Effect::Eye, "{path}");
+    }
+    assert_eq!(effect_of(&request(), "scattering.albedo", "0.5"), Effect::Nothing);
+    assert_eq!(effect_of(&request(), "scattering.bounces", "2"), Effect::Bounces);
+}

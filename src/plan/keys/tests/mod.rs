@@ -259,22 +259,6 @@ fn collect(tree: &Value, path: String, leaves: &mut Vec<String>) {
 }
 
 #[test]
-fn without_bounces_lights_and_sky_have_colours_for_nothing() {
-    for (path, value) in [
-        ("lights.1.color", "[1,0,0]"),
-        ("lights.1.intensity", "2"),
-        ("transfer.points.0.color", "[1,0,0]"),
-        ("shading.emission", "0.1"),
-        ("sky.intensity", "0.1"),
-        ("scattering.anisotropy", "0.5"),
-    ] {
-        assert_eq!(effect_of(&request(), path, value), Effect::Eye, "{path}");
-    }
-    assert_eq!(effect_of(&request(), "scattering.albedo", "0.5"), Effect::Nothing);
-    assert_eq!(effect_of(&request(), "scattering.bounces", "2"), Effect::Bounces);
-}
-
-#[test]
 fn saved_views_are_no_part_of_a_picture() {
     let mut after = request();
     after.settings.views.insert(1, Camera::default());

@@ -7,13 +7,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Reference;
-use super::field::classified::Side;
-use super::field::trilinear;
-use super::shade::linear_from_srgb;
 use super::sky::bordered;
-use crate::model::{LightKind, SKY_AHEAD, SceneLight};
+use crate::model::{LightKind, SKY_AHEAD, Scattering, SceneLight};
 use crate::plan::{SweepFrame, sweep_directions};
+use crate::reference::field::classified::Side;
+use crate::reference::field::trilinear;
+use crate::reference::{Reference, linear_from_srgb};
 
 /// Most points that stand for a light: what has bounced shows no edge of a shadow.
 const MOST_POINTS: u32 = 8;
@@ -46,7 +45,7 @@ pub struct Medium {
 }
 
 /// A light that is on.
-struct Lamp {
+pub(super) struct Lamp {
     points: Vec<SceneLight>,
     rgb: [f64; 3],
     /// Multiplies what it meets: 0 where nothing attenuates it.
@@ -75,7 +74,7 @@ impl Medium {
     }
 
     /// The optical depth along a vector that is a scene unit long, over a part of the way and in steps of that length.
-    fn depth(&self, block: DVec3, along: DVec3, (from, to): (f64, f64), step: f64) -> f64 {
+    pub(super) fn depth(&self, block: DVec3, along: DVec3, (from, to): (f64, f64), step: f64) -> f64 {
         let (mut way, mut depth) = (from, 0.0);
         while way < to {
             let length = step.min(to - way);
@@ -100,38 +99,31 @@ impl Reference<'_> {
     pub fn bounced(&self) -> Bounced {
         let scattering = &self.settings.scattering;
         let medium = self.medium();
-        let frames: Vec<_> = sweep_directions(scattering.directions)
-            .into_iter()
-            .map(|towards| SweepFrame::new(&self.scene, medium.divisor, towards))
-            .collect();
+        let frames_of_a_bounce =
+            self.frames(&medium, Scattering::directions_of_a_bounce(scattering.directions));
+        let frames = self.frames(&medium, scattering.directions);
         let count = medium.extinction.len();
         let nothing = || [(); 3].map(|()| vec![0.0; count]);
-        let sky = self.settings.sky.radiance(self.settings.camera.up);
-        let mut first = nothing();
-        if let Some(sky) = sky {
-            let arriving =
-                |towards: DVec3| std::array::from_fn(|c| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0));
-            first = mean_light(&medium, &frames, &nothing(), arriving);
-        }
-        let lamps = self.lamps();
         let own = self.settings.shading.emission / scattering.albedo;
-        let lit: Vec<_> =
-            (0..count).into_par_iter().map(|at| self.unscattered(&medium, &lamps, at)).collect();
-        for (c, first) in first.iter_mut().enumerate() {
-            first.iter_mut().zip(&lit).for_each(|(sum, light)| *sum += light[c] + own);
-        }
+        let mut first = self.before_bounces(&medium, &frames_of_a_bounce);
+        first.iter_mut().flatten().for_each(|light| *light += own);
         // What bounces have brought in all, and how much more that was than before the last.
         let (mut light, mut change) = (nothing(), nothing());
         for bounce in 1..=scattering.bounces {
             let given: [Vec<f64>; 3] = std::array::from_fn(|c| {
                 (0..count).map(|at| medium.scattering[c][at] * (first[c][at] + light[c][at])).collect()
             });
-            let next = mean_light(&medium, &frames, &given, |_| [0.0; 3]);
+            if bounce == scattering.bounces {
+                // In more directions, for what is seen.
+                light = mean_light(&medium, &frames, &given, |_| [0.0; 3]);
+                break;
+            }
+            let next = mean_light(&medium, &frames_of_a_bounce, &given, |_| [0.0; 3]);
             let more: [Vec<f64>; 3] = std::array::from_fn(|c| {
                 next[c].iter().zip(&light[c]).map(|(next, last)| next - last).collect()
             });
-            // The last leaps to the end of the series, and every other before it.
-            let leaps = bounce > 1 && (scattering.bounces - bounce).is_multiple_of(2);
+            // The last but one leaps to the end of the series, and every other before it.
+            let leaps = bounce > 1 && (scattering.bounces - 1 - bounce).is_multiple_of(2);
             for c in 0..3 {
                 let ratio = if leaps { ratio(&medium, &more[c], &change[c]) } else { 0.0 };
                 let leap =
@@ -141,6 +133,36 @@ impl Reference<'_> {
             change = more;
         }
         Bounced { dims: medium.dims, divisor: medium.divisor, light }
+    }
+
+    /// The mean light over all directions that reaches each block of lights and sky before it has bounced, linear RGB; that of
+    /// the sky from so many directions.
+    pub fn unscattered(&self, medium: &Medium, directions: u32) -> [Vec<f64>; 3] {
+        self.before_bounces(medium, &self.frames(medium, directions))
+    }
+
+    fn before_bounces(&self, medium: &Medium, frames: &[SweepFrame]) -> [Vec<f64>; 3] {
+        let count = medium.extinction.len();
+        let nothing = [(); 3].map(|()| vec![0.0; count]);
+        let mut light = match self.settings.sky.radiance(self.settings.camera.up) {
+            Some(sky) => mean_light(medium, frames, &nothing, |towards| {
+                std::array::from_fn(|c| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0))
+            }),
+            None => nothing,
+        };
+        let lamps = self.lamps();
+        let lit: Vec<_> =
+            (0..count).into_par_iter().map(|at| self.light_in_block(medium, &lamps, at)).collect();
+        for (c, light) in light.iter_mut().enumerate() {
+            light.iter_mut().zip(&lit).for_each(|(sum, light)| *sum += light[c]);
+        }
+        light
+    }
+
+    /// Rays in so many directions.
+    fn frames(&self, medium: &Medium, directions: u32) -> Vec<SweepFrame> {
+        let all = sweep_directions(directions).into_iter();
+        all.map(|towards| SweepFrame::new(&self.scene, medium.divisor, towards)).collect()
     }
 
     /// What light meets that is scattered.
@@ -173,7 +195,7 @@ impl Reference<'_> {
     }
 
     /// The lights that are on.
-    fn lamps(&self) -> Vec<Lamp> {
+    pub(super) fn lamps(&self) -> Vec<Lamp> {
         let settings = self.settings;
         let on = settings.lights.iter().enumerate().filter(|(_, light)| light.on);
         on.map(|(index, light)| {
@@ -190,7 +212,7 @@ impl Reference<'_> {
 
     /// The mean light over all directions that reaches a block from the lights without being scattered. Of a light whose
     /// brightness is that of a white surface which faces it, E/π, that is a quarter: E / 4π.
-    fn unscattered(&self, medium: &Medium, lamps: &[Lamp], at: usize) -> [f64; 3] {
+    fn light_in_block(&self, medium: &Medium, lamps: &[Lamp], at: usize) -> [f64; 3] {
         if medium.extinction[at] <= 0.0 {
             return [0.0; 3];
         }
@@ -207,7 +229,7 @@ impl Reference<'_> {
 
     /// The same at any place, by what `way` says of a ray through blocks along a vector that is a scene unit long, up to a
     /// distance: of an extinction's scale, what is left by its first part, and the optical depth of the rest.
-    fn light_of<F: Fn(f64) -> f64>(
+    pub(super) fn light_of<F: Fn(f64) -> f64>(
         &self,
         medium: &Medium,
         lamps: &[Lamp],
@@ -237,59 +259,9 @@ impl Reference<'_> {
         light
     }
 
-    /// Light that has bounced before it reaches a block, by as many random walks of light against its way from there: free ways from
-    /// the extinction between blocks by delta tracking (Woodcock, Murphy, Hemmings and Longworth 1965), directions evenly
-    /// over all. The mean converges to the truth as the walks become more, whatever blocks, rays and bounces others count.
-    pub fn bounced_by_walks(&self, medium: &Medium, at: usize, walks: u32, seed: u64) -> [f64; 3] {
-        let lamps = self.lamps();
-        let sky = self.settings.sky.radiance(self.settings.camera.up);
-        let own = self.settings.shading.emission / self.settings.scattering.albedo;
-        let most = medium.extinction.iter().copied().fold(0.0, f64::max);
-        let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ at as u64);
-        let mut sum = [0.0; 3];
-        for walk in 0..walks {
-            let within = DVec3::new(random.next(), random.next(), random.next()) - 0.5;
-            let mut block = medium.block(at) + within;
-            let mut weight = [1.0; 3];
-            let mut has_bounced = false;
-            // The first ways are spread evenly, which says more with fewer.
-            let mut towards = on_a_sphere(
-                1.0 - f64::from(2 * walk + 1) / f64::from(walks),
-                f64::from(walk) * std::f64::consts::PI * (3.0 - 5f64.sqrt()),
-            );
-            while weight.iter().any(|&weight| weight > 1e-4) {
-                let along = self.scene.index_from_scene.transform_vector3(towards) / medium.divisor as f64;
-                block += along * (-random.next().ln() / most);
-                if !medium.holds(block) {
-                    if let (Some(sky), true) = (&sky, has_bounced) {
-                        for c in 0..3 {
-                            sum[c] += weight[c] * (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0);
-                        }
-                    }
-                    break;
-                }
-                let (scattering, extinction) = medium.at(block);
-                if random.next() * most >= extinction {
-                    continue;
-                }
-                has_bounced = true;
-                let light = self.light_of(medium, &lamps, block, |along, distance| {
-                    let step = 0.5 / along.abs().max_element();
-                    (|_| 1.0, medium.depth(block, along, (0.0, distance), step))
-                });
-                for c in 0..3 {
-                    weight[c] *= scattering[c] / extinction;
-                    sum[c] += weight[c] * (light[c] + own);
-                }
-                towards = random.direction();
-            }
-        }
-        sum.map(|sum| sum / f64::from(walks))
-    }
-
     /// Bounced light on a surface, as a share of its colour; `weight` says how much of one it is, and `side` to which side it
     /// looks, 1 along the normal and −1 against it.
-    pub(super) fn lit_by_bounces(
+    pub(in crate::reference) fn lit_by_bounces(
         &self,
         bounced: Option<&Bounced>,
         point: DVec3,
@@ -369,29 +341,4 @@ fn received(frame: &SweepFrame, deposits: &[[f64; 3]], block: DVec3, channel: us
     };
     let row = |j: usize| at(0, j) * (1.0 - share.x) + at(1, j) * share.x;
     row(0) * (1.0 - share.y) + row(1) * share.y
-}
-
-/// Numbers that look random and are the same every time: splitmix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    /// Above 0, at most 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64 + f64::EPSILON / 2.0
-    }
-
-    /// A unit vector, evenly over the sphere.
-    fn direction(&mut self) -> DVec3 {
-        on_a_sphere(2.0 * self.next() - 1.0, std::f64::consts::TAU * self.next())
-    }
-}
-
-/// The unit vector at a height and an angle about the axis.
-fn on_a_sphere(z: f64, angle: f64) -> DVec3 {
-    let across = (1.0 - z * z).max(0.0).sqrt();
-    DVec3::new(across * angle.cos(), across * angle.sin(), z)
 }

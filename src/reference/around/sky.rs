@@ -5,11 +5,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Reference;
-use super::field::classified::Side;
-use super::field::trilinear;
 use crate::model::{Kernel, SKY_AHEAD};
-use crate::plan::{SweepFrame, sweep_directions};
+use crate::plan::{SweepFrame, directions_above, sweep_directions};
+use crate::reference::Reference;
+use crate::reference::field::classified::Side;
+use crate::reference::field::trilinear;
 
 /// Moments of what is open of the sky.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Openness {
 
 impl Openness {
     /// V₀ and V₁ between blocks.
-    pub(super) fn at(&self, point: DVec3) -> (f64, DVec3) {
+    pub(in crate::reference) fn at(&self, point: DVec3) -> (f64, DVec3) {
         let place = (point + 0.5) / self.divisor as f64 - 0.5;
         let of = |values: &[f64]| trilinear(self.dims, values, place);
         (of(&self.mean), DVec3::from(self.first.each_ref().map(|values| of(values))))
@@ -61,9 +61,9 @@ impl Reference<'_> {
         Openness { dims, divisor, mean: mean_of(3), first: [mean_of(0), mean_of(1), mean_of(2)] }
     }
 
-    /// Rays from as many directions and as fine as the settings say, and what they deposit; none where nothing attenuates
+    /// Rays from as many directions above and as fine as the settings say, and what they deposit; none where nothing attenuates
     /// a sky.
-    pub(super) fn sky_rays(&self) -> Vec<(SweepFrame, Vec<f64>)> {
+    pub(in crate::reference) fn sky_rays(&self) -> Vec<(SweepFrame, Vec<f64>)> {
         let sky = &self.settings.sky;
         if !self.settings.has_sky_volume() {
             return Vec::new();
@@ -75,28 +75,32 @@ impl Reference<'_> {
             let deposits = march(&frame, &extinction);
             (frame, deposits)
         };
-        sweep_directions(sky.directions).into_iter().map(of).collect()
+        let up = self.settings.camera.up.direction();
+        directions_above(up, sky.directions).into_iter().map(of).collect()
     }
 
-    /// The light of the sky on a floor that faces up, at an index-space point, as a share of its colour: E/π = Σ L(ω) T
-    /// max(ω · up, 0) over Σ max(ω · up, 0), with what is left of the light of each direction; and the same of an open
+    /// The light of the sky on a floor that faces up, at an index-space point, as a share of its colour: E/π = ⟨L(ω) T⟩
+    /// over directions that light it equally, with what is left of the light of each; and the same of an open
     /// floor under a sky of infinitely many: l₀ + ⅔ l₁ · up.
-    pub(super) fn sky_on_floor(&self, rays: &[(SweepFrame, Vec<f64>)], point: DVec3) -> [[f64; 3]; 2] {
+    pub(in crate::reference) fn sky_on_floor(
+        &self,
+        rays: &[(SweepFrame, Vec<f64>)],
+        point: DVec3,
+    ) -> [[f64; 3]; 2] {
         let up = self.settings.camera.up.direction();
         let Some(sky) = self.settings.sky.radiance(self.settings.camera.up) else { return [[0.0; 3]; 2] };
         let bare = [0, 1, 2].map(|c| sky.mean[c] + sky.slope[c].dot(up) * 2.0 / 3.0);
         let strength = self.settings.shadows.strength;
-        let weights: f64 = rays.iter().map(|(frame, _)| frame.towards.dot(up).max(0.0)).sum();
-        if weights == 0.0 {
+        if rays.is_empty() {
             return [bare; 2];
         }
         let place = (point + 0.5) / self.settings.sky.resolution.divisor() as f64 - 0.5;
         let seen = [0, 1, 2].map(|c| {
             let from = |(frame, deposits): &(SweepFrame, Vec<f64>)| {
                 let radiance = sky.mean[c] + sky.slope[c].dot(frame.towards);
-                radiance * frame.towards.dot(up).max(0.0) * passed(frame, deposits, place)
+                radiance * passed(frame, deposits, place)
             };
-            rays.iter().map(from).sum::<f64>() / weights
+            rays.iter().map(from).sum::<f64>() / rays.len() as f64
         });
         [[0, 1, 2].map(|c| (bare[c] + strength * (seen[c] - bare[c])).max(0.0)), bare]
     }
@@ -109,7 +113,7 @@ impl Reference<'_> {
 
     /// The mean over eight places in each block, or over the one voxel that it is, of what follows from a place and its
     /// extinction.
-    pub(super) fn blocks<const N: usize>(
+    pub(in crate::reference) fn blocks<const N: usize>(
         &self,
         dims: [usize; 3],
         divisor: usize,
@@ -144,7 +148,7 @@ impl Reference<'_> {
     ///
     /// For each colour, A₀ = l₀ V₀ + l₁ · V₁ arrives on the mean, A₁ = l₀ V₁ + l₁ V₀ / 3 is its first moment, and the
     /// irradiance of a surface is π (A₀ + 2 n · A₁): exact for an open hemisphere under a sky of one colour.
-    pub(super) fn lit_by_sky(
+    pub(in crate::reference) fn lit_by_sky(
         &self,
         openness: Option<&Openness>,
         point: DVec3,
@@ -197,7 +201,7 @@ fn march(frame: &SweepFrame, extinction: &[f64]) -> Vec<f64> {
 }
 
 /// Between blocks, and to nothing within a block of the grid.
-pub(super) fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
+pub(in crate::reference) fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
     let low = at.floor();
     let share = at - low;
     let corner = |corner: usize| {
