@@ -57,8 +57,11 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
         }
         controls::section(ui, text::sections::LIGHTS, true, |ui| lights::show(ui, panels));
         controls::section(ui, text::sections::SHADOWS, true, |ui| shadows::show(ui, panels));
-        controls::section(ui, text::sections::SKY, false, |ui| sky::show(ui, panels));
-        controls::section(ui, text::sections::SCATTERING, false, |ui| scattering::show(ui, panels));
+        controls::section(ui, text::sections::SOFT_LIGHT, false, |ui| {
+            sky::show(ui, panels);
+            ui.separator();
+            scattering::show(ui, panels);
+        });
         controls::section(ui, text::sections::SHADING, false, |ui| shading::show(ui, panels));
         controls::section(ui, text::sections::CUTS, false, |ui| cuts::show(ui, panels));
         controls::section(ui, text::sections::FLOOR, false, |ui| floor::show(ui, panels));

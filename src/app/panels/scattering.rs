@@ -1,4 +1,4 @@
-//! Section "Scattering": light that bounces inside the volume.
+//! Section "Sky and scattering", second half: light that bounces inside the volume.
 
 use eframe::egui::Ui;
 

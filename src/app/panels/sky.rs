@@ -1,4 +1,4 @@
-//! Section "Sky": light from all around.
+//! Section "Sky and scattering", first half: light from all around.
 
 use eframe::egui::Ui;
 

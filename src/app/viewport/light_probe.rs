@@ -94,7 +94,7 @@ fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     }
     if let Some(open) = found.sky {
         words.push('\n');
-        words.push_str(&text::probe::of_light(text::sections::SKY, &text::probe::open(open)));
+        words.push_str(&text::probe::of_light(text::probe::SKY, &text::probe::open(open)));
     }
     words
 }

@@ -7,11 +7,13 @@ pub(crate) const BOUNCES: Named =
 pub(crate) const ALBEDO: Named =
     named("Albedo", "What a bounce keeps of the light: near 1 matter is milky and glows, near 0 it is dark");
 pub(crate) const DENSITY: Named =
-    named("Density", "How much this light meets of the material: less lets it in deeper, as into wax");
-pub(crate) const STRENGTH: Named = named("Brightness", "What is shown of light that has bounced");
+    named("Bounce density", "How much this light meets of the material: less lets it in deeper, as into wax");
+pub(crate) const STRENGTH: Named = named("Bounce brightness", "What is shown of light that has bounced");
 pub(crate) const ANISOTROPY: Named = named(
     "Forward",
     "Clouds and smoke scatter light on as it came, and glow before it; below 0 they throw it back",
 );
-pub(crate) const DIRECTIONS: Named =
-    named("Directions", "To how many sides light is followed: more is smoother, and takes longer");
+pub(crate) const DIRECTIONS: Named = named(
+    "Bounce directions",
+    "To how many sides light is followed on its last bounce: more is smoother, and takes longer",
+);

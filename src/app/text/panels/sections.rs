@@ -3,8 +3,7 @@
 pub(crate) const LABELS: &str = "Labels";
 pub(crate) const LIGHTS: &str = "Lights";
 pub(crate) const SHADOWS: &str = "Shadows";
-pub(crate) const SKY: &str = "Sky";
-pub(crate) const SCATTERING: &str = "Scattering";
+pub(crate) const SOFT_LIGHT: &str = "Sky and scattering";
 pub(crate) const SHADING: &str = "Shading";
 pub(crate) const CUTS: &str = "Cut";
 pub(crate) const FLOOR: &str = "Floor";

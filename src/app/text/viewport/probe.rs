@@ -9,6 +9,7 @@ pub(crate) const OFF: &str = "off";
 pub(crate) const OUTSIDE_HOOD: &str = "outside its hood";
 pub(crate) const FACES_AWAY: &str = "the surface faces away from it";
 pub(crate) const CASTS_NO_SHADOWS: &str = "casts no shadows";
+pub(crate) const SKY: &str = "Sky";
 pub(crate) const IN_ITS_WAY: &str = "nothing arrives: something stands in its way";
 
 /// What is there: value, opacity, and where it is.
