@@ -1,4 +1,5 @@
 // What passes of scattered light share: blocks, and what scatters light in them.
+#import "common/most_light.wgsl"
 
 struct Bounce {
     // Blocks.

@@ -22,13 +22,16 @@ struct First {
     edge: f32,
     // What blocks give off of their colour by themselves, over the albedo.
     emission: f32,
-    pad0: vec3f,
+    // Slices of this dispatch.
+    slice: u32,
+    end: u32,
+    pad0: f32,
     // 1 where the sums are the sky's light.
     has_sky: f32,
     lights: array<Light, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_first: First;
+@group(0) @binding(0) var<uniform> bound_scene: First;
 var<private> scene: First;
 @group(0) @binding(1) var medium: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
@@ -62,10 +65,11 @@ fn left_of(light: Light, block: vec3f, extinction: f32, towards: Towards) -> f32
 }
 
 @compute @workgroup_size(4, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+fn main(@builtin(global_invocation_id) thread: vec3u) {
     bounce = bound_bounce;
-    scene = bound_first;
-    if (any(id >= bounce.dims)) {
+    scene = bound_scene;
+    let id = thread + vec3u(0u, 0u, scene.slice);
+    if (any(id >= vec3u(bounce.dims.xy, min(bounce.dims.z, scene.end)))) {
         return;
     }
     let at = number_of(id);
@@ -78,7 +82,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var light = sums[at].rgb * (bounce.share * scene.has_sky) + scene.emission;
     for (var i = 0u; i < scene.count; i += 1u) {
         // Not from a copy: an index that varies would keep that as an array in memory.
-        let whole = bound_first.lights[i];
+        let whole = bound_scene.lights[i];
         var arriving = 0.0;
         for (var number = 0u; number < whole.points; number += 1u) {
             let one = point_of(whole, number);

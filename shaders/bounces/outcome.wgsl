@@ -10,5 +10,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id >= bounce.dims)) {
         return;
     }
-    textureStore(bounced, id, vec4f(sums[number_of(id)].rgb * bounce.share, 1.0));
+    textureStore(bounced, id, vec4f(min(sums[number_of(id)].rgb * bounce.share, vec3f(MOST_LIGHT)), 1.0));
 }

@@ -42,6 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     last[at] = vec4f(light, 0.0);
     if (found.a > 0.0) {
-        textureStore(medium, id + 1u, vec4f(first[at].rgb + found.rgb * light, found.a));
+        let given = min(first[at].rgb + found.rgb * light, vec3f(MOST_LIGHT));
+        textureStore(medium, id + 1u, vec4f(given, found.a));
     }
 }

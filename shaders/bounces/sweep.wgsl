@@ -4,6 +4,7 @@
 #import "sky/rays.wgsl"
 #import "sky/near.wgsl"
 #import "common/slab_source.wgsl"
+#import "common/most_light.wgsl"
 
 // In rgb what blocks give off per shortest edge, S times extinction; extinction in a.
 @group(0) @binding(1) var medium: texture_3d<f32>;
@@ -29,7 +30,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let found = textureSampleLevel(medium, clamped, (block + 1.5) * sweep.block_scale, 0.0) * rays.step;
         let share = slab_source(found.a);
         let mean = 1.0 - found.a * share;
-        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), vec4f(light * mean + found.rgb * share, 0.0));
+        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), vec4f(min(light * mean + found.rgb * share, vec3f(MOST_LIGHT)), 0.0));
         light = light * exp(-found.a) + found.rgb * mean;
     }
 }

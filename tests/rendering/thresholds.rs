@@ -248,7 +248,7 @@ pub(crate) const SAME_BOUNCED: Limit = Limit { max: 1.5e-3, rmse: 2e-4 };
 pub(crate) const LIGHT_BY_WALKS: f64 = 0.02;
 /// How far all light in a white furnace is from 1: what twelve bounces and their ratio leave of infinitely many.
 pub(crate) const FURNACE: f64 = 0.01;
-/// What a half space gives back of light, relative: 64 directions, and blocks of half an optical depth.
+/// What a half space gives back of light, relative: 26 directions, and blocks of 0.6 of an optical depth.
 pub(crate) const HALF_SPACE: f64 = 0.03;
 
 /// Worst error of what is left of a disc beside a half-plane, 8 to 64 voxels behind it: steps of 64 points.

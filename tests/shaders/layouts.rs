@@ -258,6 +258,8 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 shadowed,
                 edge,
                 emission,
+                slice,
+                end,
                 pad0,
                 has_sky,
                 lights

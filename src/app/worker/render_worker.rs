@@ -348,13 +348,13 @@ fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: Quali
 }
 
 /// Light volumes of full quality that a picture would have to fill; what is open of a sky takes about as long as one, and
-/// light that bounces as two.
+/// light that bounces as four.
 fn missing(settled: Option<&FrameKeys>, full: &FrameKeys) -> Missing {
     // The first look has filled them all.
     let Some(settled) = settled else { return Missing::default() };
     let lights = full.lights_missing_in(settled);
     let sky = usize::from(full.sky.is_some() && full.sky != settled.sky);
-    let bounces = 2 * usize::from(full.bounces.is_some() && full.bounces != settled.bounces);
+    let bounces = 4 * usize::from(full.bounces.is_some() && full.bounces != settled.bounces);
     let count = lights + sky + bounces;
     Missing { count, others: full.lights.iter().flatten().count() > lights }
 }

@@ -10,7 +10,7 @@ use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{Constants, Only, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::sky::blocks::BlocksPass;
-use crate::gpu::sky::sweep::{SweepVariant, pack};
+use crate::gpu::sky::sweep::{BATCH_BLOCKS, SweepVariant, pack};
 use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{GpuError, RenderOptions};
@@ -24,8 +24,8 @@ pub(crate) enum BounceStep {
     Blocks,
     /// A batch of directions in which light is followed, and whose.
     Batch(Followed, usize),
-    /// What unscattered light makes blocks give off.
-    First,
+    /// What unscattered light makes blocks give off, from a slice of them on.
+    First { slice: usize },
     /// What so many bounces make them give off for the next.
     Source { bounce: u32 },
     /// What all bounces have brought.
@@ -59,6 +59,10 @@ pub(crate) struct BouncesBuild {
     frames: [Vec<SweepFrame>; 2],
     /// Directions of a batch.
     each: usize,
+    /// Blocks along x, y and z.
+    dims: [usize; 3],
+    /// Rays from a block to all lights.
+    rays: usize,
     bounces: u32,
     /// Points that stand for a light that has a size.
     points: u32,
@@ -74,7 +78,7 @@ impl BouncesBuild {
     pub(crate) fn new(
         gpu: Gpu<'_>,
         key: &BouncesKey,
-        has_sky: bool,
+        (has_sky, lights): (bool, usize),
         volume: &BouncesVolume,
     ) -> Result<Self, GpuError> {
         let scene = &gpu.volume.scene;
@@ -84,11 +88,21 @@ impl BouncesBuild {
                 .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
                 .collect::<Vec<_>>()
         });
-        let rays = [0, 1]
+        let sheet = [0, 1]
             .map(|side| frames.iter().flatten().map(|frame| frame.size[side] as usize).max().unwrap_or(1));
-        let each = directions_of_a_batch(volume.dims, rays);
-        let textures = Textures::new(gpu.context, volume, rays, each)?;
-        Ok(Self { frames, each, bounces: key.bounces(), points: key.points(), has_sky, textures })
+        let each = directions_of_a_batch(volume.dims, sheet);
+        let textures = Textures::new(gpu.context, volume, sheet, each)?;
+        let rays = (lights * key.points() as usize).max(1);
+        Ok(Self {
+            frames,
+            each,
+            dims: volume.dims,
+            rays,
+            bounces: key.bounces(),
+            points: key.points(),
+            has_sky,
+            textures,
+        })
     }
 
     /// Its pieces, in order.
@@ -101,7 +115,8 @@ impl BouncesBuild {
         if self.has_sky {
             steps.extend(batches(Followed::Sky));
         }
-        steps.push(BounceStep::First);
+        let slices = self.slices_at_once();
+        steps.extend((0..self.dims[2]).step_by(slices).map(|slice| BounceStep::First { slice }));
         for bounce in 0..self.bounces {
             steps.push(BounceStep::Source { bounce });
             let is_last = bounce + 1 == self.bounces;
@@ -109,6 +124,12 @@ impl BouncesBuild {
         }
         steps.push(BounceStep::Outcome);
         steps
+    }
+
+    /// So many slices of blocks cast rays to lights at once that they take no more steps than a batch of directions.
+    fn slices_at_once(&self) -> usize {
+        let [x, y, z] = self.dims;
+        (BATCH_BLOCKS / (x * y * self.rays * x.max(y).max(z))).max(1)
     }
 
     /// Rays along which light is followed.
@@ -136,7 +157,7 @@ impl BouncesBuild {
             BounceStep::Batch(followed, batch) => {
                 self.fill_batch(gpu, look.settings, volume, (followed, batch), encoder)
             }
-            BounceStep::First => self.fill_first(gpu, look, volume, encoder),
+            BounceStep::First { slice } => self.fill_first(gpu, look, volume, slice, encoder),
             BounceStep::Source { bounce } => {
                 let shared = self.shared(gpu, volume, Followed::Bounce);
                 // The last but one leaps, and every other before it: two bounces tell where to.
@@ -265,23 +286,30 @@ impl BouncesBuild {
         gpu: Gpu<'_>,
         Look { settings, lit, .. }: Look<'_>,
         volume: &BouncesVolume,
+        slice: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let scene = &gpu.volume.scene;
+        let end = (slice + self.slices_at_once()).min(self.dims[2]);
+        let shadowed = lit.shadowed().len();
         let mut lights = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
-        for (slot, lit) in lights.iter_mut().zip(lit.all()) {
+        for (index, (slot, lit)) in lights.iter_mut().zip(lit.all()).enumerate() {
             let whole = pack_light(&lit.light, None, scene, settings);
-            *slot = uniforms::Light { points: whole.points.min(self.points), ..whole };
+            // Only shadows show how large a light is.
+            let points = if index < shadowed { self.points } else { 1 };
+            *slot = uniforms::Light { points: whole.points.min(points), ..whole };
         }
         let uniform = uniforms::First {
             space: uniforms::Space::new(scene),
             block_scale: volume.dims.map(|n| 1.0 / (n + 2) as f32),
             voxel_step: volume.divisor as f32,
             count: lit.all().len() as u32,
-            shadowed: lit.shadowed().len() as u32,
+            shadowed: shadowed as u32,
             edge: scene.smallest_edge() as f32,
             emission: (settings.shading.emission / settings.scattering.albedo.max(1e-9)) as f32,
-            pad0: [0.0; 3],
+            slice: slice as u32,
+            end: end as u32,
+            pad0: 0.0,
             has_sky: f32::from(u8::from(self.has_sky)),
             lights,
         };
@@ -289,7 +317,7 @@ impl BouncesBuild {
         let shared = self.shared(gpu, volume, Followed::Sky);
         let pipeline = gpu.shaders.pipeline(&Only("bounces/first.wgsl"))?;
         let entries = [
-            buffer("bound_first", &uniform),
+            buffer("bound_scene", &uniform),
             view_of("medium", &self.textures.medium),
             sampler("clamped", &gpu.volume.clamped),
             buffer("bound_bounce", &shared),
@@ -298,7 +326,9 @@ impl BouncesBuild {
             buffer("first", &self.textures.first),
         ];
         let own = gpu.bind("Bounces::first", &pipeline, 0, &entries);
-        pass::dispatch(encoder, "Bounces::first", &pipeline, &[&own], groups_of(volume));
+        let [x, y, _] = groups_of(volume);
+        let groups = [x, y, ((end - slice) as u32).div_ceil(4)];
+        pass::dispatch(encoder, "Bounces::first", &pipeline, &[&own], groups);
         Ok(())
     }
 

@@ -2,7 +2,8 @@
 //!
 //! Blocks of voxels get a mean extinction and what of it scatters light, for each colour. From what unscattered light finds
 //! there they give off light, which is followed in many directions through them, as a sky's is, and gathered; what has been
-//! gathered makes them give off more, bounce by bounce. What infinitely many would bring is told from the last two.
+//! gathered makes them give off more, bounce by bounce. What infinitely many would bring is told from two, where there
+//! are three or more.
 
 pub(super) mod build;
 mod textures;

@@ -91,6 +91,8 @@ impl SmallPictures {
     ) -> Result<Self, GpuError> {
         let mut dark = settings.clone();
         (dark.shading.diffuse, dark.shading.specular) = (0.0, 0.0);
+        // Nor does their light bounce.
+        dark.lights.iter_mut().for_each(|light| light.color = [0.0; 3]);
         let unlit = small_picture(renderer, dataset, &dark)?;
         Self::before(renderer, dataset, settings, unlit)
     }
@@ -137,6 +139,8 @@ impl SmallPictures {
 /// compile on software adapters, and nothing else needs it.
 fn without_shadows(settings: &Settings) -> Settings {
     let mut unshadowed = settings.clone();
+    // What bounces comes out of shadows.
+    unshadowed.scattering.bounces = 0;
     // Light volumes hold hoods, too.
     if settings.lights.iter().any(|light| light.hood.on) {
         unshadowed.shadows.algorithm = ShadowAlgorithm::Off;

@@ -19,6 +19,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "bounces/source.wgsl",
     "bounces/sweep.wgsl",
     "common/listed_bricks.wgsl",
+    "common/most_light.wgsl",
     "common/sizes.wgsl",
     "common/slab_mean.wgsl",
     "common/slab_source.wgsl",

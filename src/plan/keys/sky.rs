@@ -1,7 +1,7 @@
 //! What the volume is made from that says how open to the sky each place is.
 
 use super::table::OpacityKey;
-use crate::model::{Classification, Remains, Resolution, Settings, SkyMode};
+use crate::model::{Classification, Remains, Resolution, SceneAxis, Settings, SkyMode};
 use crate::plan::{Request, VolumeKey};
 
 /// Everything that the volume of the sky's visibility is made from: no colours, no brightness, no turn.
@@ -63,6 +63,8 @@ pub(super) struct SkyLook {
     intensity: f64,
     colors: [[f32; 3]; 3],
     lean_deg: [f64; 2],
+    /// What it leans from.
+    up: Option<SceneAxis>,
 }
 
 impl SkyLook {
@@ -75,6 +77,7 @@ impl SkyLook {
             intensity: sky.intensity,
             colors: if is_plain { [[1.0; 3]; 3] } else { [sky.zenith, sky.horizon, sky.ground] },
             lean_deg: if is_plain { [0.0; 2] } else { [sky.tilt_deg, sky.turn_deg] },
+            up: (!is_plain).then_some(settings.camera.up),
         })
     }
 }

@@ -202,7 +202,11 @@ impl Reference<'_> {
             let whole = self.light(index);
             let samples = settings.shadows.area.samples.min(MOST_POINTS);
             Lamp {
-                points: if whole.area.is_some() { whole.points(samples) } else { vec![whole] },
+                points: if whole.area.is_some() && light.needs_volume() {
+                    whole.points(samples)
+                } else {
+                    vec![whole]
+                },
                 rgb: light.color.map(|c| linear_from_srgb(c) * light.intensity * settings.shadows.balance),
                 scale: if light.needs_volume() { light.density_scale } else { 0.0 },
             }

@@ -68,8 +68,9 @@ impl Loaded {
         let mut fresh = BouncesVolume::new(context, self.volume.volume.dims(), key.resolution())?;
         fresh.last_used = now;
         let slot = self.bounces.len();
-        let has_sky = request.settings.sky.is_on();
-        let build = BouncesBuild::new(Gpu::new(tools, &self.volume), &key, has_sky, &fresh)?;
+        let settings = &request.settings;
+        let light = (settings.sky.is_on(), settings.lights.iter().filter(|light| light.on).count());
+        let build = BouncesBuild::new(Gpu::new(tools, &self.volume), &key, light, &fresh)?;
         self.bounces.push(Cached::unfilled(key.clone(), fresh));
         Ok(PlacedBounces { key: Some(key), slot: Some(slot), build: Some(build) })
     }

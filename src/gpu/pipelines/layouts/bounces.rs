@@ -31,7 +31,7 @@ pub(super) const LAYOUTS: Layouts = &[
     (
         "bounces/first.wgsl",
         &[&[
-            Slot::uniform::<uniforms::First>(0, "bound_first"),
+            Slot::uniform::<uniforms::First>(0, "bound_scene"),
             Slot::sampled(1, "medium", Shape::Volume),
             Slot::sampler(2, "clamped"),
             BOUNCE,

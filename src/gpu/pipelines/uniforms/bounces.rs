@@ -39,7 +39,9 @@ pub struct First {
     pub shadowed: u32,
     pub edge: f32,
     pub emission: f32,
-    pub pad0: [f32; 3],
+    pub slice: u32,
+    pub end: u32,
+    pub pad0: f32,
     pub has_sky: f32,
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::Resolution;
 
-/// Most bounces that are followed; what further ones would bring is told from the last two.
+/// Most bounces that are followed; what further ones would bring is told from two of them, where there are three or more.
 pub const MAX_BOUNCES: u32 = 12;
 
 /// How much further than straight on light may be scattered, or back: beyond it matter is a mirror, or is not there.

@@ -25,7 +25,7 @@ pub const SKY_DIRECTIONS: std::ops::RangeInclusive<u32> = 6..=64;
 pub const SKY_AHEAD: f64 = 0.75;
 
 /// Light from all around. What is stored of it is how open each place is ([`crate::plan::SkyKey`]), so that colours,
-/// brightness and turn of the sky cost a picture and no more.
+/// brightness and turn of the sky cost a picture and no more, unless its light bounces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Sky {

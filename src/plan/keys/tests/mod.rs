@@ -82,7 +82,7 @@ fn effect_of(before: &Request, path: &str, value: &str) -> Effect {
 #[test]
 fn every_setting_causes_what_the_design_says() {
     let table = [
-        ("camera.up", "plus_y", Effect::Eye),
+        ("camera.up", "plus_y", Effect::Bounces),
         ("camera.azimuth_deg", "10", Effect::Eye),
         ("camera.elevation_deg", "10", Effect::Eye),
         ("camera.roll_deg", "10", Effect::Eye),
