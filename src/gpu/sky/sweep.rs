@@ -70,7 +70,11 @@ impl SkyBuild {
         let blocks: usize = volume.dims.iter().product();
         let slices = volume.dims.into_iter().max().unwrap_or(1);
         let each = (BATCH_BLOCKS / blocks.max(1)).min(MOST_LAYERS / slices).clamp(1, uniforms::MAX_SKY_RAYS);
-        let textures = Textures::new(gpu.context, volume, frames.iter().chain(&above), each)?;
+        let sheet = [0, 1].map(|side| {
+            let all = frames.iter().chain(&above);
+            all.map(|frame| frame.size[side] as usize).max().unwrap_or(1)
+        });
+        let textures = Textures::new(gpu.context, volume, sheet, each)?;
         Ok(Self { frames, above, each, density_scale: key.density_scale(), textures })
     }
 
@@ -201,18 +205,17 @@ impl SkyBuild {
 }
 
 impl Textures {
-    fn new<'a>(
+    fn new(
         context: &Context,
         volume: &SkyVolume,
-        frames: impl Iterator<Item = &'a SweepFrame> + Clone,
+        [width, height]: [usize; 2],
         each: usize,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims;
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = context.storage_format;
         let slices = dims.into_iter().max().unwrap_or(1);
-        let across = |side: usize| frames.clone().map(|frame| frame.size[side] as usize).max().unwrap_or(1);
-        let sheet_size = [across(0), across(1), slices * each];
+        let sheet_size = [width, height, slices * each];
         let block_size = dims.map(|n| n + 2);
         let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
         let sheets = context.texture(&texture_3d("Sky::sheets", sheet_size, format, usages))?;
