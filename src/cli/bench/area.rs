@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::report::round;
 use super::{Bench, STEP_DEG};
 use crate::cli::CliError;
-use crate::model::{Kernel, LightShape, Resolution, ReverseKernel, Settings};
+use crate::model::{LightShape, Resolution, Settings};
 
 /// Points of a light and resolutions that are timed.
 const BUILDS: [(u32, Resolution); 4] =
@@ -24,9 +24,7 @@ impl Bench<'_> {
     ) -> Result<(), CliError> {
         let mut lit = self.settings.clone();
         lit.lights.truncate(1);
-        let mut unit = lit.clone();
-        unit.shadows.kernel = Kernel::BSpline;
-        unit.shadows.reverse_kernel = ReverseKernel::Forward;
+        let unit = self.under_one_light();
         let under_a_disc = |samples: u32, resolution: Resolution| {
             let mut settings = lit.clone();
             settings.lights.iter_mut().for_each(|light| {

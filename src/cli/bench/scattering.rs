@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::report::round;
 use super::{Bench, STEP_DEG};
 use crate::cli::CliError;
-use crate::model::{Kernel, Resolution, ReverseKernel, Settings, SkyMode};
+use crate::model::{Resolution, Settings, SkyMode};
 
 /// Bounces, directions and resolutions that are timed.
 const BUILDS: [(u32, u32, Resolution); 4] = [
@@ -23,10 +23,7 @@ impl Bench<'_> {
         cases: &mut Vec<Value>,
         ratios: &mut Map<String, Value>,
     ) -> Result<(), CliError> {
-        let mut lit = self.settings.clone();
-        lit.lights.truncate(1);
-        lit.shadows.kernel = Kernel::BSpline;
-        lit.shadows.reverse_kernel = ReverseKernel::Forward;
+        let lit = self.under_one_light();
         let bouncing = |bounces: u32, directions: u32, resolution: Resolution| {
             let mut settings = lit.clone();
             settings.scattering.bounces = bounces;

@@ -26,10 +26,7 @@ impl Bench<'_> {
         cases: &mut Vec<Value>,
         ratios: &mut Map<String, Value>,
     ) -> Result<(), CliError> {
-        let mut lit = self.settings.clone();
-        lit.lights.truncate(1);
-        lit.shadows.kernel = Kernel::BSpline;
-        lit.shadows.reverse_kernel = ReverseKernel::Forward;
+        let lit = self.under_one_light();
         let under_a_sky = |directions: u32, resolution: Resolution| {
             let mut settings = lit.clone();
             settings.sky.mode = SkyMode::Gradient;
@@ -69,6 +66,15 @@ impl Bench<'_> {
         cases.push(self.case("tf-edit-one-light", &without, 0));
         cases.push(self.case("tf-edit-sky", &with, 0));
         Ok(())
+    }
+
+    /// The look under its first light alone, whose filling with the B-spline both ways is the unit B.
+    pub(super) fn under_one_light(&self) -> Settings {
+        let mut lit = self.settings.clone();
+        lit.lights.truncate(1);
+        lit.shadows.kernel = Kernel::BSpline;
+        lit.shadows.reverse_kernel = ReverseKernel::Forward;
+        lit
     }
 
     /// Fillings of the volume of one light, and of what looks have beside it, in turn: each time `denser` changes what the

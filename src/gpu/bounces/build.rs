@@ -10,7 +10,7 @@ use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{Constants, Only, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::sky::blocks::BlocksPass;
-use crate::gpu::sky::sweep::{BATCH_BLOCKS, SweepVariant, pack};
+use crate::gpu::sky::sweep::{BATCH_BLOCKS, GatherVariant, SweepPass};
 use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{GpuError, RenderOptions};
@@ -225,8 +225,6 @@ impl BouncesBuild {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Textures { medium, sheets, sheet_size, scattering, sums, .. } = &self.textures;
-        let edge = gpu.volume.scene.smallest_edge();
-        let slices = volume.dims.into_iter().max().unwrap_or(1);
         let radiance = settings.sky.radiance(settings.camera.up).filter(|_| followed == Followed::Sky);
         let arriving = |towards: DVec3| {
             radiance.map_or(DVec3::ZERO, |sky| {
@@ -234,44 +232,23 @@ impl BouncesBuild {
             })
         };
         let frames = self.frames(followed).chunks(self.each).nth(batch).unwrap_or_default();
-        // What is left over has no weight, and no rays.
-        let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
-        for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
-            *slot = pack(frame, edge, at * slices, arriving(frame.towards));
-        }
-        let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
-        let uniform = uniforms::Sweep {
-            dims: volume.dims.map(|n| n as u32),
+        let pass = SweepPass {
+            shader: "bounces/sweep.wgsl",
+            frames,
+            dims: volume.dims,
+            sheet_size: *sheet_size,
+            is_first: batch == 0,
             share: 0.0,
-            block_scale: reciprocal(volume.dims.map(|n| n + 2)),
-            has_sums: if batch == 0 { 0.0 } else { 1.0 },
-            sheet_scale: reciprocal(*sheet_size),
-            pad0: 0.0,
-            rays,
         };
-        let uniform = gpu.uniform("Bounces::sweep", uniform);
-        let clamped = || sampler("clamped", &gpu.volume.clamped);
-
-        let sweep =
-            gpu.shaders.pipeline(&SweepVariant { shader: "bounces/sweep.wgsl", directions: self.each })?;
-        let entries = [
-            buffer("bound_sweep", &uniform),
-            view_of("medium", medium),
-            clamped(),
-            view_of("sheets", sheets),
-        ];
-        let own = gpu.bind("Bounces::sweep", &sweep, 0, &entries);
-        let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);
-        let groups = [across(0), across(1), frames.len() as u32];
-        pass::dispatch(encoder, "Bounces::sweep", &sweep, &[&own], groups);
+        let uniform = pass.record(gpu, view_of("medium", medium), sheets, arriving, encoder)?;
 
         let gather =
-            gpu.shaders.pipeline(&SweepVariant { shader: "bounces/gather.wgsl", directions: self.each })?;
+            gpu.shaders.pipeline(&GatherVariant { shader: "bounces/gather.wgsl", directions: self.each })?;
         let shared = self.shared(gpu, volume, followed);
         let entries = [
             buffer("bound_sweep", &uniform),
             view_of("sheets", sheets),
-            clamped(),
+            sampler("clamped", &gpu.volume.clamped),
             buffer("bound_bounce", &shared),
             buffer("scattering", scattering),
             buffer("sums", sums),

@@ -1,8 +1,9 @@
 //! What only the filling of a volume of bounced light needs.
 
-use super::volume::{BouncesVolume, NUMBERS_BYTES};
+use super::volume::BouncesVolume;
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::sky::sweep::{BATCH_BLOCKS, MOST_LAYERS};
+use crate::gpu::sky::volume::SUM_BYTES;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 
@@ -56,7 +57,7 @@ impl Textures {
         let list = |label, count: u64| {
             context.empty_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
-                size: NUMBERS_BYTES * count,
+                size: SUM_BYTES * count,
                 usage: wgpu::BufferUsages::STORAGE,
                 mapped_at_creation: false,
             })
@@ -73,7 +74,7 @@ impl Textures {
             last: list("Bounces::last", blocks),
             change: list("Bounces::change", blocks),
             ratio: list("Bounces::ratio", 1),
-            bytes: 8 * (texels(medium_size) + texels(sheet_size)) + NUMBERS_BYTES * (5 * blocks + 1),
+            bytes: 8 * (texels(medium_size) + texels(sheet_size)) + SUM_BYTES * (5 * blocks + 1),
         })
     }
 }

@@ -1,12 +1,9 @@
 //! The volume of light that has bounced.
 
-use crate::gpu::sky::volume::divisor_for;
+use crate::gpu::sky::volume::{SUM_BYTES, divisor_for};
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 use crate::model::Resolution;
-
-/// Bytes of four numbers of a block.
-pub(crate) const NUMBERS_BYTES: u64 = 16;
 
 /// Most texels that the rays of one direction may take: 256 MiB of sheets of colours.
 const MOST_TEXELS: u64 = 1 << 25;
@@ -30,7 +27,7 @@ impl BouncesVolume {
     /// # Errors
     /// When memory is out.
     pub(crate) fn new(context: &Context, grid: [usize; 3], resolution: Resolution) -> Result<Self, GpuError> {
-        let most_sums = context.device.limits().max_storage_buffer_binding_size / NUMBERS_BYTES;
+        let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
         let divisor = divisor_for(grid, resolution, (MOST_TEXELS, most_sums));
         let dims = grid.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(

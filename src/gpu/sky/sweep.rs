@@ -7,9 +7,9 @@ use glam::DVec3;
 use super::blocks::BlocksPass;
 use super::floor_map::MAP_EDGE;
 use super::volume::{SUM_BYTES, SkyVolume};
-use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Variant};
+use crate::gpu::pipelines::variant::{Constants, Only, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{Gpu, texture_3d};
@@ -125,49 +125,29 @@ impl SkyBuild {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Textures { blocks, sheets, sheet_size, sums, .. } = &self.textures;
-        let edge = gpu.volume.scene.smallest_edge();
         let around = self.batches_around();
         let (all, batch, is_above) =
             if batch < around { (&self.frames, batch, false) } else { (&self.above, batch - around, true) };
         let taken: Range<usize> = batch * self.each..((batch + 1) * self.each).min(all.len());
         let frames = &all[taken.clone()];
-        let slices = volume.dims.into_iter().max().unwrap_or(1);
-        // What is left over has no weight, and no rays.
-        let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
-        for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
-            *slot = pack(frame, edge, at * slices, DVec3::ZERO);
-        }
-        let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
-        let uniform = uniforms::Sweep {
-            dims: volume.dims.map(|n| n as u32),
+        let pass = SweepPass {
+            shader: "sky/sweep.wgsl",
+            frames,
+            dims: volume.dims,
+            sheet_size: *sheet_size,
+            is_first: batch == 0,
             share: 1.0 / taken.end as f32,
-            block_scale: reciprocal(volume.dims.map(|n| n + 2)),
-            has_sums: if batch == 0 { 0.0 } else { 1.0 },
-            sheet_scale: reciprocal(*sheet_size),
-            pad0: 0.0,
-            rays,
         };
-        let uniform = gpu.uniform("Sky::sweep", uniform);
-
-        let sweep =
-            gpu.shaders.pipeline(&SweepVariant { shader: "sky/sweep.wgsl", directions: self.each })?;
-        let clamped = || sampler("clamped", &gpu.volume.clamped);
-        let shared = buffer("bound_sweep", &uniform);
-        let entries = [shared.clone(), view_of("extinction", blocks), clamped(), view_of("sheets", sheets)];
-        let own = gpu.bind("Sky::sweep", &sweep, 0, &entries);
-        let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);
-        let groups = [across(0), across(1), frames.len() as u32];
-        pass::dispatch(encoder, "Sky::sweep", &sweep, &[&own], groups);
-
+        let uniform = pass.record(gpu, view_of("extinction", blocks), sheets, |_| DVec3::ZERO, encoder)?;
         if is_above {
             return self.fill_floor(gpu, volume, &uniform, taken.end, encoder);
         }
         let gather =
-            gpu.shaders.pipeline(&SweepVariant { shader: "sky/moments.wgsl", directions: self.each })?;
+            gpu.shaders.pipeline(&GatherVariant { shader: "sky/moments.wgsl", directions: self.each })?;
         let entries = [
-            shared,
+            buffer("bound_sweep", &uniform),
             view_of("sheets", sheets),
-            clamped(),
+            sampler("clamped", &gpu.volume.clamped),
             buffer("sums", sums),
             view_of("moments", &volume.view),
         ];
@@ -189,7 +169,7 @@ impl SkyBuild {
         let (Some(floor), Some(sums)) = (&volume.floor, &self.textures.floor_sums) else { return Ok(()) };
         let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / taken as f64);
         let uniform = gpu.uniform("Sky::floor_map", uniform);
-        let variant = SweepVariant { shader: "sky/floor_map.wgsl", directions: self.each };
+        let variant = GatherVariant { shader: "sky/floor_map.wgsl", directions: self.each };
         let pipeline = gpu.shaders.pipeline(&variant)?;
         let entries = [
             buffer("bound_sweep", sweep),
@@ -243,8 +223,67 @@ impl Textures {
     }
 }
 
+/// A batch of directions in which light is followed through blocks, by a shader that imports `sky/rays.wgsl`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SweepPass<'a> {
+    pub shader: &'static str,
+    pub frames: &'a [SweepFrame],
+    /// Blocks along x, y and z.
+    pub dims: [usize; 3],
+    pub sheet_size: [usize; 3],
+    /// Whether nothing has been summed before.
+    pub is_first: bool,
+    /// What of the sum up to this batch is shown.
+    pub share: f32,
+}
+
+impl SweepPass<'_> {
+    /// Records it: light that arrives from directions goes through what `blocks` name, into sheets. Returns what the passes
+    /// that gather from these need to know.
+    pub(crate) fn record(
+        &self,
+        gpu: Gpu<'_>,
+        blocks: Named<'_>,
+        sheets: &wgpu::TextureView,
+        arriving: impl Fn(DVec3) -> DVec3,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let Self { shader, frames, dims, sheet_size, is_first, share } = *self;
+        let edge = gpu.volume.scene.smallest_edge();
+        let slices = dims.into_iter().max().unwrap_or(1);
+        // What is left over has no weight, and no rays.
+        let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
+        for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
+            *slot = pack(frame, edge, at * slices, arriving(frame.towards));
+        }
+        let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
+        let uniform = uniforms::Sweep {
+            dims: dims.map(|n| n as u32),
+            share,
+            block_scale: reciprocal(dims.map(|n| n + 2)),
+            has_sums: if is_first { 0.0 } else { 1.0 },
+            sheet_scale: reciprocal(sheet_size),
+            pad0: 0.0,
+            rays,
+        };
+        let uniform = gpu.uniform("Sweep::uniform", uniform);
+        let pipeline = gpu.shaders.pipeline(&Only(shader))?;
+        let entries = [
+            buffer("bound_sweep", &uniform),
+            blocks,
+            sampler("clamped", &gpu.volume.clamped),
+            view_of("sheets", sheets),
+        ];
+        let own = gpu.bind("Sweep::own", &pipeline, 0, &entries);
+        let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);
+        let groups = [across(0), across(1), frames.len() as u32];
+        pass::dispatch(encoder, "Sweep::pass", &pipeline, &[&own], groups);
+        Ok(uniform)
+    }
+}
+
 /// The rays of a direction for the shaders, from which so much light arrives; `edge` is that of a voxel.
-pub(crate) fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3) -> uniforms::SkyRays {
+fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3) -> uniforms::SkyRays {
     uniforms::SkyRays {
         towards: frame.towards.as_vec3().into(),
         weight: 1.0,
@@ -262,25 +301,20 @@ pub(crate) fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3)
     }
 }
 
-/// What tells one pipeline of the two halves of a sweep from another.
+/// What tells one pipeline that gathers from a sweep from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct SweepVariant {
+pub(crate) struct GatherVariant {
     pub shader: &'static str,
-    /// Directions of a batch, where one sum is made of them.
+    /// Directions of a batch.
     pub directions: usize,
 }
 
-impl Variant for SweepVariant {
+impl Variant for GatherVariant {
     fn shader(&self) -> &'static str {
         self.shader
     }
 
     fn constants(&self) -> Constants {
-        match self.shader {
-            "sky/moments.wgsl" | "sky/floor_map.wgsl" | "bounces/gather.wgsl" => {
-                vec![("DIRECTIONS", self.directions as f64)]
-            }
-            _ => Vec::new(),
-        }
+        vec![("DIRECTIONS", self.directions as f64)]
     }
 }

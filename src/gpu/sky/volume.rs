@@ -6,7 +6,7 @@ use crate::gpu::{Context, GpuError};
 use crate::model::Resolution;
 use crate::plan::FloorPlace;
 
-/// Bytes of the four sums of a block.
+/// Bytes of four sums of a block.
 pub(crate) const SUM_BYTES: u64 = 16;
 
 /// Most texels that the rays of one direction may take: 128 MiB of sheets.
