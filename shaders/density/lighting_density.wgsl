@@ -1,14 +1,29 @@
 // What of the volume attenuates light where rays to lights are short: a fetch from the pyramid. PRECLASSIFY: from that of
 // what voxels mean for light, in which nothing is where no voxel is.
+#import "common/left.wgsl"
+#import "density/table.wgsl"
 #import "density/volume.wgsl"
+
+// The lighting transfer function.
+@group(0) @binding(4) var<storage, read> lighting_table: TransferTable;
 
 #if PRECLASSIFY
 @group(1) @binding(10) var lighting_pyramid: texture_3d<f32>;
+
+// A share of the largest extinction, or of each colour one.
+alias Met = Left;
+#else
+alias Met = f32;
 #endif
 
-fn lighting_density(p: vec3f, level: f32) -> f32 {
+fn lighting_density(p: vec3f, level: f32) -> Met {
 #if PRECLASSIFY
-    return textureSampleLevel(lighting_pyramid, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
+    let texel = textureSampleLevel(lighting_pyramid, clamped, (p + 4.5) * grid.pyramid_scale, level);
+#if COLORED
+    return texel.gba;
+#else
+    return texel.r;
+#endif
 #else
     return pyramid(p, level);
 #endif
@@ -19,5 +34,41 @@ fn lighting_presence(p: vec3f, level: f32) -> f32 {
     return 1.0;
 #else
     return pyramid_presence(p, level);
+#endif
+}
+
+// How much extinction one of the shares is, or the density.
+fn extinction_between(density: f32) -> Left {
+    let at = table_entry(density);
+    return mix(extinction_of(lighting_table.entries[at.low]), extinction_of(lighting_table.entries[at.low + 1u]), Left(at.fraction));
+}
+
+fn met_extinction(met: Met) -> Left {
+#if PRECLASSIFY
+#if COLORED
+    return vec3f(extinction_between(met.r).r, extinction_between(met.g).r, extinction_between(met.b).r);
+#else
+    return extinction_between(met);
+#endif
+#else
+    return extinction_between(met);
+#endif
+}
+
+// The same by the nearest entry alone.
+fn met_nearly(met: Met) -> Left {
+#if PRECLASSIFY
+#if COLORED
+    // Of shares entries have no colours of their own.
+    return vec3f(
+        lighting_table.entries[nearest_entry(met.r)].a,
+        lighting_table.entries[nearest_entry(met.g)].a,
+        lighting_table.entries[nearest_entry(met.b)].a,
+    );
+#else
+    return lighting_table.entries[nearest_entry(met)].a;
+#endif
+#else
+    return extinction_of(lighting_table.entries[nearest_entry(met)]);
 #endif
 }

@@ -35,6 +35,9 @@ var<private> grid: Grid;
 // from −1 for none to 1, gba how it changes from the texel before to the one behind along x, y and z.
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
 
+// Channel of the pyramid that is gathered: where voxels are classified first, each colour of light meets its own.
+override GATHERED: u32 = 0u;
+
 // Whether any slab's pixels are wider than voxels.
 override STRETCH: bool = false;
 
@@ -43,7 +46,11 @@ const TWO_POINT_OFFSET = 0.28867513;
 
 // One fetch from the pyramid of prefiltered volumes.
 fn pyramid(p: vec3f, level: f32) -> f32 {
+#if GATHERED
+    return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level)[GATHERED];
+#else
     return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
+#endif
 }
 
 // Σ over the 4³ neighbours of density × kernel.

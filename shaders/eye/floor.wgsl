@@ -2,7 +2,7 @@
 // there to each light, through all that attenuates it. The result is linear and premultiplied; what the volume
 // covers is laid over it when the picture is shown (output/display.wgsl).
 #import "common/sizes.wgsl"
-#import "density/table.wgsl"
+#import "density/classify.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
 #import "shading/light_volumes.wgsl"
@@ -61,12 +61,18 @@ override SHADOWED: u32 = 1u;
 // Nobody sees less than this of the floor: an eighth of an 8-bit step.
 const LEAST = 0.0005;
 
-fn ray_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
-    return slab_density(frame, ray, k);
-}
-
-fn light_extinction(density: f32) -> f32 {
-    return classified_extinction(density);
+fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
+#if COLORED
+#if PRECLASSIFY
+    let met = slab_spread(frame, ray, k).gba;
+    return vec3f(classified_extinction(met.r), classified_extinction(met.g), classified_extinction(met.b));
+#else
+    let at = table_entry(slab_density(frame, ray, k));
+    return mix(extinction_of(table.entries[at.low]), extinction_of(table.entries[at.low + 1u]), vec3f(at.fraction));
+#endif
+#else
+    return classified_extinction(slab_density(frame, ray, k));
+#endif
 }
 
 fn light_distance(cell: vec3f) -> i32 {
@@ -105,7 +111,7 @@ fn fallen(slot: u32, light: Light, p: vec3f, place: vec3f) -> Fallen {
     let hood = hood_share(light, towards.direction);
     let bare = light.color * max(dot(floor_disc.up, towards.direction), 0.0);
     let s = floor_disc.shading;
-    var left = 0.0;
+    var left = Left(0.0);
     if (shadowed) {
         for (var i = 0u; i < light.points; i += 1u) {
             let one = point_of(light, i);
@@ -120,10 +126,10 @@ fn fallen(slot: u32, light: Light, p: vec3f, place: vec3f) -> Fallen {
         }
         left /= max(f32(light.points), 1.0);
         if (light.points == 0u) {
-            left = left_on_map(slot, place_on_map(place));
+            left = Left(left_on_map(slot, place_on_map(place)));
         }
     }
-    return Fallen(bare * select(hood, received(s, left), shadowed), bare * hood);
+    return Fallen(bare * select(Left(hood), received(s, left), shadowed), bare * hood);
 }
 
 // What an open floor sees of the sky: moments over a hemisphere.

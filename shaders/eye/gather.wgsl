@@ -23,33 +23,28 @@
 override SHEET_GRADIENTS: bool = false;
 // BY_NEED: slabs are as thin as they need to be (slabs_by_need.wgsl).
 
-// Densities of the volume as rays to lights find them.
-fn ray_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+// Extinctions of the volume as rays to lights find them.
+fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
 #if PRECLASSIFY
     let depth = depth_of(frame, k);
     let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
-    return 0.5 * (lighting_density(ray.origin + ray.direction * (depth - offset), 0.0)
-        + lighting_density(ray.origin + ray.direction * (depth + offset), 0.0));
+    return met_extinction(0.5 * (lighting_density(ray.origin + ray.direction * (depth - offset), 0.0)
+        + lighting_density(ray.origin + ray.direction * (depth + offset), 0.0)));
 #else
-    return slab_density(frame, ray, k);
+    return met_extinction(slab_density(frame, ray, k));
 #endif
-}
-
-fn light_extinction(density: f32) -> f32 {
-    let at = table_entry(density);
-    return mix(lighting_table.entries[at.low].a, lighting_table.entries[at.low + 1u].a, at.fraction);
 }
 
 fn light_distance(cell: vec3f) -> i32 {
     return near(light_distances, cell).y;
 }
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
+fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
 #if DIRECT
     let p = biased(light, surface, towards);
     let s = eye.shading;
     let cut = eye.shading_cut;
-    var sum = 0.0;
+    var sum = Left(0.0);
     for (var i = 0u; i < light.points; i += 1u) {
         let one = point_of(light, i);
         let way = to_light(one, surface.position);

@@ -29,12 +29,9 @@ var<private> raycast: Raycast;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
 
-fn ray_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
-    return slab_density(frame, ray, k);
-}
-
-fn light_extinction(density: f32) -> f32 {
-    return classified_extinction(density);
+// All light is followed here, or one of its colours: what is met is one number.
+fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
+    return Left(classified_extinction(slab_density(frame, ray, k)));
 }
 
 fn light_distance(cell: vec3f) -> i32 {
@@ -60,5 +57,5 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let reach = towards.distance;
     let cut = raycast.shading_cut;
     let arriving = shadow_ray(p, direction, reach, raycast.ray_step, scale, raycast.dark, cut);
-    textureStore(attenuation, voxel, vec4f(arriving * hood_share(raycast.light, towards.direction)));
+    textureStore(attenuation, voxel, vec4f(least_of(arriving) * hood_share(raycast.light, towards.direction)));
 }

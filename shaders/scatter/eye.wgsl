@@ -15,7 +15,7 @@
 // Take gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = true;
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
+fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
     return near_or_looked_up(light, volume, surface, towards);
 }
 

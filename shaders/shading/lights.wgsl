@@ -1,4 +1,6 @@
 // Phong's illumination with attenuated light (P eq. 2–4).
+#import "common/left.wgsl"
+
 const MAX_LIGHTS = 8;
 
 struct Light {
@@ -151,8 +153,8 @@ struct Lit {
 }
 
 // Attenuated light as it reaches the sample, after the cures for darkness (P §4).
-fn received(shading: Shading, attenuation: f32) -> f32 {
-    let light = min(shading.gain * attenuation + shading.ambient_offset, 1.0);
+fn received(shading: Shading, attenuation: Left) -> Left {
+    let light = min(shading.gain * attenuation + shading.ambient_offset, Left(1.0));
     return 1.0 - shading.strength * (1.0 - light);
 }
 
@@ -180,8 +182,18 @@ fn diffuse_share(light: Light, surface: Surface, facing: f32, amid: f32) -> f32 
     return mix(amid, reflected, surface.surfaceness);
 }
 
-// What one light adds of which a given share arrives.
-fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, share: f32) -> Lit {
+// The square of the sine of half the width of a light as it is seen from somewhere; 0 of a point.
+fn width_seen(light: Light, towards: Towards) -> f32 {
+    let mean_square = 0.5 * (dot(light.area_right, light.area_right) + dot(light.area_up, light.area_up));
+    let tangent = mean_square * towards.per_length * towards.per_length;
+    return tangent / (1.0 + tangent);
+}
+
+// What one light adds of which a given share arrives, and of which highlights show the width.
+//
+// A highlight (N·H)^n is about a Gaussian of variance 1/n; light from an even disc of radius s moves H by half of what it
+// moves itself, which adds s²/16 to that, and the highlight is weaker as it is wider.
+fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, share: Left, width: f32) -> Lit {
     let arriving = light.color * share;
     // Highlights have one side: that to which density falls, or opacity.
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
@@ -191,6 +203,8 @@ fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec
     let half_vector = to_light + surface.to_eye;
     // pow(0, x) is spared: some drivers make it NaN.
     let aligned = max(turned * dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);
-    let highlight = select(0.0, pow(aligned, shading.shininess), turned * facing > 0.0) * surface.surfaceness * clear;
+    let wider = 1.0 / (1.0 + shading.shininess * width / 16.0);
+    let mirrored = pow(aligned, shading.shininess * wider) * wider;
+    let highlight = select(0.0, mirrored, turned * facing > 0.0) * surface.surfaceness * clear;
     return Lit(arriving * diffuse, arriving * highlight);
 }

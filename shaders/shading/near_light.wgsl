@@ -4,9 +4,6 @@
 #import "density/cut.wgsl"
 #import "shading/shade.wgsl"
 
-// The lighting transfer function.
-@group(0) @binding(4) var<storage, read> lighting_table: TransferTable;
-
 // Steps of the near field (src/model/settings/shadows.rs), or none.
 override NEAR_STEPS: u32 = 0u;
 
@@ -14,16 +11,16 @@ override NEAR_STEPS: u32 = 0u;
 // or two, which is where a surface shades itself. The last step goes half a voxel of the light volume further, to where
 // the trilinear fetch sees little of what the ray has met already; no piece of the way is left out. Every sample looks
 // light up equally far away, so that light volumes hold no more than that takes (src/plan/geometry/ahead.rs).
-fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
+fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
     let forward = (light.place_in_index - surface.point * light.perspective) * towards.per_length;
     var way = 0.0;
-    var depth = 0.0;
+    var depth = Left(0.0);
     var step = 0u;
     loop {
         let width = near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == NEAR_STEPS);
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
-        let extinction = lighting_table.entries[nearest_entry(lighting_density(p, surface.level))].a;
+        let extinction = met_nearly(lighting_density(p, surface.level));
         depth += extinction * share_that_shades(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
         way += length;
         step += 1u;
@@ -36,7 +33,7 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
 }
 
 // What is left of a light that has a volume.
-fn near_or_looked_up(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> f32 {
+fn near_or_looked_up(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
 #if NEAR_STEPS
     return near_light(light, volume, surface, towards);
 #else

@@ -63,15 +63,15 @@ fn biased(light: Light, surface: Surface, towards: Towards) -> vec3f {
 }
 
 // What its light volume says of a light at an index-space point.
-fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> f32 {
-    return textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0).r;
+fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> Left {
+    return stored_left(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
 }
 
 fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
     let towards = to_light(light, surface.position);
     let share = received(eye.shading, attenuation_at(light, volume, surface, towards));
-    return reflect_light(eye.shading, light, surface, towards.direction, share);
+    return reflect_light(eye.shading, light, surface, towards.direction, share, width_seen(light, towards));
 }
 
 fn add(a: Lit, b: Lit) -> Lit {
@@ -209,8 +209,9 @@ fn shade(found: Sampled, material: vec3f) -> vec3f {
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
         // Not from the copy: an index that varies would keep that as an array in memory.
         let light = bound_eye.lights[i];
-        let direction = to_light(light, surface.position).direction;
-        lit = add(lit, reflect_light(s, light, surface, direction, hood_share(light, direction)));
+        let towards = to_light(light, surface.position);
+        let share = Left(hood_share(light, towards.direction));
+        lit = add(lit, reflect_light(s, light, surface, towards.direction, share, width_seen(light, towards)));
     }
     let around = lit_by_sky(surface) + lit_by_bounces(surface);
     return material * (s.emission + s.ambient + around + s.diffuse * lit.diffuse) + s.specular * lit.specular;

@@ -1,5 +1,6 @@
 // A ray from a point of the volume towards a light (P eq. 7 and 8). The shader that imports this
-// says what attenuates light, by ray_density(frame, ray, k), light_extinction(density) and light_distance(cell).
+// says what attenuates light, by ray_extinction(frame, ray, k) and light_distance(cell).
+#import "common/left.wgsl"
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
 
@@ -18,7 +19,7 @@ fn shadow_ray(
     scale: f32,
     dark: f32,
     cut: Cut,
-) -> f32 {
+) -> Left {
     // A stack of sheets of its own: the ray's points are the middles of its slabs.
     var frame: SheetFrame;
     frame.first_depth = select(0.0, 0.5 * ray_step, DEPOSIT_FRONT);
@@ -31,7 +32,7 @@ fn shadow_ray(
     let inside = slabs_within(frame, span, slabs_inside(frame, ray));
     let walk = walk_along(frame, ray);
     var k = inside.x;
-    var depth = 0.0;
+    var depth = Left(0.0);
     loop {
         // A loop of its own, as in the eye pass.
         loop {
@@ -49,8 +50,8 @@ fn shadow_ray(
             break;
         }
         let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
-        depth += light_extinction(ray_density(frame, ray, f32(k))) * share * ray_step * scale;
-        if (depth > dark) {
+        depth += ray_extinction(frame, ray, f32(k)) * share * ray_step * scale;
+        if (least_of(depth) > dark) {
             break;
         }
         k += 1;
@@ -60,7 +61,7 @@ fn shadow_ray(
     if (frame.first_depth < reach && all(end > vec3f(-2.0)) && all(end < grid.dims + 1.0)) {
         frame.slab = reach - frame.first_depth;
         let share = share_that_shades(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
-        depth += light_extinction(ray_density(frame, ray, 0.0)) * share * frame.slab * scale;
+        depth += ray_extinction(frame, ray, 0.0) * share * frame.slab * scale;
     }
     return exp(-depth);
 }

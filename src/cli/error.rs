@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::data::SurroundingsError;
 use crate::data::load::{LoadError, LoadErrorKind};
 use crate::export::{ExportError, ReadPictureError};
 use crate::gpu::GpuError;
@@ -38,6 +39,9 @@ pub enum CliError {
         /// Why not.
         source: std::io::Error,
     },
+    /// A panorama cannot serve as surroundings.
+    #[error(transparent)]
+    Surroundings(#[from] SurroundingsError),
     /// The GPU could not do it.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -112,6 +116,13 @@ impl CliError {
                 GpuError::OutOfMemory { .. } | GpuError::FewAddresses { .. } | GpuError::OverLimit { .. },
             )
             | Self::Threads(_) => 5,
+            Self::Surroundings(err) => match err {
+                SurroundingsError::Io { .. } => 6,
+                SurroundingsError::TooLarge { .. } => 5,
+                SurroundingsError::Broken { .. }
+                | SurroundingsError::Shape { .. }
+                | SurroundingsError::Black { .. } => 3,
+            },
             Self::Gpu(_) | Self::Window(_) => 4,
             Self::Read { .. } | Self::Export(_) | Self::Picture(_) | Self::Output(_) => 6,
         }

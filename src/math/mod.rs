@@ -5,10 +5,14 @@
 
 mod bounds;
 mod false_color;
+mod luminance;
 mod region;
 mod scene;
+mod srgb;
 
 pub use bounds::Bounds;
 pub use false_color::false_color;
+pub use luminance::luminance;
 pub use region::{HalfSpace, Region};
 pub use scene::SceneSpace;
+pub use srgb::{linear_from_srgb, srgb_from_linear};

@@ -24,7 +24,10 @@ pub use self::settings::light::area::{
     LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
 };
 pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, Scattering};
-pub use self::settings::light::sky::{SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyRadiance};
+pub use self::settings::light::sky::{
+    MAX_PICTURE_RADIANCE, SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyPicture, SkyRadiance,
+};
+pub use self::settings::light::surroundings::SURROUNDINGS;
 pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIGHTS, MAX_NAME, SceneLight};
 pub use self::settings::quality::Quality;
 pub use self::settings::range::DensityRange;
@@ -51,6 +54,7 @@ pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::oklab::{
     lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear, srgb_from_lch,
 };
+pub use self::transfer::transmitted::COLORS;
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
 pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
 pub use light_place::LightPlace;

@@ -50,7 +50,7 @@ use glam::DVec3;
 use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
 use crate::model::{BakedTransfer, Classification, Kernel, Resolution, SceneLight, Settings};
-use field::classified::{Classified, Side};
+use field::classified::{Classified, SIDES, Side};
 use kernel::Profile;
 
 /// Whose weights the sums are taken with.
@@ -100,6 +100,17 @@ pub struct Options {
     pub fault: Fault,
     /// How densities and the prefiltered volume's levels are stored; `None` keeps them as they are.
     pub rounding: Option<Rounding>,
+    /// Which colour of light is followed, where shadows are coloured: red, green or blue. Of the picture that component
+    /// alone means something ([`of_colors`]).
+    pub color: Option<usize>,
+}
+
+/// A picture under coloured shadows: colours of light do not depend on each other, so that it is that of each colour in its
+/// component. The coverage is the same in all.
+pub fn of_colors(picture: impl Fn(usize) -> Vec<[f64; 4]>) -> Vec<[f64; 4]> {
+    let [red, green, blue] = [0, 1, 2].map(picture);
+    let joined = |((r, g), b): ((&[f64; 4], &[f64; 4]), &[f64; 4])| [r[0], g[1], b[2], r[3]];
+    red.iter().zip(&green).zip(&blue).map(joined).collect()
 }
 
 /// A volume and the look of it, ready to be rendered.
@@ -116,7 +127,23 @@ pub struct Reference<'a> {
     /// How that changes along x, y and z, where it is as it is stored.
     presence_changes: Option<[Pyramid; 3]>,
     /// Voxels as the eye and light see them, where they are classified before kernels spread them.
-    classified: Option<Box<[Classified; 2]>>,
+    classified: Option<Box<[Classified; 3]>>,
+}
+
+/// The transfer function of a side, where one of the colours of light is followed.
+fn table_of(
+    settings: &Settings,
+    side: Side,
+    color: Option<usize>,
+    (range, scene): (ValueRange, &SceneSpace),
+) -> BakedTransfer {
+    match (side, color) {
+        (Side::Eye, _) => settings.baked_eye(range, scene),
+        (Side::Lighting, Some(color)) if settings.has_colored_shadows() => {
+            settings.baked_lighting(range, scene).met_by(color)
+        }
+        (Side::Lighting | Side::Around, _) => settings.baked_lighting(range, scene),
+    }
 }
 
 impl<'a> Reference<'a> {
@@ -138,7 +165,7 @@ impl<'a> Reference<'a> {
         }
         let scene = volume.scene();
         let classified = (settings.sampling.classification == Classification::Pre).then(|| {
-            let tables = [settings.baked_eye(range, &scene), settings.baked_lighting(range, &scene)];
+            let tables = SIDES.map(|side| table_of(settings, side, options.color, (range, &scene)));
             let (width, rounding) = (kernel_width(options.fault), options.rounding);
             Box::new(tables.map(|table| Classified::of(&field, &table, presence.as_ref(), width, rounding)))
         });
@@ -147,10 +174,11 @@ impl<'a> Reference<'a> {
 
     /// Voxels as they are classified before kernels spread them, if they are.
     fn classified(&self, side: Side) -> Option<&Classified> {
-        let [eye, lighting] = &**self.classified.as_ref()?;
+        let [eye, lighting, around] = &**self.classified.as_ref()?;
         Some(match side {
             Side::Eye => eye,
             Side::Lighting => lighting,
+            Side::Around => around,
         })
     }
 
@@ -174,10 +202,7 @@ impl<'a> Reference<'a> {
 
     /// The transfer function of a side.
     fn table(&self, side: Side) -> BakedTransfer {
-        match side {
-            Side::Eye => self.settings.baked_eye(self.range, &self.scene),
-            Side::Lighting => self.settings.baked_lighting(self.range, &self.scene),
-        }
+        table_of(self.settings, side, self.options.color, (self.range, &self.scene))
     }
 
     /// The share of what is gathered that is there; classified voxels end by themselves.

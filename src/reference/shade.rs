@@ -149,7 +149,9 @@ impl<'r> Shader<'r> {
             let reflected = amid + (reflected - amid) * surface.weight;
             let half_way = (to_light + to_eye).normalize_or_zero();
             let mirrored = if outward.dot(to_light) > 0.0 {
-                side.abs() * surface.weight * outward.dot(half_way).max(0.0).powf(shading.shininess)
+                let wider = 1.0 / (1.0 + shading.shininess * width_seen(&lamp.light, place) / 16.0);
+                let mirrored = outward.dot(half_way).max(0.0).powf(shading.shininess * wider) * wider;
+                side.abs() * surface.weight * mirrored
             } else {
                 0.0
             };
@@ -316,6 +318,18 @@ impl Reference<'_> {
         let light = (shadows.gain * left + shadows.ambient_offset).min(1.0);
         1.0 - shadows.strength * (1.0 - light)
     }
+}
+
+/// sin² of half the width of a light as it is seen from a place in the scene; 0 of a point.
+fn width_seen(light: &SceneLight, place: DVec3) -> f64 {
+    let Some(area) = light.area else { return 0.0 };
+    let away = match light.kind {
+        // Its extent is that of one at a distance of 1.
+        LightKind::Parallel => 1.0,
+        LightKind::Perspective => DVec3::from(light.position).distance(place),
+    };
+    let tangent = 0.5 * (area.right.length_squared() + area.up.length_squared()) / (away * away);
+    tangent / (1.0 + tangent)
 }
 
 #[cfg(test)]

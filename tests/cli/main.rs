@@ -9,7 +9,7 @@ mod checks;
 mod convert;
 mod data;
 mod inputs;
-mod light_volume;
+mod light;
 mod limits;
 mod outputs;
 mod render;

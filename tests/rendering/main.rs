@@ -13,3 +13,4 @@ mod looks;
 mod output;
 mod scenes;
 mod thresholds;
+mod tracing;

@@ -128,6 +128,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("light/average.wgsl", [8, 8, 4]),
         ("light/backproject.wgsl", [1, 1, 1]),
         ("light/clear_margin.wgsl", [8, 8, 4]),
+        ("light/colors.wgsl", [8, 8, 4]),
         ("light/combine.wgsl", [8, 8, 4]),
         ("light/floor_shadow.wgsl", [8, 8, 1]),
         ("light/march.wgsl", [8, 8, 1]),

@@ -1,4 +1,4 @@
-//! What lights that have a size take, beside one that has none.
+//! What lights that have a size take, beside one that has none, and coloured shadows beside grey ones.
 
 use serde_json::{Map, Value, json};
 
@@ -14,9 +14,12 @@ const BUILDS: [(u32, Resolution); 4] =
 /// Width of the light, in degrees.
 const ANGLE_DEG: f64 = 15.0;
 
+/// Of coloured shadows: any share takes as long.
+const TRANSMISSION: f64 = 0.8;
+
 impl Bench<'_> {
     /// Fillings of the volume of a disc in units of B, the filling of one parallel light with the B-spline both ways; an
-    /// orbit under a disc over one without. In turn, so that a busy machine slows all of them.
+    /// orbit under a disc over one without; and the same of coloured shadows over grey ones. In turn, so that a busy machine slows all of them.
     pub(super) fn area(
         &mut self,
         cases: &mut Vec<Value>,
@@ -33,7 +36,10 @@ impl Bench<'_> {
             (settings.shadows.area.samples, settings.shadows.area.resolution) = (samples, resolution);
             settings
         };
-        let looks = BUILDS.map(|(points, resolution)| under_a_disc(points, resolution));
+        let mut colored = lit.clone();
+        colored.shadows.transmission = TRANSMISSION;
+        let mut looks = BUILDS.map(|(points, resolution)| under_a_disc(points, resolution)).to_vec();
+        looks.extend([lit.clone(), colored.clone()]);
         let denser = |settings: &mut Settings, scale: f64| {
             settings.lights.iter_mut().for_each(|light| light.density_scale *= scale);
         };
@@ -47,11 +53,18 @@ impl Bench<'_> {
                 json!({ "measured": round(samples.light_build() / unit) }),
             );
         }
+        if let [.., grey, colored] = &builds[..] {
+            let ratio = round(colored.light_build() / grey.light_build());
+            ratios.insert("coloured_light_over_grey_light".to_owned(), json!(ratio));
+        }
         let pair = [lit.clone(), under_a_disc(64, Resolution::Half)];
         let turned =
             |settings: &mut Settings, frame: usize| settings.camera.azimuth_deg += STEP_DEG * frame as f64;
         let [without, with] = self.in_turn(&pair, turned)?;
         ratios.insert("orbit_under_a_disc_over_orbit".to_owned(), json!(round(with.cost() / without.cost())));
+        let [grey, colored] = self.in_turn(&[lit, colored], turned)?;
+        let ratio = round(colored.cost() / grey.cost());
+        ratios.insert("orbit_with_coloured_shadows_over_orbit".to_owned(), json!(ratio));
         cases.push(self.case("orbit-point", &without, 0));
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::LookArgs;
 use super::overlay::Overlay;
 use crate::cli::CliError;
+use crate::cli::outputs::warn_line;
 use crate::data::Dataset;
 use crate::gpu::{Open, Renderer, finish_look};
 use crate::model::{Settings, auto};
@@ -58,6 +59,12 @@ fn finished(
     if look.floor.on && !settings.floor.on {
         // How long the picture is exposed has been found since the floor was laid.
         look.floor.color = auto::floor_color(look.output.exposure);
+    }
+    if renderer.context().is_software() && look.casts_rays_to_all_points() {
+        warn_line(
+            "warning: this driver, which draws with the processor, ends rays to lights that have a size before they \
+             arrive: such lights are too dark; --quality fine shows them as they are",
+        );
     }
     Ok(look)
 }

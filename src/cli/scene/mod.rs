@@ -2,6 +2,7 @@
 
 mod choices;
 mod corrections;
+mod load_args;
 mod look;
 mod overlay;
 mod single_settings;
@@ -9,144 +10,24 @@ mod single_settings;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use self::choices::{EngineArg, KindArg, QualityArg, ShadowArg};
 pub(super) use self::corrections::{corrected, corrected_by};
+pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::Look;
 use self::look::{Named, Proposed, proposal};
 use self::overlay::Overlay;
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
-use crate::data::load::{Choice, Endian, LoadControl, LoadOptions, Portion, RawFormat, Region, Thinning};
-use crate::data::{Dataset, KindName, ValueRanges, Volume, VoxelType, open};
+use crate::data::load::LoadControl;
+use crate::data::{Dataset, KindName, Surroundings, ValueRanges, Volume, open, read_surroundings};
 use crate::gpu::{Context, fitted, small_volume};
 use crate::model::auto::Wishes;
 use crate::model::{MAX_EDGE, SceneAxis, Settings, assign, auto};
 
 /// How high the floor lies, by its path.
 const FLOOR_HEIGHT: &str = "floor.height";
-
-/// How a volume is read.
-#[derive(Debug, Clone, Args)]
-pub(super) struct LoadArgs {
-    /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures; 1 is all of them
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
-    reduce: Option<u16>,
-    /// Read along each axis every Nth voxel alone, for less memory
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64), conflicts_with = "reduce")]
-    every: Option<u16>,
-    /// Voxels to read, along each axis from the first to before the last, counted from 0; an end may be left out
-    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1")]
-    region: Option<Region>,
-    /// RAW input: voxels along x, y, z
-    #[arg(long, value_name = "WxHxD", global = false)]
-    dims: Option<String>,
-    /// RAW input: uint8, int8, uint16, int16, uint32, int32, float32 or float64
-    #[arg(long = "type", value_name = "T", value_parser = parse_voxel_type)]
-    voxel_type: Option<VoxelType>,
-    /// RAW input: distance between voxels in millimetres
-    #[arg(long, value_name = "SXxSYxSZ")]
-    spacing: Option<String>,
-    /// RAW input: byte order
-    #[arg(long, value_enum)]
-    endian: Option<EndianArg>,
-    /// RAW input: bytes before the voxels
-    #[arg(long, value_name = "BYTES")]
-    offset: Option<u64>,
-    /// Vectors and colours: the component that is shown, from 0, instead of their length or luminance
-    #[arg(long, value_name = "N")]
-    component: Option<usize>,
-    /// Several time steps: the one that is shown, from 0
-    #[arg(long, value_name = "N")]
-    frame: Option<usize>,
-    /// Several channels: the one that is shown, from 0
-    #[arg(long, value_name = "N")]
-    channel: Option<usize>,
-    /// Several series in a folder: the one that is shown, by its number or name
-    #[arg(long, value_name = "NAME")]
-    series: Option<String>,
-    /// Several arrays in a file: the one that is shown
-    #[arg(long, value_name = "NAME")]
-    array: Option<String>,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum EndianArg {
-    Little,
-    Big,
-}
-
-impl LoadArgs {
-    /// The options for the reader.
-    pub(super) fn load_options(&self) -> Result<LoadOptions, CliError> {
-        let usage = |field: &str, text: &str, expected: &str| {
-            CliError::Usage(format!(
-                "--{field}: expected {expected}, found {text:?} (command line, --{field})"
-            ))
-        };
-        let dims = match &self.dims {
-            None => None,
-            Some(text) => Some(
-                triple::<usize>(text).ok_or_else(|| usage("dims", text, "three whole numbers, 64x64x32"))?,
-            ),
-        };
-        let spacing_mm = match &self.spacing {
-            None => None,
-            Some(text) => {
-                Some(triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?)
-            }
-        };
-        let endian = self.endian.map(|endian| match endian {
-            EndianArg::Little => Endian::Little,
-            EndianArg::Big => Endian::Big,
-        });
-        let raw = RawFormat { dims, voxel_type: self.voxel_type, spacing_mm, endian, offset: self.offset };
-        let choice = Choice {
-            component: self.component,
-            frame: self.frame,
-            channel: self.channel,
-            series: self.series.clone(),
-            array: self.array.clone(),
-            portion: self.portion(),
-            ..Choice::default()
-        };
-        Ok(LoadOptions { raw, choice, ..LoadOptions::default() })
-    }
-
-    /// How much of the volume is read, where that is said.
-    fn portion(&self) -> Option<Portion> {
-        let thinning = match (self.every, self.reduce) {
-            (Some(step), _) => Thinning::Every(step.into()),
-            (None, Some(block)) => Thinning::Average(block.into()),
-            (None, None) => Thinning::None,
-        };
-        let is_said = self.every.is_some() || self.reduce.is_some() || self.region.is_some();
-        is_said.then_some(Portion { region: self.region, thinning })
-    }
-
-    /// Loads a volume, and opens the adapter.
-    pub(super) fn open(&self, source: &Path) -> Result<(Volume, Context), CliError> {
-        self.open_chosen(source, None)
-    }
-
-    /// As [`Self::open`]. Of several volumes it is that one, and as much of it as was read then, unless the command line
-    /// says something else.
-    pub(super) fn open_chosen(
-        &self,
-        source: &Path,
-        choice: Option<&Choice>,
-    ) -> Result<(Volume, Context), CliError> {
-        let mut options = self.load_options()?;
-        if let Some(choice) = choice {
-            options.choice = options.choice.or(choice);
-        }
-        // What is wrong with a file is said first.
-        let whole = open(source, &options, &LoadControl::new())?;
-        let context = Context::headless()?;
-        Ok((downsampled_to_fit(source, whole, &context)?, context))
-    }
-}
 
 /// The volume as the adapter can hold it.
 fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result<Volume, CliError> {
@@ -162,19 +43,6 @@ fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result
         ));
     }
     Ok(volume)
-}
-
-/// `uint8`
-pub(super) fn parse_voxel_type(text: &str) -> Result<VoxelType, String> {
-    let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
-    known.ok_or_else(|| format!("expected one of {}", VoxelType::ALL.map(VoxelType::name).join(", ")))
-}
-
-/// `1x2x3`.
-fn triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
-    let parts: Vec<T> =
-        text.split(['x', 'X', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
-    parts.try_into().ok()
 }
 
 /// `1920x1080`.
@@ -197,6 +65,9 @@ pub(super) struct LookArgs {
     /// Session to restore: a JSON file, or a picture that was exported
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
+    /// Panorama to light the scene by (.hdr, .exr, .png, .jpg, twice as wide as high), over preset and session
+    #[arg(long, value_name = "FILE")]
+    surroundings: Option<PathBuf>,
     /// What kind of data the volume is shown as, whatever it seems to be
     #[arg(long = "as", value_name = "KIND", value_enum)]
     treat_as: Option<KindArg>,
@@ -217,6 +88,9 @@ pub(super) struct LookArgs {
     /// Preset and session once they have been read, which a pipe allows once.
     #[arg(skip)]
     read: OnceLock<Vec<Overlay>>,
+    /// The panorama, likewise.
+    #[arg(skip)]
+    lit_by: OnceLock<Option<Surroundings>>,
 }
 
 /// What is rendered, and how it looks.
@@ -254,9 +128,10 @@ impl SceneArgs {
 
     /// Refuses to write over what is read, or twice over one file, or over files of others unless that is wanted.
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
-        let LookArgs { preset, session, .. } = &self.look;
-        let inputs = [Some(self.file.as_path()), preset.as_deref(), session.as_deref()];
-        keep_apart(&inputs.into_iter().flatten().collect::<Vec<_>>(), outputs, self.force)
+        let LookArgs { preset, session, surroundings, .. } = &self.look;
+        let named = [preset, session, surroundings].map(|path| path.as_deref());
+        let inputs = named.into_iter().chain([Some(self.file.as_path())]);
+        keep_apart(&inputs.flatten().collect::<Vec<_>>(), outputs, self.force)
     }
 
     /// Finds the look.
@@ -286,6 +161,15 @@ impl LookArgs {
         let read = named.into_iter().filter_map(|(what, path)| Some(Overlay::read(what, path.as_ref()?)));
         let read = read.collect::<Result<_, _>>()?;
         Ok(self.read.get_or_init(|| read).clone())
+    }
+
+    /// The panorama that the arguments name.
+    fn lit_by(&self) -> Result<Option<&Surroundings>, CliError> {
+        if self.lit_by.get().is_none() {
+            let read = self.surroundings.as_deref().map(read_surroundings).transpose()?;
+            return Ok(self.lit_by.get_or_init(|| read).as_ref());
+        }
+        Ok(self.lit_by.get().and_then(Option::as_ref))
     }
 
     /// A volume that was opened, corrected as its session and single settings say.
@@ -356,6 +240,10 @@ impl LookArgs {
             named.add(|part| overlay.names(part));
             settings = overlay.over(&settings, &volume.ranges(), &warn)?;
         }
+        if let Some(surroundings) = self.lit_by()? {
+            settings.surround(surroundings);
+            named.add(|part| ["lights", "shadows.balance"].contains(&part));
+        }
         let mut settings = self.single_settings(settings, warn)?;
         // It has been made into the volume.
         settings.volume = *volume.corrections();
@@ -390,8 +278,5 @@ mod tests {
         for bad in ["640", "0x10", "-1x4", "99999x1", "axb", ""] {
             assert!(parse_size(bad).is_err(), "{bad}");
         }
-        assert_eq!(triple("1x2x3"), Some([1usize, 2, 3]));
-        assert_eq!(triple::<usize>("1x2"), None);
-        assert_eq!(triple("0.5x1x2"), Some([0.5, 1.0, 2.0]));
     }
 }

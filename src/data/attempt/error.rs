@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::choice::{Choice, Unclear};
 use super::offer::{Dimension, Offer};
-use crate::data::foreign_text::plain;
+use crate::data::foreign::plain;
 
 /// What a user reads: `WHAT: WHY (file, field); HELP`.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -7,7 +7,7 @@ mod modality;
 pub use self::labels::{Label, Labels, MAX_LABEL_NAME, MAX_LABELS};
 pub use self::modality::Modality;
 
-use super::foreign_text::plain;
+use super::foreign::plain;
 
 /// Characters of a unit that are kept: those that exist have a few.
 const MAX_UNIT: usize = 40;

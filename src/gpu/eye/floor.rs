@@ -6,14 +6,14 @@ use crate::gpu::light::packed::{light_entries, pack_light};
 use crate::gpu::light::raycast::RaycastVariant;
 use crate::gpu::pipelines::binding::{buffer, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Ends, LightCount, SkyVariant, Variant};
+use crate::gpu::pipelines::variant::{Constants, Ends, LightCount, SkyVariant, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::sky::floor_map::FloorMap;
 use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
-use crate::model::{Floor, MAX_LIGHTS, Settings, linear_from_srgb};
+use crate::model::{Classification, Floor, MAX_LIGHTS, Settings, linear_from_srgb};
 use crate::plan::{FloorPlace, LitLights, ray_reach};
 
 /// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
@@ -87,12 +87,15 @@ pub(crate) struct FloorVariant {
     rays: RaycastVariant,
     lights: LightCount,
     sky: SkyVariant,
+    /// What is left of each light's colours differs: of classified voxels, or of densities.
+    colored: Option<Classification>,
 }
 
 impl FloorVariant {
     /// The floor under so many lights.
     pub(crate) fn of(settings: &Settings, lights: LightCount) -> Self {
-        Self { rays: RaycastVariant::of(settings), lights, sky: SkyVariant::of(settings) }
+        let colored = settings.has_colored_shadows().then_some(settings.sampling.classification);
+        Self { rays: RaycastVariant::of(settings), lights, sky: SkyVariant::of(settings), colored }
     }
 
     /// The floor under what ends there.
@@ -110,6 +113,8 @@ impl Variant for FloorVariant {
         let mut constants = self.rays.constants();
         constants.extend(self.lights.constants());
         constants.push(self.sky.constant());
+        constants.push(flag("COLORED", self.colored.is_some()));
+        constants.push(flag("PRECLASSIFY", self.colored == Some(Classification::Pre)));
         constants
     }
 }

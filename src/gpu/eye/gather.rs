@@ -244,6 +244,7 @@ impl GatherVariant {
                 sky: SkyVariant::of(settings),
                 has_bounces: settings.has_bounces(),
                 is_anisotropic: settings.scattering.anisotropy != 0.0,
+                has_colored_shadows: settings.has_colored_shadows(),
             },
             rays: casts_rays.then_some(shadows.deposit),
         }

@@ -5,6 +5,7 @@ use super::step::{LightStep, Product, RaycastStep, Step};
 use crate::gpu::GpuError;
 use crate::gpu::light::average::Average;
 use crate::gpu::light::backproject::Schedule;
+use crate::gpu::light::colors::ColorPlanes;
 use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets};
 use crate::gpu::light::raycast::BRICKS_PER_STEP;
 use crate::gpu::light::volume::{LightVolume, read_bricks};
@@ -13,7 +14,7 @@ use crate::gpu::scatter::eye::SLABS_PER_STEP;
 use crate::gpu::scatter::light::LightScatter;
 use crate::gpu::volume::GpuVolume;
 use crate::gpu::volume::listed_bricks::{Listed, listed};
-use crate::model::{SceneLight, ShadowAlgorithm, Shadows};
+use crate::model::{COLORS, SceneLight, ShadowAlgorithm, Shadows};
 use crate::plan::{BrickSet, LightKey, LightView, light_views, reverse_reach};
 
 /// Slabs per chunk of the light march: enough to be worth a dispatch, few enough for one to be short.
@@ -30,6 +31,8 @@ pub(super) struct LightBuild {
     pub points: Vec<SceneLight>,
     /// The mean of their volumes in the making, if there are several.
     pub average: Option<Average>,
+    /// The volumes of its colours in the making, where each is followed by itself.
+    pub colors: Option<ColorPlanes>,
     /// Whether the volume is coarser than the settings ask for, as only previews have it.
     pub is_coarse: bool,
     /// Stacks of sheets, those of each point after those of the point before; none where rays fill the volume.
@@ -110,6 +113,7 @@ impl LightBuild {
             is_coarse,
             points,
             average: average.transpose()?,
+            colors: fresh.has_colors().then(|| ColorPlanes::new(context, fresh)).transpose()?,
             read: scatters.then(|| read_bricks(volume, &fresh.filled, fresh.divisor, &all)),
             views: geometries.into_iter().enumerate().flat_map(of_point).collect(),
             reverse_reach,
@@ -121,14 +125,30 @@ impl LightBuild {
         })
     }
 
-    /// The volume that the light of a point fills, where the light's own is `whole`.
-    pub(super) fn filled<'a>(&'a self, point: usize, whole: &'a LightVolume) -> &'a LightVolume {
-        self.average.as_ref().map_or(whole, |average| average.point(point))
+    /// The volume that a colour fills, or all of the light, where the light's own is `whole`.
+    pub(super) fn of_color<'a>(&'a self, color: Option<usize>, whole: &'a LightVolume) -> &'a LightVolume {
+        match (&self.colors, color) {
+            (Some(planes), Some(color)) => planes.plane(color),
+            _ => whole,
+        }
+    }
+
+    /// The volume that the light of a point fills, or a colour of that, where the light's own is `whole`.
+    pub(super) fn filled<'a>(
+        &'a self,
+        point: usize,
+        color: Option<usize>,
+        whole: &'a LightVolume,
+    ) -> &'a LightVolume {
+        match &self.average {
+            Some(average) => average.point(point),
+            None => self.of_color(color, whole),
+        }
     }
 
     /// Bytes of what only the filling needs.
     pub(super) fn bytes(&self) -> u64 {
-        self.average.as_ref().map_or(0, Average::bytes)
+        self.average.as_ref().map_or(0, Average::bytes) + self.colors.as_ref().map_or(0, ColorPlanes::bytes)
     }
 
     /// The steps of build number `at`, each chunk of a view cut into `parts`.
@@ -136,11 +156,27 @@ impl LightBuild {
         // Scattered slabs are short enough, and not cut into pixels; those of points of a light are many.
         let parts = if self.scatters || self.average.is_some() { 1 } else { parts };
         let mut steps = Vec::new();
+        if self.colors.is_some() {
+            for color in 0..COLORS {
+                steps.extend(self.steps_of_color(at, Some(color), parts));
+            }
+            steps.push(Step::JoinColors(at));
+        } else {
+            steps.extend(self.steps_of_color(at, None, parts));
+        }
+        steps.push(Step::Finish(Product::Light(at)));
+        steps
+    }
+
+    /// The steps that follow a colour, or all of the light.
+    fn steps_of_color(&self, at: usize, color: Option<usize>, parts: u32) -> Vec<Step> {
+        let mut steps = Vec::new();
         for point in 0..self.points.len() {
             let views = self.views.iter().enumerate().filter(|(_, view)| view.point == point);
             for (view, BuildView { geometry, chunk, .. }) in views {
                 for begin in (0..geometry.frame.slab_count).step_by(*chunk as usize) {
-                    let step = |index| LightStep { build: at, view, begin, part: Part { index, of: parts } };
+                    let part = |index| Part { index, of: parts };
+                    let step = |index| LightStep { build: at, color, view, begin, part: part(index) };
                     steps.extend((0..parts).map(|part| Step::March(step(part))));
                     steps.extend((0..parts).map(|part| Step::Backproject(step(part))));
                 }
@@ -150,14 +186,14 @@ impl LightBuild {
                 // One step at least, which begins a light volume without bricks.
                 let firsts = (0..count.max(1)).step_by(BRICKS_PER_STEP);
                 let bricks = |first: usize| first..count.min(first + BRICKS_PER_STEP);
-                let step = |first| Step::Raycast(RaycastStep { build: at, point, bricks: bricks(first) });
+                let step =
+                    |first| Step::Raycast(RaycastStep { build: at, color, point, bricks: bricks(first) });
                 steps.extend(firsts.map(step));
             }
             if self.average.as_ref().is_some_and(|average| average.is_due(point)) {
-                steps.push(Step::Average { build: at, point });
+                steps.push(Step::Average { build: at, color, point });
             }
         }
-        steps.push(Step::Finish(Product::Light(at)));
         steps
     }
 }

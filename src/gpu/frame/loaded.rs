@@ -118,7 +118,7 @@ impl Loaded {
         settings: &Settings,
     ) -> Result<(), GpuError> {
         let tables = &mut self.tables.value;
-        (tables.eye.materials, tables.lighting.materials) = (None, None);
+        tables.set_materials(None, None);
         if settings.sampling.classification == Classification::Post {
             return Ok(());
         }
@@ -128,7 +128,8 @@ impl Loaded {
             .into_iter()
             .partition(|known| baked.iter().any(|baked| known.is_of(baked)));
         self.materials = needed;
-        for (baked, table) in baked.iter().zip([&mut tables.eye, &mut tables.lighting]) {
+        let mut found = [None, None];
+        for (baked, found) in baked.iter().zip(&mut found) {
             let known = self.materials.iter().find(|known| known.is_of(baked));
             let materials = if let Some(known) = known {
                 Arc::clone(known)
@@ -138,8 +139,10 @@ impl Loaded {
                 self.materials.push(Arc::clone(&fresh));
                 fresh
             };
-            table.materials = Some(materials);
+            *found = Some(materials);
         }
+        let [eye, lighting] = found;
+        tables.set_materials(eye, lighting);
         Ok(())
     }
 

@@ -29,7 +29,7 @@ use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{GpuVolume, prefilter};
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::{Depth, SheetOrder};
-use crate::plan::{EyeKey, FloorKey, FrameKeys, LitLights, Request, SliceOrder};
+use crate::plan::{EyeKey, FloorKey, FrameKeys, LightKey, LitLights, Request, SliceOrder};
 
 impl Renderer {
     /// Whether a picture would take no more than a display pass, or nothing at all.
@@ -260,11 +260,11 @@ impl Renderer {
 /// Finds or makes the light of a picture, in what an interrupted one has left.
 fn place_lights(tools: &Tools, loaded: &mut Loaded, wanted: Wanted<'_>) -> Result<PlacedLights, GpuError> {
     // Bind groups would keep alive what has only served to fill it.
-    let is_half_averaged =
-        loaded.lights.iter().any(|light| !light.is_complete() && light.key().samples() > 1);
+    let has_scratch = |key: &LightKey| key.samples() > 1 || key.has_colors();
+    let is_half_filled = loaded.lights.iter().any(|light| !light.is_complete() && has_scratch(light.key()));
     let mut recyclable = loaded.take_unfinished();
     let placed = loaded.place_lights(wanted, &mut recyclable)?;
-    if is_half_averaged || !recyclable.is_empty() {
+    if is_half_filled || !recyclable.is_empty() {
         drop(recyclable);
         tools.pool.forget_groups();
     }

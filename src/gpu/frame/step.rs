@@ -36,6 +36,8 @@ pub enum Stage {
 pub(super) struct LightStep {
     /// Index of the light build.
     pub build: usize,
+    /// Which of the colours of light, where each is followed by itself.
+    pub color: Option<usize>,
     /// Index of its view.
     pub view: usize,
     /// First slab of the chunk.
@@ -49,6 +51,8 @@ pub(super) struct LightStep {
 pub(super) struct RaycastStep {
     /// Index of the light build.
     pub build: usize,
+    /// Which of the colours of light, where each is followed by itself.
+    pub color: Option<usize>,
     /// Number of the point of the light.
     pub point: usize,
     /// Which of its bricks.
@@ -107,11 +111,14 @@ pub(super) enum Step {
     March(LightStep),
     Backproject(LightStep),
     Raycast(RaycastStep),
-    /// The volumes of points of a light join those before: index of the light build, and of the last of them.
+    /// The volumes of points of a light join those before: index of the light build, the colour, and the last of them.
     Average {
         build: usize,
+        color: Option<usize>,
         point: usize,
     },
+    /// The volumes of a light's colours become one: index of the light build.
+    JoinColors(usize),
     /// Bricks of the volume in which all lights are combined.
     Combine(Range<usize>),
     /// What attenuates the light of a sky.
@@ -138,7 +145,9 @@ impl Step {
             Self::Upload(_) | Self::Presence(_) => Stage::Upload,
             Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => Stage::Pyramid,
             Self::March(..) => Stage::LightMarch,
-            Self::Backproject(..) | Self::Average { .. } | Self::Combine(_) => Stage::LightBackproject,
+            Self::Backproject(..) | Self::Average { .. } | Self::JoinColors(_) | Self::Combine(_) => {
+                Stage::LightBackproject
+            }
             Self::Raycast(_) => Stage::LightRaycast,
             Self::SkyBlocks | Self::SkyBatch(_) => Stage::Sky,
             Self::Bounce(_) => Stage::Bounces,

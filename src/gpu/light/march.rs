@@ -97,6 +97,8 @@ pub(crate) struct MarchVariant {
     is_stretched: bool,
     is_cut: bool,
     deposit: Deposit,
+    /// Of what is gathered, where that has several.
+    component: u32,
 }
 
 impl MarchVariant {
@@ -108,12 +110,14 @@ impl MarchVariant {
             is_stretched,
             is_cut: is_cut(settings.cuts.shading()),
             deposit: shadows.deposit,
+            component: 0,
         }
     }
 
-    /// The march through what ends there.
-    pub(crate) fn ending(mut self, ends: Ends) -> Self {
+    /// The march through what ends there, by a channel of what is gathered.
+    fn through(mut self, ends: Ends, component: u32) -> Self {
         self.reconstruction = self.reconstruction.ending(ends);
+        self.component = component;
         self
     }
 }
@@ -129,6 +133,7 @@ impl Variant for MarchVariant {
             flag("STRETCH", self.is_stretched),
             flag("CUT", self.is_cut),
             deposit_constant(self.deposit),
+            ("GATHERED", f64::from(self.component)),
         ]);
         constants
     }
@@ -159,11 +164,11 @@ pub(crate) fn march_uniform(
     }
 }
 
-/// Marches the listed tiles through some slabs of a view.
+/// Marches the listed tiles through some slabs of a view: light, or one of its colours.
 #[expect(clippy::too_many_arguments, reason = "each is another thing: who, what, how, where from, where to")]
 pub(crate) fn march(
     gpu: Gpu<'_>,
-    tables: &Tables,
+    (tables, color): (&Tables, Option<usize>),
     (light, settings): (&SceneLight, &Settings),
     view: &LightView,
     sheets: &Sheets,
@@ -180,15 +185,16 @@ pub(crate) fn march(
     let empty_space_skipping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
     let dilation = if empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
-    let ends = tables.lighting.ends(volume, dilation, view.frame.max_stretch_level_of(slabs.clone()));
-    let pipeline = shaders.pipeline(&MarchVariant::of(settings, is_stretched).ending(ends))?;
+    let met = tables.met(color);
+    let ends = met.ends(volume, dilation, view.frame.max_stretch_level_of(slabs.clone()));
+    let variant = MarchVariant::of(settings, is_stretched).through(ends, met.component);
+    let pipeline = shaders.pipeline(&variant)?;
     let cut = settings.cuts.shading().region(&volume.scene);
     let count = tiles.len() as u32;
     let uniform = uniforms::March { tiles: count, ..march_uniform(light, &cut, view, sheets, slabs) };
     let uniform = gpu.uniform("March::uniform", uniform);
     let list = gpu.list_with_room("March::tiles", &shared_out(tiles, pass::threads(context)), TILE_ROOM);
-    let mut entries =
-        sheets.march_entries(&uniform, tables.lighting.gathered(), &tables.light_distances).to_vec();
+    let mut entries = sheets.march_entries(&uniform, met.gathered(), &tables.light_distances).to_vec();
     entries.push(buffer("tiles", &list));
     let own = gpu.bind("March::bind_group", &pipeline, 0, &entries);
     let levels = Levels::of(is_stretched);

@@ -5,6 +5,7 @@
 
 pub(super) mod average;
 pub(super) mod backproject;
+pub(super) mod colors;
 pub(super) mod combine;
 pub(super) mod floor_shadow;
 pub(super) mod march;

@@ -25,6 +25,8 @@ pub(crate) struct RaycastVariant {
     reconstruction: Reconstruction,
     deposit: Deposit,
     is_cut: bool,
+    /// Of what is gathered, where that has several.
+    component: u32,
 }
 
 impl RaycastVariant {
@@ -35,6 +37,7 @@ impl RaycastVariant {
             reconstruction: Reconstruction::new(settings.light_kernel(), shadows.quadrature),
             deposit: shadows.deposit,
             is_cut: is_cut(settings.cuts.shading()),
+            component: 0,
         }
     }
 
@@ -52,15 +55,19 @@ impl Variant for RaycastVariant {
 
     fn constants(&self) -> Constants {
         let mut constants = self.reconstruction.constants();
-        constants.extend([deposit_constant(self.deposit), flag("CUT", self.is_cut)]);
+        constants.extend([
+            deposit_constant(self.deposit),
+            flag("CUT", self.is_cut),
+            ("GATHERED", f64::from(self.component)),
+        ]);
         constants
     }
 }
 
-/// Fills the listed bricks of a light volume.
+/// Fills the listed bricks of a light volume, by light or one of its colours.
 pub(crate) fn raycast(
     gpu: Gpu<'_>,
-    tables: &Tables,
+    (tables, color): (&Tables, Option<usize>),
     (light, settings): (&SceneLight, &Settings),
     options: &RenderOptions,
     target: &LightVolume,
@@ -73,7 +80,10 @@ pub(crate) fn raycast(
     let Gpu { shaders, volume, .. } = gpu;
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
     let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
-    let variant = RaycastVariant::of(settings).ending(tables.lighting.ends(volume, dilation, 0.0));
+    let met = tables.met(color);
+    let component = met.component;
+    let rays = RaycastVariant::of(settings).ending(met.ends(volume, dilation, 0.0));
+    let variant = RaycastVariant { component, ..rays };
     let pipeline = shaders.pipeline_into(&variant, target.texture.format())?;
     let uniform = uniforms::Raycast {
         light: pack_light(light, Some(target), &volume.scene, settings),
@@ -94,7 +104,7 @@ pub(crate) fn raycast(
         0,
         &[
             buffer("bound_raycast", &uniform),
-            buffer("table", tables.lighting.gathered()),
+            buffer("table", met.gathered()),
             view_of("distances", &tables.light_distances),
             buffer("bricks", &list),
             view_of("attenuation", &target.view),

@@ -21,7 +21,7 @@ pub(crate) struct LightVolume {
     pub dims: [usize; 3],
     /// Data voxels per light voxel along an axis.
     pub divisor: usize,
-    /// Attenuation, 0 … 1.
+    /// Attenuation, 0 … 1; of red, green and blue light where shadows are coloured.
     pub texture: wgpu::Texture,
     /// A view of all of it.
     pub view: wgpu::TextureView,
@@ -76,10 +76,12 @@ impl LightVolume {
         let floor = floor.map(|place| FloorShadow::new(context, place)).transpose()?;
         let divisor = key.resolution().divisor();
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
-        let format = match key.precision() {
+        let format = match (key.precision(), key.has_colors()) {
             // An adapter that cannot store bytes keeps what it can.
-            Precision::Byte if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
-            Precision::Byte | Precision::Half => context.storage_format,
+            (Precision::Byte, false) if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
+            (Precision::Byte | Precision::Half, false) => context.storage_format,
+            (Precision::Byte, true) => wgpu::TextureFormat::Rgba8Unorm,
+            (Precision::Half, true) => wgpu::TextureFormat::Rgba16Float,
         };
         let fresh = |texture, view, cleared: Option<CellSet>| Self {
             dims,
@@ -178,6 +180,11 @@ impl LightVolume {
     /// The last of its steps was recorded.
     pub(crate) fn finish(&mut self) {
         self.fill_ms = self.started.map(|started| started.elapsed().as_secs_f64() * 1000.0);
+    }
+
+    /// Whether it holds attenuations of red, green and blue light.
+    pub(crate) fn has_colors(&self) -> bool {
+        self.texture.format().components() > 1
     }
 
     /// Bytes of its texture, and of the floor's map.

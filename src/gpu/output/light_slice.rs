@@ -8,6 +8,7 @@ use crate::data::Volume;
 use crate::export::{ExportError, check_ending, encode_png, nrrd_header_like, write_atomically};
 use crate::gpu::resources::readback::Attenuation;
 use crate::math::false_color;
+use crate::model::srgb_from_linear;
 
 /// Values in a plane of a light volume.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,8 @@ pub struct LightSlice {
     pub size: [usize; 2],
     /// 0 (dark) … 1 (fully lit), row by row; the last rows of the grid come first, so that up is up.
     pub values: Vec<f32>,
+    /// Where shadows are coloured, the same of red, green and blue light; else none.
+    pub rgb: Vec<[f32; 3]>,
 }
 
 impl Attenuation {
@@ -32,15 +35,21 @@ impl Attenuation {
             let start = index * strides[axis] + v * strides[up];
             (0..size[0]).map(move |u| start + u * strides[right])
         };
-        let values = (0..size[1]).rev().flat_map(row).map(|at| self.values[at]).collect();
-        Some(LightSlice { size, values })
+        let places = || (0..size[1]).rev().flat_map(row);
+        let values = places().map(|at| self.values[at]).collect();
+        let rgb = places().filter_map(|at| self.colors.get(at).copied()).collect();
+        Some(LightSlice { size, values, rgb })
     }
 }
 
 impl LightSlice {
-    /// sRGB bytes in false colours, three per value.
+    /// sRGB bytes, three per value: in false colours, or as white light looks there where shadows are coloured.
     pub fn colors(&self) -> Vec<u8> {
-        self.values.iter().flat_map(|&value| false_color(value)).collect()
+        if self.rgb.is_empty() {
+            return self.values.iter().flat_map(|&value| false_color(value)).collect();
+        }
+        let byte = |linear: f32| (255.0 * srgb_from_linear(f64::from(linear)).clamp(0.0, 1.0)).round() as u8;
+        self.rgb.iter().flat_map(|color| color.map(byte)).collect()
     }
 }
 
@@ -77,8 +86,12 @@ mod tests {
     #[test]
     fn the_nrrd_can_be_read_back_in_its_place() {
         let volume = builtin("box", Some(16)).unwrap();
-        let attenuation =
-            Attenuation { dims: [8; 3], divisor: 2, values: (0..512).map(|i| i as f32 / 512.0).collect() };
+        let attenuation = Attenuation {
+            dims: [8; 3],
+            divisor: 2,
+            values: (0..512).map(|i| i as f32 / 512.0).collect(),
+            colors: Vec::new(),
+        };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("light.nrrd");
         std::fs::write(&path, light_volume_nrrd(&volume, &attenuation)).unwrap();
@@ -93,8 +106,12 @@ mod tests {
 
     #[test]
     fn slices_are_cut_across_any_axis_and_stand_upright() {
-        let attenuation =
-            Attenuation { dims: [2, 3, 4], divisor: 1, values: (0..24).map(|i| i as f32).collect() };
+        let attenuation = Attenuation {
+            dims: [2, 3, 4],
+            divisor: 1,
+            values: (0..24).map(|i| i as f32).collect(),
+            colors: Vec::new(),
+        };
         let at = |x: usize, y: usize, z: usize| (x + 2 * (y + 3 * z)) as f32;
         let z = attenuation.slice(2, 1).unwrap();
         assert_eq!((z.size, z.values[0], z.values[5]), ([2, 3], at(0, 2, 1), at(1, 0, 1)));
@@ -103,5 +120,13 @@ mod tests {
         let y = attenuation.slice(1, 2).unwrap();
         assert_eq!((y.size, y.values[1]), ([2, 4], at(1, 2, 3)));
         assert_eq!((attenuation.slice(2, 4), attenuation.slice(3, 0)), (None, None));
+    }
+
+    #[test]
+    fn slices_of_coloured_light_have_its_colours() {
+        let colors = vec![[1.0, 0.0, 0.5], [0.0; 3]];
+        let attenuation = Attenuation { dims: [2, 1, 1], divisor: 1, values: vec![0.25, 0.0], colors };
+        let slice = attenuation.slice(2, 0).unwrap();
+        assert_eq!(slice.colors(), [255, 0, 188, 0, 0, 0]);
     }
 }

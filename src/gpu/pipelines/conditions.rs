@@ -8,7 +8,7 @@
 use crate::gpu::GpuError;
 
 /// Names that stand in conditions alone, which drivers are not told.
-const TEXT_ALONE: [&str; 9] = [
+const TEXT_ALONE: [&str; 10] = [
     "FACES",
     "MISSING",
     "PRECLASSIFY",
@@ -18,10 +18,11 @@ const TEXT_ALONE: [&str; 9] = [
     "SKY",
     "BOUNCES",
     "ANISOTROPIC",
+    "COLORED",
 ];
 
 /// Names that are override constants as well.
-const OVERRIDES: [&str; 2] = ["SHADOWED", "NEAR_STEPS"];
+const OVERRIDES: [&str; 3] = ["SHADOWED", "NEAR_STEPS", "GATHERED"];
 
 /// Whether drivers are told a constant of that name.
 pub(super) fn is_override(name: &str) -> bool {

@@ -92,6 +92,8 @@ impl ShaderLibrary {
         let wgsl = |format| match format {
             wgpu::TextureFormat::R32Float => "r32float",
             wgpu::TextureFormat::R8Unorm => "r8unorm",
+            wgpu::TextureFormat::Rgba8Unorm => "rgba8unorm",
+            wgpu::TextureFormat::Rgba16Float => "rgba16float",
             _ => "r16float",
         };
         let ring = match ring_format(format) {

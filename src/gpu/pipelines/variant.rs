@@ -160,6 +160,8 @@ pub(crate) struct ShadingVariant {
     pub has_bounces: bool,
     /// Matter scatters more light forward, or back.
     pub is_anisotropic: bool,
+    /// What is left of each light's colours differs.
+    pub has_colored_shadows: bool,
 }
 
 impl ShadingVariant {
@@ -175,6 +177,7 @@ impl ShadingVariant {
         constants.push(self.sky.constant());
         constants.push(flag("BOUNCES", self.has_bounces));
         constants.push(flag("ANISOTROPIC", self.is_anisotropic));
+        constants.push(flag("COLORED", self.has_colored_shadows));
         constants
     }
 }

@@ -4,6 +4,7 @@ use crate::gpu::light::volume::LightVolume;
 use crate::gpu::output::target::Target;
 use crate::gpu::resources::readback::{Attenuation, read_floats, read_texture};
 use crate::gpu::{GpuError, Renderer};
+use crate::math::luminance;
 use crate::plan::{LightKey, Request};
 
 impl Renderer {
@@ -66,7 +67,14 @@ impl Renderer {
     /// When the GPU cannot do it. `None` when the light has no volume.
     pub fn attenuation(&self, request: &Request, light: usize) -> Result<Option<Attenuation>, GpuError> {
         let Some(found) = self.light_volume(request, light) else { return Ok(None) };
-        let values = read_floats(self.context(), &found.texture)?;
-        Ok(Some(Attenuation { dims: found.dims, divisor: found.divisor, values }))
+        let floats = read_floats(self.context(), &found.texture)?;
+        let (dims, divisor) = (found.dims, found.divisor);
+        if !found.has_colors() {
+            return Ok(Some(Attenuation { dims, divisor, values: floats, colors: Vec::new() }));
+        }
+        let colors: Vec<[f32; 3]> =
+            floats.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2]]).collect();
+        let values = colors.iter().map(|color| luminance(color.map(f64::from)) as f32).collect();
+        Ok(Some(Attenuation { dims, divisor, values, colors }))
     }
 }

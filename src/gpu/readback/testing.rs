@@ -124,12 +124,13 @@ impl Renderer {
             let scattering = Scattering::new(self.context(), Arc::clone(voxels));
             let of_light = (settings, target);
             let options = RenderOptions::default();
-            let scatter = LightScatter::new(gpu, &scattering, tables, geometry, of_light, None, &options)?;
+            let scatter =
+                LightScatter::new(gpu, &scattering, (tables, None), geometry, of_light, None, &options)?;
             let table = &tables.lighting.buffer;
             scatter.march(gpu, &scattering, table, lamp, geometry, &sheets, 0..count, &mut encoder)?;
         } else {
             let tiles = MarchTiles::all(geometry, sheets.chunk);
-            march(gpu, tables, lamp, geometry, &sheets, 0..count, tiles.of_chunk(0), &mut encoder)?;
+            march(gpu, (tables, None), lamp, geometry, &sheets, 0..count, tiles.of_chunk(0), &mut encoder)?;
         }
         self.context().queue.submit([encoder.finish()]);
         // Four slabs to a texel, and room beside the sheets.

@@ -9,8 +9,10 @@ pub struct Attenuation {
     pub dims: [usize; 3],
     /// Data voxels per voxel of this volume, along an axis.
     pub divisor: usize,
-    /// 0 (dark) … 1 (fully lit), x fastest.
+    /// 0 (dark) … 1 (fully lit), x fastest; of coloured shadows the luminance.
     pub values: Vec<f32>,
+    /// Where shadows are coloured, the same of red, green and blue light; else none.
+    pub colors: Vec<[f32; 3]>,
 }
 
 /// The texels of a texture's first level, tightly packed, row by row and slice by slice.
@@ -91,7 +93,9 @@ pub(crate) fn read_floats(context: &Context, texture: &wgpu::Texture) -> Result<
         wgpu::TextureFormat::R16Float | wgpu::TextureFormat::Rgba16Float => {
             bytes.chunks_exact(2).map(|pair| half::f16::from_le_bytes([pair[0], pair[1]]).to_f32()).collect()
         }
-        wgpu::TextureFormat::R8Unorm => bytes.into_iter().map(|byte| f32::from(byte) / 255.0).collect(),
+        wgpu::TextureFormat::R8Unorm | wgpu::TextureFormat::Rgba8Unorm => {
+            bytes.into_iter().map(|byte| f32::from(byte) / 255.0).collect()
+        }
         _ => bytes
             .chunks_exact(4)
             .map(|word| f32::from_le_bytes([word[0], word[1], word[2], word[3]]))

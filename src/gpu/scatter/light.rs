@@ -70,7 +70,7 @@ impl LightScatter {
     pub(crate) fn new(
         gpu: Gpu<'_>,
         scattering: &Scattering,
-        tables: &Tables,
+        (tables, color): (&Tables, Option<usize>),
         view: &LightView,
         (settings, target): (&Settings, &LightVolume),
         read: Option<&BrickSet>,
@@ -82,7 +82,7 @@ impl LightScatter {
             Classification::Post => Splat::Density,
             Classification::Pre => Splat::Extinction,
         };
-        let what = (what, &tables.lighting);
+        let what = (what, tables.met(color));
         let order = SheetOrder::ImageAligned;
         let kernel = Splatting { kernel: shadows.kernel, quadrature: shadows.quadrature, order };
         let [nx, ny, nz] = target.dims.map(|n| n as u32);

@@ -9,7 +9,7 @@ use super::{GpuVolume, LevelViews, Pyramids, brick_dims};
 use crate::data::CELL_EDGE;
 use crate::gpu::pipelines::variant::Ends;
 use crate::gpu::{Context, GpuError};
-use crate::model::{BakedTransfer, Settings};
+use crate::model::{BakedTransfer, COLORS, Settings};
 use crate::plan::{BrickSet, CellDistances, CellSet, CellsAhead, TablesKey};
 
 /// A baked transfer function: its table and where it shows anything.
@@ -29,8 +29,10 @@ pub(crate) struct Table {
     from_missing: u8,
     /// There is none.
     pub is_empty: bool,
-    /// What it makes of voxels, where these are classified before kernels spread them.
+    /// What it makes of voxels, where these are classified before kernels spread them …
     pub materials: Option<Arc<Materials>>,
+    /// … and the channel of that in which shares of the largest extinction are.
+    pub component: u32,
 }
 
 impl Table {
@@ -44,7 +46,7 @@ impl Table {
     ) -> Self {
         let buffer = context.buffer("Table::buffer", &baked.numbers(), wgpu::BufferUsages::STORAGE);
         if let Some(known) = known.into_iter().find(|known| baked.shows_like(&known.baked)) {
-            return Self { baked: Arc::new(baked), buffer, materials: None, ..known.clone() };
+            return Self { baked: Arc::new(baked), buffer, materials: None, component: 0, ..known.clone() };
         }
         let dims = volume.bricks.dims;
         let occupied = BrickSet::new(dims, volume.bricks.occupancy(baked.visibility()));
@@ -71,7 +73,18 @@ impl Table {
             from_missing,
             is_empty,
             materials: None,
+            component: 0,
         }
+    }
+
+    /// What each of the colours of light meets of it, where it holds the shares of that.
+    fn met_by_colors(&self, context: &Context) -> Vec<Self> {
+        let met = |color| {
+            let baked = self.baked.met_by(color);
+            let buffer = context.buffer("Table::color", &baked.numbers(), wgpu::BufferUsages::STORAGE);
+            Self { baked: Arc::new(baked), buffer, ..self.clone() }
+        };
+        (0..COLORS).map(met).collect()
     }
 
     /// Where what it shows ends with the data, for samples that see `dilation` cells around theirs, with kernels stretched
@@ -124,6 +137,8 @@ pub(crate) struct Tables {
     pub eye: Table,
     /// What the light meets.
     pub lighting: Table,
+    /// What each of its colours does, where shadows are coloured; else none.
+    colors: Vec<Table>,
     /// Distances in cells to the nearest that the eye sees.
     pub eye_distances: wgpu::TextureView,
     /// Distances in cells: r to the nearest that either shows, g to the nearest that attenuates light.
@@ -172,13 +187,17 @@ impl Tables {
             baked += 1;
             Table::new(context, volume, settings.baked_eye(range, &volume.scene), bounded, known())
         };
-        let lighting = if let Some((_, tables)) = previous.filter(|(known, _)| known.lighting == key.lighting)
+        let is_lit_alike =
+            |known: &TablesKey| (&known.lighting, &known.transmission) == (&key.lighting, &key.transmission);
+        let (lighting, colors) = if let Some((_, tables)) = previous.filter(|(known, _)| is_lit_alike(known))
         {
-            tables.lighting.clone()
+            (tables.lighting.clone(), tables.colors.clone())
         } else {
             baked += 1;
             let lighting = settings.baked_lighting(range, &volume.scene);
-            Table::new(context, volume, lighting, bounded, known().chain([&eye]))
+            let lighting = Table::new(context, volume, lighting, bounded, known().chain([&eye]));
+            let colors = key.transmission.as_ref().map(|_| lighting.met_by_colors(context));
+            (lighting, colors.unwrap_or_default())
         };
         if let Some((_, tables)) = previous {
             let is_same = |a: &Table, b: &Table| Arc::ptr_eq(&a.distances, &b.distances);
@@ -186,7 +205,8 @@ impl Tables {
                 let (eye_distances, light_distances) =
                     (tables.eye_distances.clone(), tables.light_distances.clone());
                 let (shown, needed) = (Arc::clone(&tables.shown), tables.needed.clone());
-                return Ok((Self { eye, lighting, eye_distances, light_distances, shown, needed }, baked));
+                let tables = Self { eye, lighting, colors, eye_distances, light_distances, shown, needed };
+                return Ok((tables, baked));
             }
         }
         let shown = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
@@ -212,7 +232,21 @@ impl Tables {
             wgpu::TextureFormat::Rg8Unorm,
         )?;
         let needed = RefCell::default();
-        Ok((Self { eye, lighting, eye_distances, light_distances, shown, needed }, baked))
+        Ok((Self { eye, lighting, colors, eye_distances, light_distances, shown, needed }, baked))
+    }
+
+    /// What light meets, or one of its colours.
+    pub(crate) fn met(&self, color: Option<usize>) -> &Table {
+        color.and_then(|color| self.colors.get(color)).unwrap_or(&self.lighting)
+    }
+
+    /// Has the tables know what they make of voxels, if these are classified.
+    pub(crate) fn set_materials(&mut self, eye: Option<Arc<Materials>>, lighting: Option<Arc<Materials>>) {
+        for (table, component) in self.colors.iter_mut().zip(1..) {
+            table.component = if lighting.is_some() { component } else { 0 };
+            table.materials.clone_from(&lighting);
+        }
+        (self.eye.materials, self.lighting.materials) = (eye, lighting);
     }
 
     /// The pyramids of passes of the eye.

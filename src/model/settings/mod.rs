@@ -223,6 +223,18 @@ impl Settings {
         self.sky.is_on() && self.shadows.algorithm.is_on()
     }
 
+    /// Whether shadows are coloured: light has a transmittance for each of its colours.
+    pub fn has_colored_shadows(&self) -> bool {
+        self.shadows.transmission > 0.0 && self.shadows.algorithm.is_on()
+    }
+
+    /// Whether every sample casts rays to all points of lights that have a size: more turns of loops than drivers that draw
+    /// with the processor take (Mesa's ends all loops of an invocation after 65,536), so that light is lost there.
+    pub fn casts_rays_to_all_points(&self) -> bool {
+        let has_size = |light: &Light| light.on && light.in_scene(&self.camera).area.is_some();
+        self.shadows.algorithm == ShadowAlgorithm::Direct && self.lights.iter().any(has_size)
+    }
+
     /// Whether light bounces: where shadows are off nothing meets light.
     pub fn has_bounces(&self) -> bool {
         let Scattering { bounces, albedo, strength, .. } = self.scattering;
@@ -243,9 +255,10 @@ impl Settings {
         let wanted = match self.shadows.storage {
             LightStorage::PerLight => false,
             LightStorage::Combined => true,
-            // Four 16-bit colours and weights against one number for each light.
+            // Four 16-bit colours and weights against one number for each light, or as many.
             LightStorage::Auto => {
-                self.shading.specular == 0.0 && self.shadows.near_field == NearField::Off && shadowed > 4
+                let alike = if self.has_colored_shadows() { 1 } else { 4 };
+                self.shading.specular == 0.0 && self.shadows.near_field == NearField::Off && shadowed > alike
             }
         };
         // What depends on the eye is in no volume.
@@ -347,9 +360,11 @@ impl Settings {
         self.transfer.bake(range, self.unit_in_scene(scene), 1.0)
     }
 
-    /// The lighting transfer function as a table over a range: see [`Self::baked_eye`].
+    /// The lighting transfer function as a table over a range: see [`Self::baked_eye`]. Where shadows are coloured, shares of
+    /// the extinction that each colour of light meets stand in place of colours.
     pub fn baked_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
-        function.bake(range, self.unit_in_scene(scene), self.lighting.scale)
+        let baked = function.bake(range, self.unit_in_scene(scene), self.lighting.scale);
+        if self.has_colored_shadows() { baked.transmitting(self.shadows.transmission) } else { baked }
     }
 }

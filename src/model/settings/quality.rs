@@ -26,6 +26,7 @@ impl Settings {
             gain: _,
             bias_voxels: _,
             balance: _,
+            transmission: _,
             keep_balanced: _,
             first_touch: _,
         } = other.shadows;

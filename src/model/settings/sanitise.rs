@@ -5,9 +5,9 @@ use crate::data::single_line;
 use crate::model::{
     AreaShadows, Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light,
     MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
-    MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME, MAX_PLANE_OFFSET,
-    MAX_POINTS, MIN_CROP, MIN_EXPOSURE, Output, SKY_DIRECTIONS, Sampling, Scattering, Settings, Shading,
-    Shadows, Sky,
+    MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME, MAX_PICTURE_RADIANCE,
+    MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, MIN_EXPOSURE, Output, SKY_DIRECTIONS, Sampling, Scattering,
+    Settings, Shading, Shadows, Sky, SkyPicture,
 };
 
 impl Settings {
@@ -121,6 +121,7 @@ impl Settings {
             zenith,
             horizon,
             ground,
+            picture: SkyPicture { name, mean, slope },
             tilt_deg,
             turn_deg,
             density_scale,
@@ -129,6 +130,13 @@ impl Settings {
         } = &mut self.sky;
         number(intensity, 0.0, 1e3, default.sky.intensity);
         [zenith, horizon, ground].into_iter().for_each(rgb);
+        *name = single_line(name, MAX_NAME);
+        for c in mean {
+            number(c, 0.0, MAX_PICTURE_RADIANCE, 1.0);
+        }
+        for slope in slope {
+            point(slope, MAX_PICTURE_RADIANCE);
+        }
         number(tilt_deg, -360.0, 360.0, 0.0);
         number(turn_deg, -1e6, 1e6, 0.0);
         number(density_scale, 0.0, 1e3, 1.0);
@@ -160,6 +168,7 @@ impl Settings {
             gain,
             bias_voxels,
             balance,
+            transmission,
             keep_balanced: _,
             first_touch: _,
             deposit: _,
@@ -178,6 +187,7 @@ impl Settings {
         number(gain, 0.0, 100.0, default.shadows.gain);
         number(bias_voxels, 0.0, MAX_BIAS_VOXELS, default.shadows.bias_voxels);
         number(balance, 0.01, 100.0, default.shadows.balance);
+        number(transmission, 0.0, 1.0, default.shadows.transmission);
         number(slab, 0.25, 2.0, default.shadows.slab);
         kernel(light_kernel);
         *samples = (*samples).clamp(1, MAX_LIGHT_SAMPLES);

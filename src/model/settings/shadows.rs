@@ -170,6 +170,9 @@ pub struct Shadows {
     pub bias_voxels: f64,
     /// Multiplies the lights while shadows are on, so that the picture is as bright as without.
     pub balance: f64,
+    /// Coloured shadows: how much of the light of their own hue pure colours of the lighting transfer function let through,
+    /// 0 (none: shadows are grey) … 1.
+    pub transmission: f64,
     /// Whether the window measures the balance anew after changes that light depends on. No picture depends on it:
     /// what is found stands in `balance`.
     pub keep_balanced: bool,
@@ -207,6 +210,7 @@ impl Default for Shadows {
             gain: 1.0,
             bias_voxels: 0.0,
             balance: 1.0,
+            transmission: 0.0,
             keep_balanced: false,
             first_touch: false,
             deposit: Deposit::SlabMean,

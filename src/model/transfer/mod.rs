@@ -7,11 +7,13 @@ pub(super) mod baked;
 pub(super) mod categories;
 pub(super) mod color_map;
 pub(super) mod oklab;
+pub(super) mod transmitted;
 
 use serde::{Deserialize, Serialize};
 
 use super::{BakedTransfer, linear_from_oklab, oklab_from_linear};
 use crate::data::ValueRange;
+pub use crate::math::{linear_from_srgb, srgb_from_linear};
 
 /// Entries of a baked table; values between are interpolated.
 pub const LUT_SIZE: usize = 1024;
@@ -109,16 +111,6 @@ pub struct TransferFunction {
     /// How colours between the points are mixed.
     #[serde(default)]
     pub mixing: Mixing,
-}
-
-/// One sRGB component to linear light (IEC 61966-2-1).
-pub fn linear_from_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-}
-
-/// One component of linear light as sRGB (IEC 61966-2-1).
-pub fn srgb_from_linear(linear: f64) -> f64 {
-    if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// −ln(1 − α) with α cut at [`MAX_OPACITY`]: optical depth of one opacity unit.

@@ -5,7 +5,7 @@ use super::light::LightKey;
 use super::lit_lights::{Attenuation, LitLights};
 use super::received::{LightLook, ReceivedLight};
 use super::sky::{SkyKey, SkyLook};
-use super::table::{EyeTableKey, OpacityKey};
+use super::table::{EyeTableKey, OpacityKey, TransmissionKey};
 use crate::model::{
     Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
     Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
@@ -67,6 +67,7 @@ struct SamplingKey {
 #[derive(Debug, Clone, PartialEq)]
 struct RaysKey {
     opacity: OpacityKey,
+    transmission: Option<TransmissionKey>,
     classification: Classification,
     shadows: Shadows,
 }
@@ -85,6 +86,7 @@ impl RaysKey {
     fn of(settings: &Settings) -> Self {
         Self {
             opacity: OpacityKey::of(settings),
+            transmission: TransmissionKey::of(settings),
             classification: settings.sampling.classification,
             shadows: settings.shadows.clone(),
         }

@@ -1,6 +1,6 @@
 //! What the attenuation volume of a light is made from.
 
-use super::table::OpacityKey;
+use super::table::{OpacityKey, TransmissionKey};
 use crate::model::{
     AreaShadows, Classification, Deposit, Engine, Hood, Kernel, LightArea, LightKind, Precision, Quadrature,
     Remains, Resolution, ReverseKernel, Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
@@ -23,6 +23,7 @@ pub struct LightKey {
     classification: Classification,
     engine: Engine,
     opacity: OpacityKey,
+    transmission: Option<TransmissionKey>,
     first_touch: bool,
     deposit: Deposit,
     kernel: Kernel,
@@ -49,6 +50,11 @@ impl LightKey {
     /// How many point lights stand for the light.
     pub fn samples(&self) -> u32 {
         self.area.map_or(1, |(_, samples)| samples)
+    }
+
+    /// Whether there is a transmittance for each colour of light.
+    pub fn has_colors(&self) -> bool {
+        self.transmission.is_some()
     }
 
     /// Resolution of the light volume.
@@ -117,6 +123,7 @@ impl LightKey {
             gain: _,
             bias_voxels: _,
             balance: _,
+            transmission: _,
             keep_balanced: _,
             first_touch,
             deposit,
@@ -147,6 +154,7 @@ impl LightKey {
             // Rays need no sheets.
             engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
             opacity: OpacityKey::of(&request.settings),
+            transmission: TransmissionKey::of(&request.settings),
             first_touch: *first_touch,
             deposit: *deposit,
             kernel: *kernel,

@@ -14,7 +14,7 @@ pub(super) struct LightLook {
     density_scale: f64,
     /// It lights one side of a surface, or both.
     casts_shadows: bool,
-    /// How large it is, which only shadows show.
+    /// How large it is: its shadows and its highlights show that.
     area: Option<LightArea>,
 }
 
@@ -23,7 +23,6 @@ impl LightLook {
     pub(super) fn of(light: &SceneLight) -> Self {
         let SceneLight { kind, position, color, intensity, on: _, casts_shadows, hood, density_scale, area } =
             *light;
-        let area = area.filter(|_| casts_shadows);
         let placed = match kind {
             LightKind::Parallel => light.direction().into(),
             LightKind::Perspective => position,
@@ -58,6 +57,7 @@ impl ReceivedLight {
             // Nobody sees it.
             keep_balanced: _,
             // In the keys of light volumes and of rays.
+            transmission: _,
             first_touch: _,
             deposit: _,
             kernel: _,

@@ -63,6 +63,8 @@ pub(super) struct SkyLook {
     intensity: f64,
     colors: [[f32; 3]; 3],
     lean_deg: [f64; 2],
+    /// Of a picture of surroundings: their mean, and its slopes.
+    picture: Option<([f64; 3], [[f64; 3]; 3])>,
     /// What it leans from.
     up: Option<SceneAxis>,
 }
@@ -72,10 +74,12 @@ impl SkyLook {
     pub(super) fn of(settings: &Settings) -> Option<Self> {
         let sky = &settings.sky;
         let is_plain = sky.mode == SkyMode::White;
+        let is_gradient = sky.mode == SkyMode::Gradient;
         sky.is_on().then_some(Self {
             mode: sky.mode,
             intensity: sky.intensity,
-            colors: if is_plain { [[1.0; 3]; 3] } else { [sky.zenith, sky.horizon, sky.ground] },
+            colors: if is_gradient { [sky.zenith, sky.horizon, sky.ground] } else { [[1.0; 3]; 3] },
+            picture: (sky.mode == SkyMode::Picture).then_some((sky.picture.mean, sky.picture.slope)),
             lean_deg: if is_plain { [0.0; 2] } else { [sky.tilt_deg, sky.turn_deg] },
             up: (!is_plain).then_some(settings.camera.up),
         })

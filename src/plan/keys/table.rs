@@ -1,7 +1,7 @@
 //! What the lookup tables of the transfer functions are made from.
 
 use crate::model::{
-    Easing, Interpolation, LabelMaterial, Length, LightingTransfer, Settings, TransferFunction,
+    Easing, Interpolation, LabelMaterial, Length, LightingTransfer, Mixing, Settings, TransferFunction,
 };
 use crate::plan::{Request, VolumeKey};
 
@@ -14,6 +14,8 @@ pub struct TablesKey {
     pub eye: EyeTableKey,
     /// What the light meets.
     pub lighting: OpacityKey,
+    /// Which colours of it, where shadows are coloured.
+    pub transmission: Option<TransmissionKey>,
     /// Whether the bounds of cells hold for all kernels in use.
     pub cells_are_bounds: bool,
 }
@@ -40,6 +42,19 @@ pub struct OpacityKey {
     unit: Length,
 }
 
+/// Everything that the shares of extinction which each colour of light meets are made from, besides opacities.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransmissionKey {
+    colors: Colors,
+    share: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Colors {
+    OfValues(Vec<[f32; 3]>, Mixing),
+    OfLabels(Vec<[f32; 3]>),
+}
+
 #[derive(Debug, Clone, PartialEq)]
 enum Opacities {
     OfValues { points: Vec<([f64; 2], Easing)>, interpolation: Interpolation },
@@ -54,6 +69,7 @@ impl TablesKey {
             volume: request.shown_volume(),
             eye: EyeTableKey::of(settings),
             lighting: OpacityKey::of(settings),
+            transmission: TransmissionKey::of(settings),
             cells_are_bounds: settings.cells_are_bounds(),
         }
     }
@@ -87,5 +103,23 @@ impl OpacityKey {
             Opacities::OfLabels(materials.map(|material| (material.number, material.opacity)).collect())
         };
         Self { opacities, scale: *scale, unit: settings.opacity_unit }
+    }
+}
+
+impl TransmissionKey {
+    /// The key of what light of each colour meets in a look; `None` where shadows are grey.
+    pub(super) fn of(settings: &Settings) -> Option<Self> {
+        let colors = || {
+            if !settings.labels.is_empty() {
+                let materials = settings.labels.materials().into_iter();
+                return Colors::OfLabels(materials.map(|material| material.color).collect());
+            }
+            let LightingTransfer { linked, scale: _, curve } = &settings.lighting;
+            let curve = if *linked { &settings.transfer } else { curve };
+            Colors::OfValues(curve.points.iter().map(|point| point.color).collect(), curve.mixing)
+        };
+        settings
+            .has_colored_shadows()
+            .then(|| Self { colors: colors(), share: settings.shadows.transmission })
     }
 }

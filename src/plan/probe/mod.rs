@@ -7,7 +7,8 @@ use glam::DVec3;
 
 use self::rays::Rays;
 use crate::data::Volume;
-use crate::model::{LightKind, SceneLight, Settings, Sides};
+use crate::math::luminance;
+use crate::model::{BakedTransfer, LightKind, SceneLight, Settings, Sides};
 use crate::plan::sweep_directions;
 
 /// What is seen somewhere in the picture.
@@ -61,6 +62,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     // As the file has it, beyond what is shown, too.
     let value = rays.value(index, &eye);
     let lighting = settings.baked_lighting(range, scene);
+    let met_by_colors = settings.has_colored_shadows().then(|| [0, 1, 2].map(|color| lighting.met_by(color)));
     let is_one_sided = settings.shading.sides == Sides::One;
     // Opacity falls towards high densities: into a solid, too, in which it rises.
     let falls = is_one_sided && !is_by_label && eye.side(rays.field(index, &eye).0) < 0.0;
@@ -93,8 +95,14 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
                 |of: &dyn Fn(&SceneLight) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
             let left = |light: &SceneLight| {
                 let (towards, distance) = towards(light, point);
-                let depth = rays.optical_depth(&lighting, &shading_cut, point, towards, distance);
-                (-depth * light.density_scale).exp()
+                let of_color = |table: &BakedTransfer| {
+                    let depth = rays.optical_depth(table, &shading_cut, point, towards, distance);
+                    (-depth * light.density_scale).exp()
+                };
+                match &met_by_colors {
+                    Some(tables) => luminance(tables.each_ref().map(of_color)),
+                    None => of_color(&lighting),
+                }
             };
             let through_hood = |light: &SceneLight| {
                 let cone = light.cone();

@@ -119,8 +119,8 @@ impl Reference<'_> {
         divisor: usize,
         of_place: impl Fn(DVec3, f64) -> [f64; N] + Sync,
     ) -> Vec<[f64; N]> {
-        let table = self.gathered_table(Side::Lighting);
-        let pyramid = self.gathered_pyramid(Side::Lighting);
+        let table = self.gathered_table(Side::Around);
+        let pyramid = self.gathered_pyramid(Side::Around);
         let profile = self.profile(Kernel::Prefiltered);
         let remaining = self.shading();
         let level = (divisor as f64 / 2.0).max(1.0).log2();

@@ -9,9 +9,14 @@ use crate::model::BakedTransfer;
 pub(in crate::reference) enum Side {
     /// What the eye sees.
     Eye,
-    /// What attenuates light.
+    /// What attenuates light, or the colour of it that is followed.
     Lighting,
+    /// What attenuates light from all around, of which all colours are attenuated alike.
+    Around,
 }
+
+/// All of them.
+pub(in crate::reference) const SIDES: [Side; 3] = [Side::Eye, Side::Lighting, Side::Around];
 
 /// Voxels as a transfer function classifies them.
 #[derive(Debug, Clone)]

@@ -67,7 +67,7 @@ fn settings(depth: f64) -> Settings {
 }
 
 fn options(weights: Weights, fault: Fault) -> Options {
-    Options { weights, fault, rounding: None }
+    Options { weights, fault, ..Options::default() }
 }
 
 /// Root mean square of differences.

@@ -116,6 +116,7 @@ fn mistakes_in_them_are_noticed() {
         ("- first + 0.5 * ring)", "- first)"),
         ("light.area_up * across.y", "light.area_up * across.x"),
         ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
+        ("shading.shininess * width / 16.0", "shading.shininess * width / 4.0"),
     ] {
         in_shader("eye/gather.wgsl", from);
         assert!(pictures_differ(&settings, from, to), "{to:?} for {from:?} is not noticed");

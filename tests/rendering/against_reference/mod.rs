@@ -13,6 +13,7 @@ use crate::thresholds::SAME_WEIGHTS;
 
 mod area_lights;
 mod bounces;
+mod colored_shadows;
 mod gather;
 mod labels;
 mod limit;

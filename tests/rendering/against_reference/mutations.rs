@@ -89,8 +89,7 @@ macro_rules! gpu_mutation {
 
 #[test]
 fn rays_that_end_a_step_before_the_light() {
-    let (from, to) =
-        ("depth += light_extinction(ray_density(frame, ray, 0.0)) * share * frame.slab * scale;", "");
+    let (from, to) = ("depth += ray_extinction(frame, ray, 0.0) * share * frame.slab * scale;", "");
     in_shader("light/raycast.wgsl", from);
     let mut settings = look();
     settings.shadows.algorithm = ShadowAlgorithm::Raycast;

@@ -130,6 +130,7 @@ fn every_setting_costs_what_it_should() {
         ("shadows.reverse_kernel", "forward", Cost::Lights(3)),
         ("shading.sides", "two", Cost::Eye),
         ("shadows.balance", "1.5", Cost::Eye),
+        ("shadows.transmission", "0.5", Cost::Lights(3)),
         ("shadows.keep_balanced", "true", Cost::Nothing),
         ("shadows.first_touch", "true", Cost::Lights(3)),
         ("shadows.kernel", "prefiltered", Cost::Lights(3)),

@@ -7,9 +7,11 @@ use crate::common::context;
 use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
 
 mod absorption;
+mod all_light;
 mod area_lights;
 mod bounces;
 mod brightness;
+mod colored_shadows;
 mod kernels;
 mod labels;
 mod lights;

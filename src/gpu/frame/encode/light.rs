@@ -14,12 +14,16 @@ use crate::gpu::volume::transfer_tables::EVERYWHERE;
 
 impl Job<'_> {
     /// Sets up the march through one view of a light.
-    fn begin_view(&mut self, build: &LightBuild, view: usize) -> Result<CurrentView, GpuError> {
+    fn begin_view(
+        &mut self,
+        build: &LightBuild,
+        (view, color): (usize, Option<usize>),
+    ) -> Result<CurrentView, GpuError> {
         let settings = &self.request.settings;
         let BuildView { point, geometry, chunk } = &build.views[view];
         let loaded = &self.loaded.value;
         let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let light = build.filled(*point, &loaded.lights[build.slot].value);
+        let light = build.filled(*point, color, &loaded.lights[build.slot].value);
         let skips = self.options.empty_space_skipping;
         let reach = if skips { i32::from(build.reach) } else { EVERYWHERE };
         let mut sheets = Sheets::new(self.tools, geometry, *chunk, reach)?;
@@ -32,8 +36,15 @@ impl Job<'_> {
             Some(scattering) if build.scatters => {
                 let read = build.read.as_ref().filter(|_| skips);
                 let of_light = (settings, light);
-                let fresh =
-                    LightScatter::new(gpu, scattering, tables, geometry, of_light, read, &self.options)?;
+                let fresh = LightScatter::new(
+                    gpu,
+                    scattering,
+                    (tables, color),
+                    geometry,
+                    of_light,
+                    read,
+                    &self.options,
+                )?;
                 bytes += fresh.bytes();
                 Some(fresh)
             }
@@ -74,7 +85,11 @@ impl Job<'_> {
     }
 
     /// The view that is being marched, set up when its first step comes.
-    fn take_view(&mut self, build: &mut LightBuild, view: usize) -> Result<CurrentView, GpuError> {
+    fn take_view(
+        &mut self,
+        build: &mut LightBuild,
+        view: (usize, Option<usize>),
+    ) -> Result<CurrentView, GpuError> {
         match build.current.take() {
             Some(current) => Ok(current),
             None => self.begin_view(build, view),
@@ -85,17 +100,17 @@ impl Job<'_> {
     pub(super) fn march_view(
         &mut self,
         build: &mut LightBuild,
-        &LightStep { view, begin, part, .. }: &LightStep,
+        &LightStep { color, view, begin, part, .. }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let is_first = view == 0 && begin == 0 && part.is_first();
+        let is_first = color.unwrap_or(0) == 0 && view == 0 && begin == 0 && part.is_first();
         if is_first {
             let loaded = &self.loaded.value;
             let gpu = Gpu::new(self.tools, &loaded.volume);
             loaded.lights[build.slot].value.clear_margin(gpu, &build.margin, encoder)?;
             self.begin_light(build);
         }
-        let current = self.take_view(build, view)?;
+        let current = self.take_view(build, (view, color))?;
         let CurrentView { sheets, schedule, scatter } = build.current.insert(current);
         let BuildView { point, geometry, chunk } = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
@@ -103,11 +118,11 @@ impl Job<'_> {
         let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
         let lamp = (&build.points[*point], &self.request.settings);
         if let (Some(scatter), Some(scattering)) = (scatter, &self.scattering) {
-            let table = &tables.lighting.buffer;
+            let table = &tables.met(color).buffer;
             scatter.march(gpu, scattering, table, lamp, geometry, sheets, slabs, encoder)
         } else {
             let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, part);
-            march(gpu, tables, lamp, geometry, sheets, slabs, tiles, encoder)
+            march(gpu, (tables, color), lamp, geometry, sheets, slabs, tiles, encoder)
         }
     }
 
@@ -115,10 +130,10 @@ impl Job<'_> {
     pub(super) fn backproject_view(
         &mut self,
         build: &mut LightBuild,
-        &LightStep { view, begin, part, .. }: &LightStep,
+        &LightStep { color, view, begin, part, .. }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let current = self.take_view(build, view)?;
+        let current = self.take_view(build, (view, color))?;
         let shadows = &self.request.settings.shadows;
         let BuildView { point, geometry, chunk } = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
@@ -126,7 +141,7 @@ impl Job<'_> {
         let loaded = &self.loaded.value;
         let gpu = Gpu::new(self.tools, &loaded.volume);
         let whole = &loaded.lights[build.slot].value;
-        let light = build.filled(*point, whole);
+        let light = build.filled(*point, color, whole);
         let CurrentView { sheets, schedule, scatter } = &current;
         match scatter {
             // The first sheet that touches a voxel needs no sums.
@@ -161,20 +176,20 @@ impl Job<'_> {
     /// Records the rays from some bricks.
     pub(super) fn encode_raycast(
         &mut self,
-        RaycastStep { build: at, point, bricks }: &RaycastStep,
+        RaycastStep { build: at, color, point, bricks }: &RaycastStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let build = &self.builds[*at];
         let loaded = &self.loaded.value;
         let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
         let whole = &loaded.lights[build.slot].value;
-        let is_first = *point == 0 && bricks.start == 0;
+        let is_first = color.unwrap_or(0) == 0 && *point == 0 && bricks.start == 0;
         if is_first {
             whole.clear_margin(gpu, &build.margin, encoder)?;
         }
         let lamp = (&build.points[*point], &self.request.settings);
-        let target = build.filled(*point, whole);
-        raycast(gpu, tables, lamp, &self.options, target, &build.bricks[bricks.clone()], encoder)?;
+        let target = build.filled(*point, *color, whole);
+        raycast(gpu, (tables, *color), lamp, &self.options, target, &build.bricks[bricks.clone()], encoder)?;
         if is_first {
             let builds = std::mem::take(&mut self.builds);
             self.begin_light(&builds[*at]);
@@ -187,6 +202,7 @@ impl Job<'_> {
     pub(super) fn encode_average(
         &self,
         at: usize,
+        color: Option<usize>,
         point: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
@@ -195,6 +211,19 @@ impl Job<'_> {
         let loaded = &self.loaded.value;
         let whole = &loaded.lights[build.slot].value;
         let gpu = Gpu::new(self.tools, &loaded.volume);
-        average.add(gpu, whole, point, &build.bricks, encoder)
+        average.add(gpu, build.of_color(color, whole), point, &build.bricks, encoder)
+    }
+
+    /// Records that the volumes of a light's colours become one.
+    pub(super) fn encode_colors(
+        &self,
+        at: usize,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let build = &self.builds[at];
+        let Some(colors) = &build.colors else { return Ok(()) };
+        let loaded = &self.loaded.value;
+        let gpu = Gpu::new(self.tools, &loaded.volume);
+        colors.join(gpu, &loaded.lights[build.slot].value, &build.bricks, encoder)
     }
 }

@@ -53,7 +53,8 @@ impl Job<'_> {
             Step::March(light) => self.encode_light(light, Self::march_view, encoder),
             Step::Backproject(light) => self.encode_light(light, Self::backproject_view, encoder),
             Step::Raycast(step) => self.encode_raycast(step, encoder),
-            Step::Average { build, point } => self.encode_average(*build, *point, encoder),
+            Step::Average { build, color, point } => self.encode_average(*build, *color, *point, encoder),
+            Step::JoinColors(build) => self.encode_colors(*build, encoder),
             Step::Combine(bricks) => self.encode_combine(bricks, encoder),
             Step::SkyBlocks => self.encode_sky(None, encoder),
             Step::SkyBatch(batch) => self.encode_sky(Some(*batch), encoder),
@@ -103,7 +104,8 @@ impl Job<'_> {
                     let light = &mut self.loaded.value.lights[build.slot];
                     light.value.finish();
                     light.finish();
-                    if build.average.take().is_some() {
+                    let has_scratch = build.average.take().is_some() | build.colors.take().is_some();
+                    if has_scratch {
                         self.tools.pool.forget_groups();
                     }
                 }

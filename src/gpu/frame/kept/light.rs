@@ -72,7 +72,8 @@ fn lookups_ahead(volume: &GpuVolume, settings: &Settings, light: &SceneLight, di
 /// volume, so that nothing may lie below: at most what is left of a brick that reaches above it, as under what stands there.
 fn floor_of(volume: &GpuVolume, tables: &Tables, settings: &Settings, points: u32) -> Option<FloorPlace> {
     let place = FloorPlace::of(settings)?;
-    if points < 2 || settings.shadows.algorithm != ShadowAlgorithm::Splat {
+    // Rays find the colours of shadows.
+    if points < 2 || settings.shadows.algorithm != ShadowAlgorithm::Splat || settings.has_colored_shadows() {
         return None;
     }
     let scene = &volume.scene;

@@ -38,6 +38,16 @@ pub(super) const LAYOUTS: Layouts = &[
         ]],
     ),
     (
+        "light/colors.wgsl",
+        &[&[
+            Slot::list(0, "bricks", 16, Access::Read),
+            Slot::loaded(1, "red", Shape::Volume),
+            Slot::loaded(2, "green", Shape::Volume),
+            Slot::loaded(3, "blue", Shape::Volume),
+            Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
+        ]],
+    ),
+    (
         "light/combine.wgsl",
         &[
             &[

@@ -3,6 +3,7 @@
 pub(in crate::model) mod area;
 pub(in crate::model) mod scattering;
 pub(in crate::model) mod sky;
+pub(in crate::model) mod surroundings;
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};

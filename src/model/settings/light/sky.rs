@@ -1,6 +1,6 @@
 //! Light that comes from all around: a sky, attenuated by the material on its way.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Resolution, SceneAxis, linear_from_srgb};
@@ -15,6 +15,8 @@ pub enum SkyMode {
     White,
     /// Three colours: above, at the horizon and below.
     Gradient,
+    /// What a picture of surroundings has, as far as it is linear in the direction.
+    Picture,
 }
 
 /// Directions that the sky's light is taken from: fewer are patchy, more look no better.
@@ -39,9 +41,11 @@ pub struct Sky {
     pub horizon: [f32; 3],
     /// Colour from below, sRGB, 0 … 1.
     pub ground: [f32; 3],
+    /// What is kept of a picture of surroundings.
+    pub picture: SkyPicture,
     /// How far the zenith leans from the vertical, in degrees: 90 is a wall of light, a large window.
     pub tilt_deg: f64,
-    /// To which side it leans, about the vertical, counted as a camera's azimuth.
+    /// To which side it leans, about the vertical, counted as a camera's azimuth; surroundings turn with it.
     pub turn_deg: f64,
     /// Multiplies the extinction that its light meets.
     pub density_scale: f64,
@@ -60,6 +64,7 @@ impl Default for Sky {
             zenith: [0.80, 0.89, 1.0],
             horizon: [0.95, 0.96, 1.0],
             ground: [0.52, 0.47, 0.42],
+            picture: SkyPicture::default(),
             tilt_deg: 0.0,
             turn_deg: 0.0,
             density_scale: 1.0,
@@ -68,6 +73,28 @@ impl Default for Sky {
         }
     }
 }
+
+/// What is kept of a picture of surroundings, so that no file is needed to draw it again. White until one has been read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SkyPicture {
+    /// The name of the file.
+    pub name: String,
+    /// Mean radiance, linear RGB.
+    pub mean: [f64; 3],
+    /// Of red, green and blue light towards where it is brighter, in a space whose z axis points up and whose x axis to the
+    /// middle of the picture: radiance is `mean` + `slope` · ω.
+    pub slope: [[f64; 3]; 3],
+}
+
+impl Default for SkyPicture {
+    fn default() -> Self {
+        Self { name: String::new(), mean: [1.0; 3], slope: [[0.0; 3]; 3] }
+    }
+}
+
+/// Most that a component of surroundings may be: of a mean luminance of 1 blue light alone has 14.
+pub const MAX_PICTURE_RADIANCE: f64 = 100.0;
 
 /// Radiance that is linear in the direction, for each colour: L(ω) = `mean` + `slope` · ω, in units in which an open
 /// white surface under a sky of 1 is 1.
@@ -87,9 +114,14 @@ impl Sky {
 
     /// Towards the zenith, in a scene of which an axis points up.
     pub fn zenith_direction(&self, up: SceneAxis) -> DVec3 {
+        self.scene_from_sky(up) * DVec3::Z
+    }
+
+    /// The sky, whose z axis points to its zenith, in a scene of which an axis points up: it leans towards its x axis, and
+    /// then turns about the vertical.
+    pub fn scene_from_sky(&self, up: SceneAxis) -> DMat3 {
         let (tilt, turn) = (self.tilt_deg.to_radians(), self.turn_deg.to_radians());
-        let upright = DVec3::new(tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos());
-        up.scene_from_upright() * upright
+        up.scene_from_upright() * DMat3::from_rotation_z(turn) * DMat3::from_rotation_y(tilt)
     }
 
     /// The sky as far as it is linear in the direction; `None` where there is none.
@@ -108,6 +140,14 @@ impl Sky {
                 Some(SkyRadiance {
                     mean: std::array::from_fn(|c| (zenith[c] + 2.0 * horizon[c] + ground[c]) / 4.0),
                     slope: std::array::from_fn(|c| towards * ((zenith[c] - ground[c]) / 2.0)),
+                })
+            }
+            SkyMode::Picture => {
+                let SkyPicture { name: _, mean, slope } = &self.picture;
+                let scene_from_sky = self.scene_from_sky(up) * self.intensity;
+                Some(SkyRadiance {
+                    mean: mean.map(|c| c * self.intensity),
+                    slope: slope.map(|slope| scene_from_sky * DVec3::from(slope)),
                 })
             }
         }
@@ -149,5 +189,17 @@ mod tests {
         near(sky(90.0, 0.0).zenith_direction(SceneAxis::PlusZ), DVec3::X);
         near(sky(90.0, 90.0).zenith_direction(SceneAxis::PlusZ), DVec3::Y);
         near(sky(180.0, 0.0).zenith_direction(SceneAxis::MinusX), DVec3::X);
+    }
+
+    #[test]
+    fn surroundings_turn_about_the_vertical() {
+        let picture = SkyPicture { slope: [[1.0, 0.0, 0.5], [0.0; 3], [0.0; 3]], ..SkyPicture::default() };
+        let sky = Sky { mode: SkyMode::Picture, intensity: 2.0, turn_deg: 90.0, picture, ..Sky::default() };
+        let radiance = sky.radiance(SceneAxis::PlusZ).expect("a sky");
+        assert_eq!(radiance.mean, [2.0; 3]);
+        assert!((radiance.slope[0] - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12, "{radiance:?}");
+        let leaning = Sky { tilt_deg: 90.0, turn_deg: 0.0, ..sky };
+        let slope = leaning.radiance(SceneAxis::PlusZ).expect("a sky").slope[0];
+        assert!((slope - DVec3::new(1.0, 0.0, -2.0)).length() < 1e-12, "{slope}");
     }
 }

@@ -1,7 +1,7 @@
 //! What moves with lights, and what their volumes are made from.
 
 use super::{Effect, effect, effect_of, keys, request};
-use crate::model::{LightLock, LightShape, Resolution};
+use crate::model::{LightLock, LightShape, Resolution, SkyMode};
 use crate::plan::LightKey;
 
 #[test]
@@ -75,4 +75,24 @@ fn without_bounces_lights_and_sky_have_colours_for_nothing() {
     }
     assert_eq!(effect_of(&request(), "scattering.albedo", "0.5"), Effect::Nothing);
     assert_eq!(effect_of(&request(), "scattering.bounces", "2"), Effect::Bounces);
+}
+
+#[test]
+fn colours_of_what_light_meets_count_where_shadows_are_coloured() {
+    let mut before = request();
+    before.settings.sky.mode = SkyMode::Off;
+    before.settings.shadows.transmission = 0.5;
+    assert_eq!(effect_of(&before, "transfer.points.0.color", "[1,0,0]"), Effect::AllLights);
+    assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), Effect::AllLights);
+    assert_eq!(effect_of(&before, "lighting.curve.points", "[]"), Effect::Nothing);
+    before.settings.lighting.linked = false;
+    before.settings.lighting.curve = before.settings.transfer.clone();
+    // The eye's are no longer those that light meets.
+    assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), Effect::AllLights);
+    // Rays to lights meet them in the eye pass itself.
+    before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Direct;
+    assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), Effect::Eye);
+    // And without any there are none.
+    before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Off;
+    assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), Effect::Nothing);
 }

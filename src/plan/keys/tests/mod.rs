@@ -140,6 +140,7 @@ fn every_setting_causes_what_the_design_says() {
         // Rays nearby take its place.
         ("shadows.bias_voxels", "1", Effect::Nothing),
         ("shadows.balance", "1.5", Effect::Bounces),
+        ("shadows.transmission", "0.5", Effect::AllLights),
         ("shadows.keep_balanced", "true", Effect::Nothing),
         ("shadows.first_touch", "true", Effect::AllLights),
         ("shadows.deposit", "front", Effect::AllLights),
@@ -160,6 +161,9 @@ fn every_setting_causes_what_the_design_says() {
         ("sky.zenith", "[1,0,0]", Effect::Bounces),
         ("sky.horizon", "[1,0,0]", Effect::Bounces),
         ("sky.ground", "[1,0,0]", Effect::Bounces),
+        ("sky.mode", "picture", Effect::Bounces),
+        // A gradient has none of it.
+        ("sky.picture", r#"{"mean": [1, 2, 3]}"#, Effect::Nothing),
         ("sky.tilt_deg", "30", Effect::Bounces),
         ("sky.turn_deg", "30", Effect::Bounces),
         ("sky.density_scale", "0.5", Effect::Sky),

@@ -1,0 +1,20 @@
+// What is left of a light's three colours, each of which was followed by itself, becomes one volume. One thread per voxel.
+#import "common/listed_bricks.wgsl"
+
+@group(0) @binding(0) var<storage, read> bricks: array<vec4u>;
+@group(0) @binding(1) var red: texture_3d<f32>;
+@group(0) @binding(2) var green: texture_3d<f32>;
+@group(0) @binding(3) var blue: texture_3d<f32>;
+@group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+
+@compute @workgroup_size(8, 8, 4)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let listed = listed_brick(group);
+    if (listed < arrayLength(&bricks)) {
+        let voxel = voxel_in(bricks[listed].x, group, local);
+        if (is_listed(bricks[listed], group, local) && all(voxel < textureDimensions(attenuation))) {
+            let rgb = vec3f(textureLoad(red, voxel, 0).r, textureLoad(green, voxel, 0).r, textureLoad(blue, voxel, 0).r);
+            textureStore(attenuation, voxel, vec4f(rgb, 1.0));
+        }
+    }
+}

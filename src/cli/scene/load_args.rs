@@ -1,0 +1,157 @@
+//! Arguments that say how a volume is read.
+
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+
+use super::downsampled_to_fit;
+use crate::cli::CliError;
+use crate::data::load::{Choice, Endian, LoadControl, LoadOptions, Portion, RawFormat, Region, Thinning};
+use crate::data::{Volume, VoxelType, open};
+use crate::gpu::Context;
+
+/// How a volume is read.
+#[derive(Debug, Clone, Args)]
+pub(in crate::cli) struct LoadArgs {
+    /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures; 1 is all of them
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
+    reduce: Option<u16>,
+    /// Read along each axis every Nth voxel alone, for less memory
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64), conflicts_with = "reduce")]
+    every: Option<u16>,
+    /// Voxels to read, along each axis from the first to before the last, counted from 0; an end may be left out
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1")]
+    region: Option<Region>,
+    /// RAW input: voxels along x, y, z
+    #[arg(long, value_name = "WxHxD", global = false)]
+    dims: Option<String>,
+    /// RAW input: uint8, int8, uint16, int16, uint32, int32, float32 or float64
+    #[arg(long = "type", value_name = "T", value_parser = parse_voxel_type)]
+    voxel_type: Option<VoxelType>,
+    /// RAW input: distance between voxels in millimetres
+    #[arg(long, value_name = "SXxSYxSZ")]
+    spacing: Option<String>,
+    /// RAW input: byte order
+    #[arg(long, value_enum)]
+    endian: Option<EndianArg>,
+    /// RAW input: bytes before the voxels
+    #[arg(long, value_name = "BYTES")]
+    offset: Option<u64>,
+    /// Vectors and colours: the component that is shown, from 0, instead of their length or luminance
+    #[arg(long, value_name = "N")]
+    component: Option<usize>,
+    /// Several time steps: the one that is shown, from 0
+    #[arg(long, value_name = "N")]
+    frame: Option<usize>,
+    /// Several channels: the one that is shown, from 0
+    #[arg(long, value_name = "N")]
+    channel: Option<usize>,
+    /// Several series in a folder: the one that is shown, by its number or name
+    #[arg(long, value_name = "NAME")]
+    series: Option<String>,
+    /// Several arrays in a file: the one that is shown
+    #[arg(long, value_name = "NAME")]
+    array: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum EndianArg {
+    Little,
+    Big,
+}
+
+impl LoadArgs {
+    /// The options for the reader.
+    pub(in crate::cli) fn load_options(&self) -> Result<LoadOptions, CliError> {
+        let usage = |field: &str, text: &str, expected: &str| {
+            CliError::Usage(format!(
+                "--{field}: expected {expected}, found {text:?} (command line, --{field})"
+            ))
+        };
+        let dims = match &self.dims {
+            None => None,
+            Some(text) => Some(
+                triple::<usize>(text).ok_or_else(|| usage("dims", text, "three whole numbers, 64x64x32"))?,
+            ),
+        };
+        let spacing_mm = match &self.spacing {
+            None => None,
+            Some(text) => {
+                Some(triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?)
+            }
+        };
+        let endian = self.endian.map(|endian| match endian {
+            EndianArg::Little => Endian::Little,
+            EndianArg::Big => Endian::Big,
+        });
+        let raw = RawFormat { dims, voxel_type: self.voxel_type, spacing_mm, endian, offset: self.offset };
+        let choice = Choice {
+            component: self.component,
+            frame: self.frame,
+            channel: self.channel,
+            series: self.series.clone(),
+            array: self.array.clone(),
+            portion: self.portion(),
+            ..Choice::default()
+        };
+        Ok(LoadOptions { raw, choice, ..LoadOptions::default() })
+    }
+
+    /// How much of the volume is read, where that is said.
+    fn portion(&self) -> Option<Portion> {
+        let thinning = match (self.every, self.reduce) {
+            (Some(step), _) => Thinning::Every(step.into()),
+            (None, Some(block)) => Thinning::Average(block.into()),
+            (None, None) => Thinning::None,
+        };
+        let is_said = self.every.is_some() || self.reduce.is_some() || self.region.is_some();
+        is_said.then_some(Portion { region: self.region, thinning })
+    }
+
+    /// Loads a volume, and opens the adapter.
+    pub(in crate::cli) fn open(&self, source: &Path) -> Result<(Volume, Context), CliError> {
+        self.open_chosen(source, None)
+    }
+
+    /// As [`Self::open`]. Of several volumes it is that one, and as much of it as was read then, unless the command line
+    /// says something else.
+    pub(in crate::cli) fn open_chosen(
+        &self,
+        source: &Path,
+        choice: Option<&Choice>,
+    ) -> Result<(Volume, Context), CliError> {
+        let mut options = self.load_options()?;
+        if let Some(choice) = choice {
+            options.choice = options.choice.or(choice);
+        }
+        // What is wrong with a file is said first.
+        let whole = open(source, &options, &LoadControl::new())?;
+        let context = Context::headless()?;
+        Ok((downsampled_to_fit(source, whole, &context)?, context))
+    }
+}
+
+/// `uint8`
+pub(in crate::cli) fn parse_voxel_type(text: &str) -> Result<VoxelType, String> {
+    let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
+    known.ok_or_else(|| format!("expected one of {}", VoxelType::ALL.map(VoxelType::name).join(", ")))
+}
+
+/// `1x2x3`.
+fn triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
+    let parts: Vec<T> =
+        text.split(['x', 'X', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
+    parts.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_numbers_are_read() {
+        assert_eq!(triple("1x2x3"), Some([1usize, 2, 3]));
+        assert_eq!(triple::<usize>("1x2"), None);
+        assert_eq!(triple("0.5x1x2"), Some([0.5, 1.0, 2.0]));
+    }
+}

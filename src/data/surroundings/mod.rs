@@ -1,0 +1,150 @@
+//! Surroundings in a picture: light from all directions as a camera saw it, in equirectangular projection. Kept of it are
+//! what lights need: the part that is linear in the direction, and the brightest light.
+
+mod brightest;
+mod error;
+mod panorama;
+
+use std::path::Path;
+
+use glam::DVec3;
+
+pub use error::SurroundingsError;
+use panorama::{Panorama, read};
+
+use crate::math::luminance;
+
+/// Light from all directions, in a space whose z axis points up and whose x axis to the middle of the picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surroundings {
+    /// The name of the file.
+    pub name: String,
+    /// Mean radiance of what is no light of its own, linear RGB, so scaled that its luminance is 1.
+    pub mean: [f64; 3],
+    /// For each colour towards where that is brighter, in the same scale: radiance is about `mean` + `slope` · ω.
+    pub slope: [DVec3; 3],
+    /// What a white surface gives back of all of that and the light below, if it faces both, is 1: so much of it is `mean`.
+    pub brightness: f64,
+    /// The light that stands out most.
+    pub light: Option<BrightLight>,
+}
+
+/// A light in surroundings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BrightLight {
+    /// Towards it; a unit vector.
+    pub towards: DVec3,
+    /// Linear RGB, its largest component 1.
+    pub color: [f64; 3],
+    /// What a white surface that faces it gives back of it.
+    pub intensity: f64,
+    /// Of the disc that is as large, in degrees.
+    pub angle_deg: f64,
+}
+
+/// Reads a picture of surroundings: Radiance HDR, EXR, PNG or JPEG, twice as wide as high.
+///
+/// # Errors
+/// When it cannot be read, is no such picture, is too large, or is black.
+pub fn read_surroundings(path: &Path) -> Result<Surroundings, SurroundingsError> {
+    let panorama = read(path)?;
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    Surroundings::of(name, panorama).ok_or_else(|| SurroundingsError::Black { path: path.to_owned() })
+}
+
+impl Surroundings {
+    /// Nothing, of a panorama that is black.
+    fn of(name: String, mut panorama: Panorama) -> Option<Self> {
+        let light = brightest::take(&mut panorama);
+        let (mean, slope) = linear_part(&panorama);
+        let light_luminance = light.map_or(0.0, |light| light.intensity * luminance(light.color));
+        // Of a surface that faces where radiance a + b·ω is largest: ∫ (a + b·ω) cos dω / π = a + ⅔ b.
+        let slope_of = |axis: usize| luminance(slope.map(|slope| slope[axis]));
+        let steepest = DVec3::new(slope_of(0), slope_of(1), slope_of(2)).length();
+        let all = luminance(mean) + 2.0 / 3.0 * steepest + light_luminance;
+        let of_mean = luminance(mean).max(1e-6 * all);
+        (all > 0.0).then(|| Self {
+            name,
+            mean: mean.map(|c| c / of_mean),
+            slope: slope.map(|slope| slope / of_mean),
+            brightness: of_mean / all,
+            light: light.map(|light| BrightLight { intensity: light.intensity / all, ..light }),
+        })
+    }
+}
+
+/// Mean radiance, and the slope of the function of the direction nearest to it of all linear ones: 3 ⟨L ω⟩, as far as no
+/// surface would receive less than nothing (a + ⅔ b·n ≥ 0).
+fn linear_part(panorama: &Panorama) -> ([f64; 3], [DVec3; 3]) {
+    let (mut mean, mut slope) = ([0.0; 3], [DVec3::ZERO; 3]);
+    for cell in panorama.cells() {
+        let share = cell.solid_angle / (4.0 * std::f64::consts::PI);
+        for c in 0..3 {
+            mean[c] += cell.radiance[c] * share;
+            slope[c] += cell.towards * (3.0 * cell.radiance[c] * share);
+        }
+    }
+    for c in 0..3 {
+        slope[c] = slope[c].clamp_length_max(1.5 * mean[c]);
+    }
+    (mean, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(radiance: impl Fn(DVec3) -> [f64; 3]) -> Surroundings {
+        Surroundings::of("t".to_owned(), Panorama::painted([512, 256], radiance)).expect("not black")
+    }
+
+    #[test]
+    fn what_is_linear_in_the_direction_is_kept() {
+        let towards = DVec3::new(0.6, 0.0, 0.8);
+        let found = of(|at| [2.0 + towards.dot(at), 2.0, 2.0 - 0.5 * at.y]);
+        assert_eq!(found.light, None, "nothing stands out");
+        let scale = found.mean[1] / 2.0;
+        assert!((luminance(found.mean) - 1.0).abs() < 1e-9);
+        assert!((found.mean[0] / scale - 2.0).abs() < 1e-3, "{found:?}");
+        assert!((found.slope[0] / scale - towards).length() < 1e-3, "{found:?}");
+        assert!(found.slope[1].length() < 1e-6 * scale.max(1.0));
+        assert!((found.slope[2] / scale + DVec3::Y * 0.5).length() < 1e-3);
+    }
+
+    #[test]
+    fn the_brightest_light_is_told_by_where_how_large_and_how_bright_it_is() {
+        let towards = DVec3::new(-0.48, 0.6, 0.64);
+        for angle_deg in [2.0f64, 12.0, 40.0] {
+            let edge = (0.5 * angle_deg).to_radians().cos();
+            // As much light as 1.5 times the sky's on a surface that faces it.
+            let solid = 2.0 * std::f64::consts::PI * (1.0 - edge);
+            let radiance = 1.5 * std::f64::consts::PI / solid;
+            let found = of(|at| {
+                let extra = if at.dot(towards) > edge { radiance } else { 0.0 };
+                [1.0 + extra, 1.0 + 0.8 * extra, 1.0 + 0.5 * extra]
+            });
+            let light = found.light.expect("it stands out");
+            assert!(light.towards.dot(towards) > 0.5f64.to_radians().cos(), "{angle_deg}: {light:?}");
+            assert!((light.angle_deg / angle_deg - 1.0).abs() < 0.1, "{angle_deg}: {light:?}");
+            let ratio = light.intensity / found.brightness;
+            assert!((ratio / 1.5 - 1.0).abs() < 0.05, "{angle_deg}: {ratio}");
+            for (found, expected) in light.color.iter().zip([1.0, 0.8, 0.5]) {
+                assert!((found - expected).abs() < 0.02, "{angle_deg}: {light:?}");
+            }
+            // What is left is the even sky.
+            assert!(found.slope.iter().all(|slope| slope.length() < 0.03), "{angle_deg}: {found:?}");
+            // All of it together, where a surface faces it.
+            let all = found.brightness + light.intensity * luminance(light.color);
+            assert!((all - 1.0).abs() < 0.03, "{angle_deg}: {all}");
+        }
+    }
+
+    #[test]
+    fn no_surface_receives_less_than_nothing() {
+        let found = of(|at| if at.x > 0.7 { [1.0; 3] } else { [0.0; 3] });
+        for c in 0..3 {
+            assert!(2.0 / 3.0 * found.slope[c].length() <= found.mean[c] * (1.0 + 1e-9), "{found:?}");
+        }
+        assert!(Surroundings::of(String::new(), Panorama::painted([64, 32], |_| [0.0; 3])).is_none());
+    }
+}

@@ -1,0 +1,313 @@
+//! Radiance over all directions, in cells of latitude and longitude.
+
+use std::f64::consts::PI;
+use std::fs::File;
+use std::io::{BufReader, Read as _};
+use std::path::Path;
+
+use glam::DVec3;
+use image::{DynamicImage, ImageDecoder as _, ImageReader};
+
+use super::SurroundingsError;
+use crate::data::attempt::memory_budget_bytes;
+use crate::math::linear_from_srgb;
+
+/// Columns of cells at most: the sun covers one and a half.
+const MOST_COLUMNS: usize = 1024;
+
+/// Pixels that are read at most: 8192 × 4096, the largest panoramas that are common.
+const MOST_PIXELS: usize = 1 << 25;
+
+/// Radiance beyond this is an error in the picture: the sun is 2·10⁵ times as bright as the sky around it.
+const MOST_RADIANCE: f32 = 1e7;
+
+/// How far the width may be from twice the height, as a share.
+const SHAPE_SLACK: f64 = 0.02;
+
+/// How EXR files begin.
+const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// Radiance over all directions; z is up, and x towards the middle.
+#[derive(Debug, Clone)]
+pub(super) struct Panorama {
+    /// Of the picture.
+    size: [usize; 2],
+    /// Columns and rows of cells.
+    cells: [usize; 2],
+    /// Sums of linear RGB, and how many.
+    sums: Vec<[f64; 4]>,
+}
+
+/// A piece of the sphere.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell {
+    /// Its middle.
+    pub towards: DVec3,
+    pub solid_angle: f64,
+    /// Linear RGB.
+    pub radiance: [f64; 3],
+}
+
+impl Panorama {
+    /// One that is black, for a picture of so many pixels.
+    fn new(size: [usize; 2]) -> Self {
+        let columns = size[0].clamp(1, MOST_COLUMNS);
+        let cells = [columns, size[1].clamp(1, MOST_COLUMNS / 2)];
+        Self { size, cells, sums: vec![[0.0; 4]; cells[0] * cells[1]] }
+    }
+
+    /// Adds a pixel.
+    fn add(&mut self, column: usize, row: usize, rgb: [f32; 3]) {
+        let [columns, rows] = self.cells;
+        let x = (column * columns / self.size[0]).min(columns - 1);
+        let y = (row * rows / self.size[1]).min(rows - 1);
+        let sum = &mut self.sums[x + columns * y];
+        for (sum, value) in sum.iter_mut().zip(rgb) {
+            // What is no number, or less than black, is black.
+            *sum += f64::from(if value > 0.0 { value.min(MOST_RADIANCE) } else { 0.0 });
+        }
+        sum[3] += 1.0;
+    }
+
+    /// All of them, row by row from above.
+    pub(super) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
+        (0..self.sums.len()).map(|at| self.cell(at))
+    }
+
+    /// One of them.
+    pub(super) fn cell(&self, at: usize) -> Cell {
+        let [columns, rows] = self.cells;
+        let (column, row) = (at % columns, at / columns);
+        // To the right of the middle is clockwise, seen from above.
+        let azimuth = 2.0 * PI * (0.5 - (column as f64 + 0.5) / columns as f64);
+        let latitude = |row: f64| PI * (0.5 - row / rows as f64);
+        let (above, middle, below) = (row as f64, row as f64 + 0.5, row as f64 + 1.0);
+        let (sin, cos) = latitude(middle).sin_cos();
+        let [r, g, b, count] = self.sums[at];
+        Cell {
+            towards: DVec3::new(azimuth.cos() * cos, azimuth.sin() * cos, sin),
+            solid_angle: 2.0 * PI / columns as f64 * (latitude(above).sin() - latitude(below).sin()),
+            radiance: [r, g, b].map(|sum| sum / count.max(1.0)),
+        }
+    }
+
+    /// The cells beside one; the picture's left border is beside its right one.
+    pub(super) fn beside(&self, at: usize) -> impl Iterator<Item = usize> + use<> {
+        let [columns, rows] = self.cells;
+        let (column, row) = (at % columns, at / columns);
+        let above = (row > 0).then(|| at - columns);
+        let below = (row + 1 < rows).then(|| at + columns);
+        let first = columns * row;
+        let sides = [first + (column + columns - 1) % columns, first + (column + 1) % columns];
+        sides.into_iter().chain(above).chain(below)
+    }
+
+    /// Paints a cell over.
+    pub(super) fn set(&mut self, at: usize, [r, g, b]: [f64; 3]) {
+        self.sums[at] = [r, g, b, 1.0];
+    }
+
+    /// One in which each direction has the radiance that a function says.
+    #[cfg(test)]
+    pub(super) fn painted(size: [usize; 2], radiance: impl Fn(DVec3) -> [f64; 3]) -> Self {
+        let mut panorama = Self::new(size);
+        for at in 0..panorama.sums.len() {
+            let towards = panorama.cell(at).towards;
+            panorama.set(at, radiance(towards));
+        }
+        panorama
+    }
+}
+
+/// Reads a picture, told by its content.
+pub(super) fn read(path: &Path) -> Result<Panorama, SurroundingsError> {
+    let io = |source| SurroundingsError::Io { path: path.to_owned(), source };
+    if !std::fs::metadata(path).map_err(io)?.is_file() {
+        return Err(io(std::io::Error::other("not a regular file")));
+    }
+    let mut start = Vec::new();
+    File::open(path).map_err(io)?.take(4).read_to_end(&mut start).map_err(io)?;
+    if start == EXR { read_exr(path) } else { read_image(path) }
+}
+
+/// Refuses pictures of a wrong shape, and those that are too large.
+fn checked(path: &Path, [width, height]: [usize; 2]) -> Result<[usize; 2], SurroundingsError> {
+    let path = path.to_owned();
+    let is_wide = (width as f64 - 2.0 * height as f64).abs() <= SHAPE_SLACK * width as f64;
+    if !is_wide || height == 0 {
+        return Err(SurroundingsError::Shape { path, width, height });
+    }
+    // A software driver and the picture share the memory: three floats for each pixel.
+    let most = MOST_PIXELS.min((memory_budget_bytes() / 12) as usize);
+    if width.saturating_mul(height) > most {
+        return Err(SurroundingsError::TooLarge { path, width, height, most });
+    }
+    Ok([width, height])
+}
+
+fn read_image(path: &Path) -> Result<Panorama, SurroundingsError> {
+    let io = |source| SurroundingsError::Io { path: path.to_owned(), source };
+    let broken =
+        |why: image::ImageError| SurroundingsError::Broken { path: path.to_owned(), why: why.to_string() };
+    let reader = ImageReader::open(path).map_err(io)?.with_guessed_format().map_err(io)?;
+    let decoder = reader.into_decoder().map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    let size = checked(path, [width as usize, height as usize])?;
+    let picture = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    let mut panorama = Panorama::new(size);
+    // Pictures of bytes are for screens, those of floats are light.
+    match picture {
+        DynamicImage::ImageRgb32F(pixels) => {
+            for (x, y, pixel) in pixels.enumerate_pixels() {
+                panorama.add(x as usize, y as usize, pixel.0);
+            }
+        }
+        DynamicImage::ImageRgb16(pixels) => {
+            for (x, y, pixel) in pixels.enumerate_pixels() {
+                panorama.add(
+                    x as usize,
+                    y as usize,
+                    pixel.0.map(|c| linear_from_srgb(f64::from(c) / 65535.0) as f32),
+                );
+            }
+        }
+        other => {
+            let linear: Vec<f32> = (0..=255).map(|c| linear_from_srgb(f64::from(c) / 255.0) as f32).collect();
+            for (x, y, pixel) in other.to_rgb8().enumerate_pixels() {
+                panorama.add(x as usize, y as usize, pixel.0.map(|c| linear[usize::from(c)]));
+            }
+        }
+    }
+    Ok(panorama)
+}
+
+fn read_exr(path: &Path) -> Result<Panorama, SurroundingsError> {
+    let broken =
+        |why: exr::error::Error| SurroundingsError::Broken { path: path.to_owned(), why: why.to_string() };
+    let file = File::open(path).map_err(|source| SurroundingsError::Io { path: path.to_owned(), source })?;
+    let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken)?;
+    for header in &meta.headers {
+        let exr::math::Vec2(width, height) = header.layer_size;
+        checked(path, [width, height])?;
+    }
+    let picture = exr::prelude::read_first_rgba_layer_from_file(
+        path,
+        |exr::math::Vec2(width, height), _| Panorama::new([width, height]),
+        |panorama: &mut Panorama, exr::math::Vec2(x, y), (r, g, b, _): (f32, f32, f32, f32)| {
+            panorama.add(x, y, [r, g, b]);
+        },
+    );
+    Ok(picture.map_err(broken)?.layer_data.channel_data.pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A small panorama, brighter to the right.
+    fn pixels() -> image::Rgb32FImage {
+        image::Rgb32FImage::from_fn(16, 8, |x, _| image::Rgb([x as f32 / 15.0, 0.25, 0.5]))
+    }
+
+    #[test]
+    fn pictures_of_all_kinds_are_the_same_light() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        pixels().save(path("a.hdr")).unwrap();
+        let srgb = |linear: f32| crate::math::srgb_from_linear(f64::from(linear));
+        let bytes = image::RgbImage::from_fn(16, 8, |x, y| {
+            image::Rgb(pixels().get_pixel(x, y).0.map(|c| (255.0 * srgb(c)).round() as u8))
+        });
+        bytes.save(path("a.png")).unwrap();
+        let words: image::ImageBuffer<image::Rgb<u16>, Vec<u16>> =
+            image::ImageBuffer::from_fn(16, 8, |x, y| {
+                image::Rgb(pixels().get_pixel(x, y).0.map(|c| (65535.0 * srgb(c)).round() as u16))
+            });
+        words.save(path("b.png")).unwrap();
+        let all = pixels();
+        exr::prelude::write_rgb_file(path("a.exr"), 16, 8, |x, y| {
+            let [r, g, b] = all.get_pixel(x as u32, y as u32).0;
+            (r, g, b)
+        })
+        .unwrap();
+        for name in ["a.hdr", "a.png", "b.png", "a.exr"] {
+            let panorama = read(&path(name)).unwrap_or_else(|err| panic!("{name}: {err}"));
+            assert_eq!(panorama.size, [16, 8]);
+            for (at, cell) in panorama.cells().enumerate() {
+                let expected = [(at % 16) as f64 / 15.0, 0.25, 0.5];
+                for (found, expected) in cell.radiance.iter().zip(expected) {
+                    assert!((found - expected).abs() < 0.006, "{name}: {cell:?}, not {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_panorama_is_refused_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("square.png");
+        image::RgbImage::new(8, 8).save(&path).unwrap();
+        let says = |path: &Path| read(path).unwrap_err().to_string();
+        assert!(says(&path).contains("square.png: 8 × 8 pixels; expected"), "{}", says(&path));
+        let other = folder.path().join("other.hdr");
+        std::fs::write(&other, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 99999999 +X 199999998\n").unwrap();
+        assert!(says(&other).contains("other.hdr"), "{}", says(&other));
+        std::fs::write(&other, b"\x76\x2f\x31\x01\x02\0\0\0").unwrap();
+        assert!(says(&other).contains("no picture that can be read"), "{}", says(&other));
+        std::fs::write(&other, b"text").unwrap();
+        assert!(says(&other).contains("other.hdr"), "{}", says(&other));
+        assert!(says(folder.path()).contains("regular file"));
+        assert!(says(&folder.path().join("none")).contains("none"));
+    }
+
+    /// Damaged files are refused, or read as far as they make sense.
+    #[test]
+    fn damaged_pictures_end_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        pixels().save(path("a.hdr")).unwrap();
+        image::DynamicImage::from(pixels()).to_rgb8().save(path("a.png")).unwrap();
+        image::DynamicImage::from(pixels()).to_rgb8().save(path("a.jpg")).unwrap();
+        exr::prelude::write_rgb_file(path("a.exr"), 16, 8, |x, y| (x as f32, y as f32, 0.5f32)).unwrap();
+        let mut random = 1u64;
+        let mut next = |below: usize| {
+            // Knuth's constants: any sequence will do that is the same each time.
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (random >> 33) as usize % below
+        };
+        for name in ["a.hdr", "a.png", "a.jpg", "a.exr"] {
+            let whole = std::fs::read(path(name)).unwrap();
+            let mut refused = 0;
+            for turn in 0..200 {
+                let mut bytes = whole.clone();
+                match turn % 3 {
+                    0 => bytes.truncate(next(whole.len())),
+                    _ => (0..=next(4)).for_each(|_| bytes[next(whole.len())] = next(256) as u8),
+                }
+                std::fs::write(path("damaged"), bytes).unwrap();
+                refused += usize::from(read(&path("damaged")).is_err());
+            }
+            assert!(refused > 20, "{name}: {refused}");
+        }
+    }
+
+    #[test]
+    fn cells_cover_the_sphere_once() {
+        let panorama = Panorama::new([64, 32]);
+        let all: f64 = panorama.cells().map(|cell| cell.solid_angle).sum();
+        assert!((all - 4.0 * PI).abs() < 1e-9);
+        let middle = panorama.cell(64 * 16 + 32).towards;
+        assert!(middle.dot(DVec3::X) > 0.99, "{middle}");
+        assert!(panorama.cell(0).towards.z > 0.99);
+        // To the right of the middle.
+        assert!(panorama.cell(64 * 16 + 48).towards.dot(DVec3::NEG_Y) > 0.99);
+        assert!(panorama.beside(64 * 3).any(|next| next == 64 * 3 + 63));
+    }
+
+    #[test]
+    fn what_is_no_number_is_black() {
+        let mut panorama = Panorama::new([4, 2]);
+        panorama.add(0, 0, [f32::NAN, -3.0, f32::INFINITY]);
+        assert_eq!(panorama.cell(0).radiance, [0.0, 0.0, f64::from(MOST_RADIANCE)]);
+    }
+}

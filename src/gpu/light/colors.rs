@@ -1,0 +1,62 @@
+//! Coloured shadows: red, green and blue light are followed one after the other, and their volumes become one.
+
+use super::volume::LightVolume;
+use crate::gpu::pipelines::binding::{Named, view_of};
+use crate::gpu::pipelines::variant::Only;
+use crate::gpu::resources::pass;
+use crate::gpu::volume::Gpu;
+use crate::gpu::volume::listed_bricks::{self, Listed};
+use crate::gpu::{Context, GpuError};
+use crate::model::COLORS;
+
+/// What only the filling of a volume of three colours needs.
+#[derive(Debug)]
+pub(crate) struct ColorPlanes([LightVolume; COLORS]);
+
+impl ColorPlanes {
+    /// Makes room for the colours of a light whose volume is `whole`.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(context: &Context, whole: &LightVolume) -> Result<Self, GpuError> {
+        let plane = || whole.alike(context, context.storage_format);
+        Ok(Self([plane()?, plane()?, plane()?]))
+    }
+
+    /// Bytes of all of them.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.0.iter().map(LightVolume::bytes).sum()
+    }
+
+    /// The volume of a colour.
+    pub(crate) fn plane(&self, color: usize) -> &LightVolume {
+        &self.0[color % COLORS]
+    }
+
+    /// Joins them in the listed bricks of the light's own volume.
+    pub(crate) fn join(
+        &self,
+        gpu: Gpu<'_>,
+        whole: &LightVolume,
+        bricks: &[Listed],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        if bricks.is_empty() {
+            return Ok(());
+        }
+        let pipeline = gpu.shaders.pipeline_into(&Only("light/colors.wgsl"), whole.texture.format())?;
+        let list = listed_bricks::upload(gpu, bricks);
+        let [red, green, blue] = &self.0;
+        let entries = [
+            Named { name: "bricks", resource: listed_bricks::exactly(&list, bricks) },
+            view_of("red", &red.view),
+            view_of("green", &green.view),
+            view_of("blue", &blue.view),
+            view_of("attenuation", &whole.view),
+        ];
+        let own = gpu.bind("ColorPlanes::bind_group", &pipeline, 0, &entries);
+        let groups = listed_bricks::workgroups(bricks.len() as u32);
+        pass::dispatch(encoder, "ColorPlanes::join", &pipeline, &[&own], groups);
+        Ok(())
+    }
+}

@@ -1,0 +1,128 @@
+//! Lighting a scene as its surroundings in a picture would.
+
+use glam::DVec3;
+
+use super::area::LightShape;
+use super::sky::{SkyMode, SkyPicture};
+use super::{Light, LightKind, LightLock, MAX_LIGHTS};
+use crate::data::{BrightLight, Surroundings};
+use crate::model::{MAX_LIGHT_ANGLE_DEG, Settings, srgb_from_linear};
+
+/// The name of the light that a picture of surroundings brings.
+pub const SURROUNDINGS: &str = "Surroundings";
+
+/// How far from the middle such a light stands, which says nothing of its direction.
+const DISTANCE: f64 = 3.8;
+
+/// Lights that look smaller than this throw shadows as sharp as those of points.
+const SMALL_DEG: f64 = 0.3;
+
+impl Settings {
+    /// Lights the scene by surroundings: by a sky of what is linear in them, and a light for the brightest in them. Other
+    /// lights are switched off; one that an earlier picture brought makes room.
+    ///
+    /// The surroundings turn so that their light comes from the side where the key light stood, which had been placed for
+    /// the object. They are as bright as that was with what made up for its shadows, which stays as it is from now on: the
+    /// picture says how bright each light is.
+    pub fn surround(&mut self, surroundings: &Surroundings) {
+        let up = self.camera.up;
+        let upright_from_scene = up.scene_from_upright().transpose();
+        let azimuth_of = |towards: DVec3| towards.y.atan2(towards.x).to_degrees();
+        let key = self.lights.iter().find(|light| light.needs_volume());
+        let key = key.map(|light| upright_from_scene * light.in_scene(&self.camera).direction());
+        let sky = &mut self.sky;
+        sky.mode = SkyMode::Picture;
+        // Of lights alone it is a factor.
+        sky.intensity = surroundings.brightness * self.shadows.balance;
+        sky.picture = SkyPicture {
+            name: surroundings.name.clone(),
+            mean: surroundings.mean,
+            slope: surroundings.slope.map(Into::into),
+        };
+        sky.tilt_deg = 0.0;
+        sky.turn_deg = match (key, surroundings.light) {
+            (Some(key), Some(light)) => azimuth_of(key) - azimuth_of(light.towards),
+            _ => 0.0,
+        };
+        self.lights.retain(|light| light.name != SURROUNDINGS);
+        self.lights.iter_mut().for_each(|light| light.on = false);
+        if let Some(BrightLight { towards, color, intensity, angle_deg }) = surroundings.light {
+            let place = self.sky.scene_from_sky(up) * towards * DISTANCE;
+            self.lights.truncate(MAX_LIGHTS - 1);
+            let shape = if angle_deg < SMALL_DEG { LightShape::Point } else { LightShape::Disc };
+            let light = Light {
+                name: SURROUNDINGS.to_owned(),
+                kind: LightKind::Parallel,
+                position: place.into(),
+                color: color.map(|c| srgb_from_linear(c) as f32),
+                // Surfaces give back so much of lights, and all of a sky.
+                intensity: intensity / self.shading.diffuse.max(0.05),
+                lock: LightLock::Scene,
+                shape,
+                angle_deg: angle_deg.min(MAX_LIGHT_ANGLE_DEG),
+                ..Light::default()
+            };
+            self.lights.insert(0, light);
+        }
+        self.shadows.keep_balanced = false;
+        self.sanitise();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::SceneAxis;
+
+    fn surroundings() -> Surroundings {
+        Surroundings {
+            name: "yard.hdr".to_owned(),
+            mean: [0.9, 1.0, 1.3],
+            slope: [DVec3::Z * 0.2; 3],
+            brightness: 0.3,
+            light: Some(BrightLight {
+                towards: DVec3::new(0.0, -0.6, 0.8),
+                color: [1.0, 0.9, 0.5],
+                intensity: 0.7,
+                angle_deg: 2.0,
+            }),
+        }
+    }
+
+    #[test]
+    fn light_comes_from_where_the_key_stood_as_high_as_in_the_picture() {
+        for up in SceneAxis::ALL {
+            let mut settings = Settings::default();
+            settings.shadows.balance = 2.0;
+            settings.camera.up = up;
+            settings.lights = vec![Light {
+                position: (up.scene_from_upright() * DVec3::new(3.0, 0.0, 1.0)).into(),
+                ..Light::default()
+            }];
+            settings.surround(&surroundings());
+            let [light, other] = &settings.lights[..] else { panic!("{:?}", settings.lights) };
+            assert!(!other.on && light.on && light.name == SURROUNDINGS);
+            let towards = up.scene_from_upright().transpose() * DVec3::from(light.position).normalize();
+            assert!((towards - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-9, "{up:?}: {towards}");
+            assert_eq!((settings.sky.mode, settings.sky.intensity), (SkyMode::Picture, 0.6));
+            // Another picture takes its place.
+            settings.surround(&surroundings());
+            assert_eq!(settings.lights.len(), 2);
+        }
+    }
+
+    #[test]
+    fn surroundings_without_a_light_leave_none_on() {
+        let mut settings = Settings::default();
+        settings.surround(&Surroundings { light: None, ..surroundings() });
+        assert!(settings.lights.iter().all(|light| !light.on) && !settings.lights.is_empty());
+        assert_eq!(settings.sky.picture.name, "yard.hdr");
+    }
+
+    #[test]
+    fn as_many_lights_stay_as_a_picture_can_have() {
+        let mut settings = Settings { lights: vec![Light::default(); MAX_LIGHTS], ..Settings::default() };
+        settings.surround(&surroundings());
+        assert_eq!((settings.lights.len(), settings.lights[0].name.as_str()), (MAX_LIGHTS, SURROUNDINGS));
+    }
+}

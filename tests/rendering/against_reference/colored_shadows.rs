@@ -1,0 +1,227 @@
+//! Coloured shadows against the reference: each colour of light is followed by itself, on both sides.
+
+use chiaroscuro::gpu::{Attenuation, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro::model::{
+    Classification, ControlPoint, Engine, Floor, Light, LightKind, LightShape, LightStorage, NearField,
+    Precision, Settings, ShadowAlgorithm,
+};
+use chiaroscuro::plan::Request;
+use chiaroscuro::reference::{Options, Reference, of_colors};
+use glam::DVec3;
+
+use super::mutations::in_shader;
+use super::{SIZE, round_to_f16};
+use crate::common::{Dataset, context, render};
+use crate::compare::{Limit, compare, flat32, flat64};
+use crate::scenes;
+use crate::thresholds::{BYTES, COMBINED_NORMALS, SAME_WEIGHTS};
+
+const N: usize = 22;
+
+/// Soft parts of different hues under two lights.
+fn look() -> Settings {
+    let mut settings = scenes::look();
+    settings.shadows.transmission = 0.9;
+    settings.lights.push(scenes::light(LightKind::Perspective, [-1.9, 1.2, 1.4]));
+    let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
+    settings.transfer.points = vec![
+        point(8.0, [0.9, 0.1, 0.1], 0.0),
+        point(60.0, [0.2, 0.9, 0.3], 0.1),
+        point(110.0, [0.9, 0.3, 0.1], 0.3),
+        point(170.0, [0.2, 0.4, 0.9], 0.5),
+        point(250.0, [0.8, 0.8, 0.8], 0.8),
+    ];
+    settings
+}
+
+/// No mistake.
+const RIGHT: (&str, &str) = ("\u{0}", "");
+
+/// How the volumes of lights, the picture and the floor differ from the reference's, with a text in shaders replaced.
+fn failures(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
+    let loaded = Dataset::new(scenes::creature(N, DVec3::new(1.0, 1.0, 1.3)));
+    let context = context();
+    let shaders = ShaderLibrary::with_mutation(&context, from, to);
+    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+    let references = [0, 1, 2].map(|color| {
+        let options = Options { color: Some(color), rounding: Some(round_to_f16), ..Options::default() };
+        Reference::new(loaded.volume(), settings, options)
+    });
+    let found = render(&mut renderer, &loaded, settings, SIZE);
+    let attenuations = references.each_ref().map(Reference::attenuations);
+    let picture = of_colors(|color| references[color].picture(SIZE, &attenuations[color]));
+    let mut failures = Vec::new();
+    failures.extend(compare("picture", &flat32(&found.light), &flat64(&picture), SAME_WEIGHTS).err());
+    if settings.floor.on {
+        let floor = of_colors(|color| references[color].floor(SIZE));
+        let found = renderer.read_floor().expect("a floor");
+        failures.extend(compare("floor", &flat32(&found), &flat64(&floor), SAME_WEIGHTS).err());
+    }
+    for light in 0..settings.lights.len() {
+        let Some(volume) = light_volume(&mut renderer, &loaded, settings, light) else { continue };
+        for (color, attenuations) in attenuations.iter().enumerate() {
+            let expected = &attenuations[light].as_ref().expect("the light casts shadows").values;
+            let found: Vec<f64> = volume.colors.iter().map(|texel| f64::from(texel[color])).collect();
+            let what = format!("light {light}, colour {color}");
+            failures.extend(compare(&what, &found, expected, SAME_WEIGHTS).err());
+        }
+    }
+    failures
+}
+
+/// All of the volume of a light.
+fn light_volume(
+    renderer: &mut Renderer,
+    loaded: &Dataset,
+    settings: &Settings,
+    light: usize,
+) -> Option<Attenuation> {
+    let everything = RenderOptions { fill_everything: true, ..RenderOptions::default() };
+    renderer.draw(loaded, settings, [8, 8], &everything).expect("light volumes are filled");
+    let request =
+        Request { volume: loaded.volume().id(), settings: settings.clone(), size: [8, 8], coarse: None };
+    renderer.attenuation(&request, light).expect("it is read back")
+}
+
+fn check(what: &str, settings: &Settings) {
+    let failures = failures(settings, RIGHT);
+    assert!(failures.is_empty(), "{what}: {}", failures.join("\n"));
+}
+
+#[test]
+fn by_splatting() {
+    let mut settings = look();
+    check("near rays", &settings);
+    settings.shadows.near_field = NearField::Off;
+    settings.shadows.first_touch = true;
+    check("first touch, no near rays", &settings);
+}
+
+#[test]
+fn with_a_lighting_curve_of_its_own_and_cuts() {
+    let mut settings = look();
+    settings.lighting.linked = false;
+    settings.lighting.curve = settings.transfer.clone();
+    settings.lighting.scale = 0.7;
+    for (point, color) in settings.lighting.curve.points.iter_mut().zip([[0.1, 0.2, 0.9], [0.9, 0.8, 0.1]]) {
+        point.color = color;
+    }
+    settings.cuts.crop.on = true;
+    settings.cuts.crop.high = [0.8, 1.0, 0.9];
+    check("own curve", &settings);
+}
+
+#[test]
+fn scattered() {
+    let mut settings = look();
+    settings.sampling.engine = Engine::Scatter;
+    check("scattered", &settings);
+}
+
+#[test]
+fn by_rays_and_on_a_floor() {
+    let mut settings = look();
+    settings.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    settings.shadows.algorithm = ShadowAlgorithm::Raycast;
+    check("rays from voxels", &settings);
+    settings.shadows.algorithm = ShadowAlgorithm::Direct;
+    check("rays from samples", &settings);
+}
+
+#[test]
+fn of_voxels_that_are_classified_first() {
+    let mut settings = look();
+    settings.sampling.classification = Classification::Pre;
+    settings.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
+        settings.shadows.algorithm = algorithm;
+        check(&format!("{algorithm:?}"), &settings);
+    }
+}
+
+#[test]
+fn under_a_light_that_has_a_size() {
+    let mut settings = look();
+    settings.lights = vec![Light { shape: LightShape::Disc, angle_deg: 30.0, ..settings.lights[0].clone() }];
+    settings.shadows.area.samples = 5;
+    settings.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    check("a disc", &settings);
+}
+
+#[test]
+fn in_bytes() {
+    let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut colors = |precision| {
+        let mut settings = look();
+        settings.shadows.precision = precision;
+        let volume = light_volume(&mut renderer, &loaded, &settings, 0).expect("it has a volume");
+        volume.colors.into_iter().flatten().map(f64::from).collect::<Vec<_>>()
+    };
+    let (halves, bytes) = (colors(Precision::Half), colors(Precision::Byte));
+    compare("bytes", &bytes, &halves, BYTES).unwrap_or_else(|err| panic!("{err}"));
+}
+
+#[test]
+fn one_volume_for_all_lights_has_the_colours() {
+    let mut settings = look();
+    settings.shadows.near_field = NearField::Off;
+    settings.shading.specular = 0.0;
+    let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut picture = |storage| {
+        settings.shadows.storage = storage;
+        flat32(&render(&mut renderer, &loaded, &settings, SIZE).light)
+    };
+    let each = picture(LightStorage::PerLight);
+    let all = picture(LightStorage::Combined);
+    let limit = Limit { max: f64::INFINITY, rmse: COMBINED_NORMALS };
+    compare("one volume for all", &all, &each, limit).unwrap_or_else(|err| panic!("{err}"));
+}
+
+/// Under a sky, which all matter attenuates alike, and beside light that bounces.
+#[test]
+fn skies_are_attenuated_alike() {
+    let mut settings = look();
+    settings.sky.mode = chiaroscuro::model::SkyMode::White;
+    settings.sky.directions = 6;
+    check("a sky", &settings);
+}
+
+/// Matter of one grey has grey shadows, and the same picture as with the setting off.
+#[test]
+fn grey_matter_has_grey_shadows() {
+    let mut settings = look();
+    for point in &mut settings.transfer.points {
+        point.color = [0.7; 3];
+    }
+    let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut picture = |transmission| {
+        settings.shadows.transmission = transmission;
+        flat32(&render(&mut renderer, &loaded, &settings, SIZE).light)
+    };
+    let (grey, colored) = (picture(0.0), picture(1.0));
+    compare("grey", &colored, &grey, SAME_WEIGHTS).unwrap_or_else(|err| panic!("{err}"));
+}
+
+#[test]
+fn mistakes_in_them_are_noticed() {
+    let settings = look();
+    assert!(failures(&settings, RIGHT).is_empty());
+    let mut classified = settings.clone();
+    classified.sampling.classification = Classification::Pre;
+    let mut on_floor = classified.clone();
+    on_floor.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    for (settings, shader, from, to) in [
+        (&settings, "light/colors.wgsl", "textureLoad(green, voxel, 0)", "textureLoad(blue, voxel, 0)"),
+        (&settings, "eye/gather.wgsl", "return entry.rgb * entry.a;", "return vec3f(entry.a);"),
+        (&settings, "eye/gather.wgsl", "return texel.rgb;", "return texel.rrr;"),
+        (&classified, "light/march.wgsl", "[GATHERED]", "[GATHERED - 1u]"),
+        (&classified, "eye/gather.wgsl", "return texel.gba;", "return texel.rrr;"),
+        (&on_floor, "eye/floor.wgsl", "classified_extinction(met.g)", "classified_extinction(met.b)"),
+    ] {
+        in_shader(shader, from);
+        assert!(!failures(settings, (from, to)).is_empty(), "{to:?} for {from:?} is not noticed");
+    }
+}
