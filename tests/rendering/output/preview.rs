@@ -3,7 +3,9 @@
 use chiaroscuro::data::Histogram;
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::{RenderOptions, Renderer, mean_luminance};
-use chiaroscuro::model::{Kernel, LightPlace, NearField, Resolution, Settings, auto, key_and_fill};
+use chiaroscuro::model::{
+    Kernel, LightPlace, LightShape, NearField, Resolution, Settings, SkyMode, auto, key_and_fill,
+};
 use chiaroscuro::plan::{Request, preview_slab};
 
 use crate::common::{Dataset, context};
@@ -100,5 +102,48 @@ fn previews_stay_as_bright_as_pictures() {
                 assert!(drift <= most, "{name} / {scale}, {resolution:?}, {angle_deg}°: {drift}");
             }
         }
+    }
+}
+
+/// The same under lights that have a size, a sky and light that bounces, all of which previews follow more coarsely.
+#[test]
+fn previews_of_soft_light_stay_as_bright_as_pictures() {
+    let context = context();
+    let mut drifts = Vec::new();
+    for name in ["chair", "cloud"] {
+        let volume = builtin(name, Some(64)).expect("a volume");
+        let home = auto::first_settings(&volume, &Histogram::of(&volume));
+        let loaded = Dataset::new(volume);
+        let mut renderer = Renderer::new(&context).expect("a renderer");
+        let mut disc = home.clone();
+        (disc.lights[0].shape, disc.lights[0].angle_deg) = (LightShape::Disc, 20.0);
+        let mut sky = home.clone();
+        (sky.sky.mode, sky.sky.intensity) = (SkyMode::Gradient, 0.6);
+        let mut bounces = home.clone();
+        bounces.scattering.bounces = 4;
+        let mut colored = home.clone();
+        colored.shadows.transmission = 0.9;
+        let mut all = disc.clone();
+        (all.sky, all.scattering) = (sky.sky.clone(), bounces.scattering.clone());
+        for (what, home) in
+            [("disc", disc), ("sky", sky), ("bounces", bounces), ("coloured", colored), ("all", all)]
+        {
+            let mut off = |angle_deg: f64| {
+                let mut settings = home.clone();
+                let turn = glam::DQuat::from_rotation_z(angle_deg.to_radians());
+                settings.lights[0].position = (turn * glam::DVec3::from(home.lights[0].position)).into();
+                let whole = brightness(&mut renderer, &loaded, &settings, SIZE, None);
+                settings.lights[0].position[0] += 1e-6;
+                let size = SIZE.map(|n| n / 2);
+                brightness(&mut renderer, &loaded, &settings, size, Some(Resolution::Half)) / whole
+            };
+            let at_first = off(0.0);
+            let drift = [10.0, 30.0].map(|angle_deg| (off(angle_deg) / at_first - 1.0).abs());
+            println!("{name}, {what}: {at_first:.4} unexposed, drift {drift:?}");
+            drifts.extend(drift.map(|drift| (name, what, drift)));
+        }
+    }
+    for (name, what, drift) in drifts {
+        assert!(drift <= PREVIEW_BRIGHTNESS, "{name}, {what}: {drift}");
     }
 }

@@ -1,0 +1,255 @@
+//! Pictures with everything on, lights that have a size, a sky and light that bounces, beside those of a path tracer that
+//! knows no light volumes, no sheets, no blocks, no fixed directions and no bounces to be counted.
+
+use chiaroscuro::data::{Samples, Volume};
+use chiaroscuro::gpu::{RenderOptions, Renderer};
+use chiaroscuro::model::{
+    DensityRange, Light, LightKind, LightShape, Projection, Quality, Resolution, Scattering, SceneLight,
+    Settings, Sky, SkyMode, SkyRadiance,
+};
+use chiaroscuro::plan::picture_frame;
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::common::{Dataset, context};
+use crate::scenes::{self, isotropic};
+use crate::thresholds::{ALL_LIGHT, ALL_LIGHT_DEFAULTS};
+use crate::tracing::{Lots, Material};
+
+/// Pictures are so many pixels wide and high, each the light of one ray: pixels are narrower than voxels, so that no kernel is
+/// stretched.
+const SIZE: u32 = 64;
+
+/// Pixels along the edges of squares whose means are compared: chance counts for a quarter in them.
+const SQUARE: u32 = 4;
+
+/// Voxels along the edges of volumes.
+const N: usize = 24;
+
+/// Light that is weaker than this share is followed no further.
+const FAINT: f64 = 1e-3;
+
+/// A disc far away, a lamp, and a sky of three colours over matter that scatters and glows, of all densities.
+fn look() -> Settings {
+    let mut settings = scenes::look();
+    isotropic(&mut settings);
+    settings.range = DensityRange::Full;
+    settings.camera.projection = Projection::Orthographic;
+    settings.shading.emission = 0.05;
+    let light = |kind, position| scenes::light(kind, position);
+    settings.lights = vec![
+        Light { shape: LightShape::Disc, angle_deg: 25.0, ..light(LightKind::Parallel, [1.3, -0.8, 1.7]) },
+        Light { intensity: 0.6, color: [1.0, 0.7, 0.4], ..light(LightKind::Perspective, [-2.2, 1.8, 2.4]) },
+    ];
+    settings.sky = Sky { mode: SkyMode::Gradient, intensity: 0.6, ..Sky::default() };
+    settings.scattering = Scattering { bounces: 8, albedo: 0.9, ..Scattering::default() };
+    for point in &mut settings.transfer.points {
+        // Half of the light ends within two voxels at most.
+        point.opacity *= 0.35;
+    }
+    settings
+}
+
+/// What the path tracer knows of a scene.
+struct Tracer<'a> {
+    material: Material,
+    settings: &'a Settings,
+    index_from_scene: glam::DAffine3,
+    /// Points of each light, and its linear colour.
+    lights: Vec<(Vec<SceneLight>, [f64; 3])>,
+    sky: SkyRadiance,
+    /// Beyond all matter.
+    far: f64,
+}
+
+impl Tracer<'_> {
+    /// What of the lights arrives at an index-space point.
+    fn direct(&self, lots: &mut Lots, point: DVec3) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (points, color) in &self.lights {
+            let light = &points[(lots.draw() * points.len() as f64) as usize];
+            let place = self.index_from_scene.inverse().transform_point3(point);
+            let (towards, distance) = match light.kind {
+                LightKind::Parallel => (light.direction(), self.far),
+                LightKind::Perspective => {
+                    let away = DVec3::from(light.position) - place;
+                    (away.normalize(), away.length())
+                }
+            };
+            let step = self.index_from_scene.transform_vector3(towards);
+            let left = self.material.transmittance(lots, point, step, distance);
+            (0..3).for_each(|c| sum[c] += color[c] * left);
+        }
+        sum
+    }
+
+    /// The light that one path brings back to the eye along a ray.
+    fn path(&self, lots: &mut Lots, origin: DVec3, along: DVec3, length: f64) -> [f64; 3] {
+        let Some(mut point) = self.material.first_meeting(lots, origin, along, length) else {
+            return [0.0; 3];
+        };
+        let Settings { shading, scattering, .. } = self.settings;
+        let mut weight = self.material.color(point);
+        let mut sum = [0.0; 3];
+        let direct = self.direct(lots, point);
+        (0..3).for_each(|c| sum[c] += weight[c] * (direct[c] + shading.emission));
+        // The eye sees all of what it meets of lights and sky; what has been scattered before is a share of that.
+        let mut is_seen = true;
+        loop {
+            let towards = lots.direction();
+            let step = self.index_from_scene.transform_vector3(towards);
+            let Some(next) = self.material.first_meeting(lots, point, step, self.far) else {
+                for c in 0..3 {
+                    sum[c] += weight[c] * (self.sky.mean[c] + self.sky.slope[c].dot(towards)).max(0.0);
+                }
+                return sum;
+            };
+            let color = self.material.color(next);
+            let shares = if is_seen { 2 } else { 1 };
+            is_seen = false;
+            let albedo = scattering.albedo.powi(shares);
+            let direct = self.direct(lots, next);
+            for c in 0..3 {
+                weight[c] *= color[c] * albedo;
+                // A light of 1 gives a surface that faces it as much as a sky of 1 does, and a quarter of that to what has
+                // no side; the eye shows all of it, as if that faced each light. What glows is not scattered before it is.
+                sum[c] += weight[c] * (direct[c] / 4.0 + shading.emission / scattering.albedo);
+            }
+            if weight.iter().all(|&weight| weight < FAINT) {
+                return sum;
+            }
+            point = next;
+        }
+    }
+}
+
+/// Two estimates of each pixel, right in the mean, of half of the paths each.
+fn traced(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2]> {
+    let scene = loaded.volume().scene();
+    let linear = |light: &Light| {
+        light.color.map(|c| chiaroscuro::model::linear_from_srgb(f64::from(c)) * light.intensity)
+    };
+    let points = |light: &Light| light.in_scene(&settings.camera).points(settings.shadows.area.samples);
+    let tracer = Tracer {
+        material: Material::of(loaded, settings),
+        settings,
+        index_from_scene: scene.index_from_scene,
+        lights: settings.lights.iter().map(|light| (points(light), linear(light))).collect(),
+        sky: settings.sky.radiance(settings.camera.up).expect("a sky"),
+        far: 2.0 * scene.support_radius(),
+    };
+    let frame = picture_frame(settings, &scene, [SIZE; 2]);
+    let length = frame.slab * f64::from(frame.slab_count);
+    (0..SIZE * SIZE)
+        .into_par_iter()
+        .map(|pixel| {
+            let [i, j] = [f64::from(pixel % SIZE), f64::from(pixel / SIZE)];
+            let mut lots = Lots(u64::from(pixel) << 32);
+            let (origin, along) = (frame.point(i, j, frame.first_depth), frame.direction.at(i, j));
+            [(); 2].map(|()| {
+                let mut sum = [0.0; 3];
+                for _ in 0..paths / 2 {
+                    let light = tracer.path(&mut lots, origin, along, length);
+                    (0..3).for_each(|c| sum[c] += light[c]);
+                }
+                sum.map(|sum| sum / f64::from(paths / 2))
+            })
+        })
+        .collect()
+}
+
+/// The means of the squares of a picture.
+fn squares(light: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let edge = SIZE / SQUARE;
+    let mean = |square: u32| {
+        let mut sum = [0.0; 3];
+        for pixel in 0..SQUARE * SQUARE {
+            let x = square % edge * SQUARE + pixel % SQUARE;
+            let y = square / edge * SQUARE + pixel / SQUARE;
+            let texel = light[(x + SIZE * y) as usize];
+            (0..3).for_each(|c| sum[c] += texel[c] / f64::from(SQUARE * SQUARE));
+        }
+        sum
+    };
+    (0..edge * edge).map(mean).collect()
+}
+
+/// The root mean square of how a picture differs from the truth, over its mean: estimates by lot differ from it by chance,
+/// which two of them do independently, so that the product of both differences has none of it in the mean.
+fn off(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings, [a, b]: &[Vec<[f64; 3]>; 2]) -> f64 {
+    let picture = renderer.render(loaded, settings, [SIZE; 2], &RenderOptions::default()).expect("a picture");
+    let light: Vec<_> = picture.light.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect();
+    let (mut products, mut mean) = (0.0, 0.0);
+    let found = squares(&light);
+    for ((found, a), b) in found.iter().zip(a).zip(b) {
+        for c in 0..3 {
+            products += (found[c] - a[c]) * (found[c] - b[c]);
+            mean += 0.5 * (a[c] + b[c]);
+        }
+    }
+    let count = (3 * found.len()) as f64;
+    (products / count).max(0.0).sqrt() / (mean / count)
+}
+
+/// Everything as finely as it goes.
+fn finest(settings: &Settings) -> Settings {
+    let mut settings = settings.clone();
+    // Rays from every sample to every point of a light are more turns of loops than software drivers take.
+    Quality::Fine.apply(&mut settings);
+    settings.sky.resolution = Resolution::Full;
+    settings.scattering.resolution = Resolution::Full;
+    settings.scattering.bounces = 12;
+    settings.shadows.area.resolution = Resolution::Full;
+    settings
+}
+
+/// Blobs of all densities that thin out before the faces of the grid, at which renderers end what they show.
+fn clouds(seed: u64) -> Volume {
+    let noise = scenes::noise(N, seed);
+    let values = (0..N * N * N).map(|at| {
+        let place = [at % N, at / N % N, at / N / N];
+        let centred = DVec3::from(place.map(|c| (c as f64 + 0.5) / N as f64 * 2.0 - 1.0));
+        let [x, y, z] = place;
+        (noise.value(x, y, z) * (1.25 * (1.0 - centred.length_squared())).clamp(0.0, 1.0)) as u8
+    });
+    Volume::with_spacing("clouds", [N; 3], DVec3::ONE, Samples::U8(values.collect())).expect("a volume")
+}
+
+fn check(name: &str, loaded: &Dataset, paths: u32) {
+    let settings = look();
+    let truth = traced(loaded, &settings, paths);
+    let truth = [0, 1].map(|half| squares(&truth.iter().map(|pixel| pixel[half]).collect::<Vec<_>>()));
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut off = |settings: &Settings| off(&mut renderer, loaded, settings, &truth);
+    let (fine, usual) = (off(&finest(&settings)), off(&settings));
+    let mut without = finest(&settings);
+    without.scattering.bounces = 0;
+    let without = off(&without);
+    let mut brighter = finest(&settings);
+    brighter.sky.intensity *= 1.1;
+    let brighter = off(&brighter);
+    println!(
+        "{name}: off by {fine:.4} at full resolution, {usual:.4} at the defaults; {without:.4} without bounces, \
+         {brighter:.4} under a sky a tenth brighter"
+    );
+    assert!(
+        without > ALL_LIGHT && brighter > ALL_LIGHT,
+        "{name}: mistakes are not noticed: {without} {brighter}"
+    );
+    assert!(fine <= ALL_LIGHT, "{name}: {fine}");
+    assert!(usual <= ALL_LIGHT_DEFAULTS, "{name}: {usual}");
+}
+
+#[test]
+fn all_light_is_that_of_a_path_tracer() {
+    check("creature", &Dataset::new(scenes::creature(N, DVec3::ONE)), 768);
+}
+
+/// Two more volumes, and more paths.
+#[test]
+#[ignore = "takes minutes"]
+fn all_light_is_that_of_a_path_tracer_in_other_volumes() {
+    check("creature", &Dataset::new(scenes::creature(N, DVec3::ONE)), 3072);
+    check("clouds 5", &Dataset::new(clouds(5)), 3072);
+    check("clouds 8", &Dataset::new(clouds(8)), 3072);
+}

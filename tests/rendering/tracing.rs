@@ -1,0 +1,147 @@
+//! Light that is followed by lot: free ways through material without steps, slabs or kernels of sheets.
+
+use chiaroscuro::model::{BakedTransfer, Settings};
+use chiaroscuro::reference::cubic_b_spline;
+use glam::DVec3;
+
+use crate::common::Dataset;
+
+/// What paths run through.
+pub(crate) struct Material {
+    /// Voxels along each axis, with those of nothing that surround the grid.
+    dims: [usize; 3],
+    densities: Vec<f64>,
+    table: BakedTransfer,
+    /// The largest extinction anywhere.
+    majorant: f64,
+    /// Where some of the 4³ voxels around a point may attenuate: of points from a voxel to the next along each axis.
+    is_occupied: Vec<bool>,
+}
+
+/// Voxels of nothing around the grid: as many as a kernel reaches, and one for points that lie on its rim.
+const BORDER: usize = 3;
+
+impl Material {
+    /// What the eye sees of a volume.
+    pub(crate) fn of(loaded: &Dataset, settings: &Settings) -> Self {
+        let range = settings.shown_range(&loaded.volume().ranges());
+        let volume = &loaded.volume().showing(range);
+        let table = settings.baked_eye(range, &volume.scene());
+        let dims = volume.dims().map(|length| length + 2 * BORDER);
+        let mut densities = vec![0.0; dims.iter().product()];
+        for z in 0..volume.dims()[2] {
+            for (at, density) in volume.slice_densities(z).into_iter().enumerate() {
+                let [x, y] = [at % volume.dims()[0], at / volume.dims()[0]];
+                densities[((z + BORDER) * dims[1] + y + BORDER) * dims[0] + x + BORDER] = f64::from(density);
+            }
+        }
+        let reached = 3 * (dims[0] * dims[1] + dims[0] + 1);
+        let is_occupied = (0..densities.len().saturating_sub(reached))
+            .map(|first| {
+                let densest =
+                    rows(dims, first).flat_map(|row| &densities[row..row + 4]).fold(0.0, |a, &b| b.max(a));
+                table.largest_extinction(0.0, densest) > 0.0
+            })
+            .collect();
+        Self { dims, densities, majorant: table.largest_extinction(0.0, 1.0), is_occupied, table }
+    }
+
+    /// Extinction at an index-space point, per scene unit.
+    fn extinction(&self, point: DVec3) -> f64 {
+        self.density(point).map_or(0.0, |density| self.table.sample(density)[3])
+    }
+
+    /// Colour at an index-space point, linear RGB.
+    pub(crate) fn color(&self, point: DVec3) -> [f64; 3] {
+        let [r, g, b, _] = self.table.sample(self.density(point).unwrap_or(0.0));
+        [r, g, b]
+    }
+
+    /// The density there, unless nothing attenuates anywhere near.
+    fn density(&self, point: DVec3) -> Option<f64> {
+        let below = point.floor();
+        // The first of the four voxels along each axis whose kernels reach the point.
+        let first = below + (BORDER as f64 - 1.0);
+        let is_near = (0..3).all(|axis| first[axis] >= 0.0 && first[axis] + 3.0 < self.dims[axis] as f64);
+        if !is_near {
+            return None;
+        }
+        let [x, y, z] = first.to_array().map(|c| c as usize);
+        let first = (z * self.dims[1] + y) * self.dims[0] + x;
+        if !self.is_occupied[first] {
+            return None;
+        }
+        let [wx, wy, wz] =
+            (point - below).to_array().map(|f| [1.0 + f, f, 1.0 - f, 2.0 - f].map(cubic_b_spline));
+        let density: f64 = rows(self.dims, first)
+            .enumerate()
+            .map(|(at, row)| {
+                let along: f64 = self.densities[row..row + 4].iter().zip(wx).map(|(d, w)| d * w).sum();
+                wz[at / 4] * wy[at % 4] * along
+            })
+            .sum();
+        Some(density)
+    }
+
+    /// Where light from the eye meets material first, by Woodcock's tracking; `step` is one scene unit along the ray.
+    pub(crate) fn first_meeting(
+        &self,
+        lots: &mut Lots,
+        mut point: DVec3,
+        step: DVec3,
+        length: f64,
+    ) -> Option<DVec3> {
+        let mut left = length;
+        loop {
+            let way = -(1.0 - lots.draw()).ln() / self.majorant;
+            left -= way;
+            if left < 0.0 {
+                return None;
+            }
+            point += step * way;
+            if lots.draw() * self.majorant < self.extinction(point) {
+                return Some(point);
+            }
+        }
+    }
+
+    /// An estimate of the transmittance of a way, right in the mean (ratio tracking).
+    pub(crate) fn transmittance(&self, lots: &mut Lots, mut point: DVec3, step: DVec3, length: f64) -> f64 {
+        let mut left = length;
+        let mut transmittance = 1.0;
+        loop {
+            let way = -(1.0 - lots.draw()).ln() / self.majorant;
+            left -= way;
+            if left < 0.0 || transmittance < 1e-6 {
+                return transmittance;
+            }
+            point += step * way;
+            transmittance *= 1.0 - self.extinction(point) / self.majorant;
+        }
+    }
+}
+
+/// The first voxels of the 4² rows of four from one voxel on.
+fn rows(dims: [usize; 3], first: usize) -> impl Iterator<Item = usize> {
+    (0..16).map(move |row| first + (row / 4 * dims[1] + row % 4) * dims[0])
+}
+
+/// Numbers in [0, 1) that look drawn by lot (`SplitMix64`).
+pub(crate) struct Lots(pub(crate) u64);
+
+impl Lots {
+    pub(crate) fn draw(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A unit vector, evenly over the sphere.
+    pub(crate) fn direction(&mut self) -> DVec3 {
+        let (z, angle) = (2.0 * self.draw() - 1.0, std::f64::consts::TAU * self.draw());
+        let across = (1.0 - z * z).max(0.0).sqrt();
+        DVec3::new(across * angle.cos(), across * angle.sin(), z)
+    }
+}
