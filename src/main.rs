@@ -7,7 +7,7 @@ use chiaroscuro::cli::{self, CliError, ViewerRequest};
 use chiaroscuro::data::without_controls;
 
 fn main() -> ExitCode {
-    let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error");
+    let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error,rfd=off");
     // Drivers and files have their words in it.
     env_logger::Builder::from_env(quiet)
         .format(|out, record| {

@@ -5,10 +5,13 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
+use png::text_metadata::ITXtChunk;
+
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
 use crate::export::files::{Unfinished, place, temporary_beside};
 use crate::export::png_file::{mark, rgb};
+use crate::export::rows::RECORD;
 
 /// An APNG file.
 pub(super) struct Apng {
@@ -16,6 +19,8 @@ pub(super) struct Apng {
     file: Unfinished,
     path: PathBuf,
     transparent: bool,
+    /// The file says what its first picture was made with.
+    has_record: bool,
 }
 
 impl Apng {
@@ -30,12 +35,23 @@ impl Apng {
         encoder.set_animated(frames, 0)?;
         encoder.set_frame_delay(1, rate)?;
         encoder.validate_sequence(true);
-        Ok(Self { writer: encoder.write_header()?, file, path: path.to_owned(), transparent })
+        Ok(Self {
+            writer: encoder.write_header()?,
+            file,
+            path: path.to_owned(),
+            transparent,
+            has_record: false,
+        })
     }
 }
 
 impl AnimationEncoder for Apng {
-    fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
+    fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
+        if !self.has_record && !record.is_empty() {
+            let chunk = ITXtChunk::new(RECORD, record);
+            self.writer.write_text_chunk(&chunk)?;
+            self.has_record = true;
+        }
         if self.transparent {
             self.writer.write_image_data(shown)?;
         } else {
@@ -54,6 +70,7 @@ impl AnimationEncoder for Apng {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::export::read_record;
 
     #[test]
     fn the_file_says_how_many_pictures_it_has() {
@@ -62,11 +79,12 @@ mod tests {
         let reel = AnimationSpec { size: [3, 2], frames: 3, rate: 10, transparent: true };
         let mut file = Box::new(Apng::create(&path, &reel).unwrap());
         for at in 1..=3 {
-            file.add(&[at; 4 * 6], "").unwrap();
+            file.add(&[at; 4 * 6], &format!("{{\"picture\": {at}}}")).unwrap();
         }
         file.finish().unwrap();
         let decoder = png::Decoder::new(std::io::BufReader::new(File::open(&path).unwrap()));
         let info = decoder.read_info().unwrap();
         assert_eq!(info.info().animation_control().unwrap().num_frames, 3);
+        assert_eq!(read_record(&path).unwrap().as_deref(), Some(r#"{"picture": 1}"#));
     }
 }
