@@ -29,7 +29,7 @@ use std::time::Duration;
 use eframe::egui;
 
 use self::common::{light_keys, shortcuts, theme};
-use self::shell::{menu, status, status_file};
+use self::shell::{menu, status, status_file, surroundings};
 use self::windows::files;
 
 use self::common::commands::Command;
@@ -110,6 +110,7 @@ pub struct App {
     /// Settings of the volume that is being opened.
     pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
+    surroundings: Option<surroundings::Reading>,
     keep_balanced: KeepBalanced,
     first_lights: FirstLights,
     light_search: Option<Seeking>,
@@ -254,7 +255,8 @@ impl App {
     fn surroundings(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let title = self.title();
         let step = self.step();
-        let (can_undo, can_redo) = (self.history.can_undo(&step), self.history.can_redo(&step));
+        let history = &self.history;
+        let name_of_step = |is_back: bool| history.name(&step, is_back);
         let shown = menu::Shown {
             side: self.side_open,
             handles: !self.handles.hidden,
@@ -267,8 +269,7 @@ impl App {
             &mut menu::Menu {
                 settings: &mut self.settings,
                 title,
-                can_undo,
-                can_redo,
+                step: &name_of_step,
                 shown,
                 several: self.volume.as_ref().map(|volume| &volume.held),
                 recent: self.memory.recent(),
@@ -279,7 +280,8 @@ impl App {
                 commands,
             },
         );
-        status::show(ui, facts, self.loader.progress(), &mut self.messages, commands);
+        let exporting = self.export.progress_unseen();
+        status::show(ui, facts, self.loader.progress(), exporting, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
             let panel = panel.frame(theme::panel(ui));
@@ -287,8 +289,8 @@ impl App {
                 self.editor.ui(ui, &mut self.settings, volume, self.probe.value(), commands);
             });
         }
-        let panel = egui::Panel::right("side").resizable(false).exact_size(theme::SIDE_WIDTH);
-        let panel = panel.frame(theme::panel(ui));
+        let panel = egui::Panel::right("side").resizable(true).default_size(theme::SIDE_WIDTH);
+        let panel = panel.size_range(theme::SIDE_WIDTHS).frame(theme::panel(ui));
         let treated_as = self.treated.kind();
         panel.show_collapsible(ui, &mut self.side_open, |ui| {
             panels::show(

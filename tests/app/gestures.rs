@@ -176,3 +176,57 @@ fn the_probe_says_what_light_arrives() {
     let (after, _) = picture(&mut harness);
     assert!(before == after, "and gone again");
 }
+
+/// Escape takes a light back to where its drag began.
+#[test]
+fn escape_ends_a_drag_where_it_began() {
+    let mut harness = bare_window();
+    let before = harness.state().settings().clone();
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    harness.hover_at(rect.center());
+    harness.run_steps(2);
+    let handle = harness.state().light_handle_positions()[0];
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(Event::PointerMoved(handle));
+    harness.event(button(handle, true));
+    harness.run_steps(1);
+    for step in 1..=4 {
+        harness.event(Event::PointerMoved(handle + vec2(12.0, 9.0) * step as f32));
+        harness.run_steps(1);
+    }
+    assert_ne!(harness.state().settings().lights, before.lights, "the light moves");
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().lights, before.lights);
+    let end = handle + vec2(90.0, 20.0);
+    harness.event(Event::PointerMoved(end));
+    harness.event(button(end, false));
+    harness.run_steps(2);
+    assert_eq!(harness.state().settings().lights, before.lights, "what follows of the drag moves nothing");
+    wait_until_idle(&mut harness);
+}
+
+/// Escape closes the windows over the picture, the highest first.
+#[test]
+fn escape_closes_windows_one_by_one() {
+    let mut harness = window();
+    let press = |harness: &mut Harness<'_, App>, key| {
+        harness.key_press(key);
+        harness.run_steps(4);
+    };
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::E);
+    harness.run_steps(4);
+    press(&mut harness, egui::Key::D);
+    let is_open = |harness: &Harness<'_, App>, title: &str| harness.query_by_label(title).is_some();
+    assert!(is_open(&harness, "Slices") && is_open(&harness, "Export picture"));
+    press(&mut harness, egui::Key::Escape);
+    assert!(!is_open(&harness, "Slices") && is_open(&harness, "Export picture"));
+    press(&mut harness, egui::Key::Escape);
+    assert!(!is_open(&harness, "Export picture"));
+    wait_until_idle(&mut harness);
+}

@@ -110,3 +110,34 @@ fn commands_are_found_by_name() {
     assert_eq!(harness.state().settings().lights.len(), lights);
     wait_until_idle(&mut harness);
 }
+
+/// Each new light has a place and a colour of its own, and is seen when it shines from a point.
+#[test]
+fn new_lights_are_told_apart() {
+    let mut harness = window();
+    for _ in 0..6 {
+        click(&mut harness, "+");
+        harness.run_steps(2);
+    }
+    let lights = harness.state().settings().lights.clone();
+    assert_eq!(lights.len(), 8);
+    let direction = |at: usize| glam::DVec3::from(lights[at].position).normalize();
+    for at in 2..8 {
+        for other in 0..at {
+            let angle = direction(at).angle_between(direction(other)).to_degrees();
+            assert!(angle > 12.0, "lights {other} and {at} are {angle}° apart");
+        }
+        if at > 2 {
+            assert_ne!(lights[at].color, lights[at - 1].color);
+        }
+    }
+    // What they add to each other stays within what the first look has.
+    assert!(lights[2..].iter().map(|light| light.intensity).sum::<f64>() < 2.0);
+    click(&mut harness, "Perspective");
+    harness.run_steps(4);
+    let light = harness.state().settings().lights[7].clone();
+    let camera = &harness.state().settings().camera;
+    let (x, y, _) = camera.pixel_from_scene(light.position.into(), 1.0, 1.0).expect("in front of the eye");
+    assert!((0.05..0.95).contains(&x) && (0.05..0.95).contains(&y), "{x} {y}");
+    wait_until_idle(&mut harness);
+}

@@ -112,10 +112,10 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     let mut harness = start(second);
     assert_eq!(settings(&harness).camera.up, on_end.camera.up);
     // The panel does the same.
-    click(&mut harness, "Camera");
-    harness.run_steps(10);
     // The section may begin below the window's edge.
-    harness.get_by_label("−z").scroll_to_me();
+    harness.get_by_label("Camera").scroll_to_me();
+    harness.run_steps(10);
+    click(&mut harness, "Camera");
     harness.run_steps(10);
     click(&mut harness, "−z");
     wait_until_turned(&mut harness);

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::commands::Command;
+use super::places::words;
 use crate::app::text;
 use crate::model::{COLOR_MAPS, ObjectTurn, SceneAxis};
 
@@ -20,6 +21,10 @@ impl Command {
         match self {
             Self::TurnObject(_) => text::commands::TURN_OBJECT_WORDS,
             Self::TurnRound => text::commands::TURN_ROUND_WORDS,
+            Self::Reveal(place) => words(*place),
+            Self::Export => text::commands::EXPORT_WORDS,
+            Self::ImportTransfer => text::commands::TRANSFER_WORDS,
+            Self::ToggleCompare => text::commands::COMPARE_WORDS,
             _ => "",
         }
     }
@@ -68,6 +73,9 @@ impl Command {
             Self::UseLook(_) => text::commands::USE_LOOK,
             Self::TryLooks => text::commands::TRY_LOOKS,
             Self::SuggestLight => text::commands::SUGGEST_LIGHT,
+            Self::Reveal(place) => return text::commands::reveal(place.section, place.row).into(),
+            Self::CancelExport => text::commands::CANCEL_EXPORT,
+            Self::UseSurroundings => text::commands::USE_SURROUNDINGS,
             Self::TryLights => text::commands::TRY_LIGHTS,
             Self::TryPresets => text::commands::TRY_PRESETS,
             Self::NextLight => text::commands::NEXT_LIGHT,

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::places::PLACES;
+use super::reveal::Place;
 use crate::data::KindName;
 use crate::data::load::{Aspect, Choice, Thinning};
 use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView};
@@ -51,6 +53,8 @@ pub(crate) enum Command {
     KeepLook,
     /// Show the export window.
     Export,
+    /// Stop what is being exported.
+    CancelExport,
     /// Close the window.
     Quit,
     /// One step back.
@@ -95,6 +99,8 @@ pub(crate) enum Command {
     TryLights,
     /// Show the best places for the selected light.
     SuggestLight,
+    /// Ask for a picture of surroundings, and light the scene by it.
+    UseSurroundings,
     /// Show the contact sheet of presets.
     TryPresets,
     /// Select the light after the selected one.
@@ -145,6 +151,8 @@ pub(crate) enum Command {
     ShowLightVolume,
     /// Ask for settings to compare with.
     CompareWithFile,
+    /// Show where something is set.
+    Reveal(Place),
     /// Show keys and mouse.
     ShowHelp,
     /// Show what this is and what it runs on.
@@ -186,6 +194,7 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::TryLooks,
         Command::TryLights,
         Command::SuggestLight,
+        Command::UseSurroundings,
         Command::TryPresets,
         Command::NextLight,
         Command::PreviousLight,
@@ -218,6 +227,7 @@ pub(crate) fn listed() -> Vec<Command> {
     all.extend(SceneAxis::ALL.map(|axis| Command::TurnObject(ObjectTurn::Upright(axis))));
     all.extend(Rig::ALL.map(Command::UseRig));
     all.extend(PRESETS.map(Command::UsePreset));
+    all.extend(PLACES.iter().map(|(place, _)| Command::Reveal(*place)));
     all.extend((0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| Command::UseColors(at, back))));
     all.extend(VIEW_SLOTS.map(Command::StoreView));
     all.extend(VIEW_SLOTS.map(Command::RecallView));

@@ -3,7 +3,10 @@
 pub(super) mod aspect;
 pub(super) mod command_names;
 pub(super) mod commands;
+pub(super) mod frame;
 pub(super) mod light_keys;
+pub(super) mod places;
+pub(super) mod reveal;
 pub(super) mod shortcuts;
 pub(super) mod theme;
 pub(super) mod volume_facts;

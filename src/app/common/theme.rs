@@ -4,6 +4,8 @@ use eframe::egui::{self, Color32, FontId, TextStyle, Theme, Vec2};
 
 /// Width of the side panel in points.
 pub(crate) const SIDE_WIDTH: f32 = 316.0;
+/// Widths to which it can be dragged: narrower, four words side by side are cut.
+pub(crate) const SIDE_WIDTHS: std::ops::RangeInclusive<f32> = 300.0..=560.0;
 /// Height of the transfer function editor in points.
 pub(crate) const EDITOR_HEIGHT: f32 = 158.0;
 /// Width of the labels in front of the controls.

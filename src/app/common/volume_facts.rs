@@ -149,6 +149,13 @@ impl VolumeFacts {
     }
 }
 
+/// Digits behind the point with which values of a range are told apart: a thousand of them, and whole ones of data that
+/// have so many.
+pub(crate) fn decimals(range: ValueRange) -> usize {
+    let span = range.span().abs().max(1e-300);
+    (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Align, Layout, Response, Slider, Ui, Vec2};
 
 use super::super::text::{self, Named};
+use crate::app::common::reveal;
 use crate::app::common::theme;
 
 /// A number with a slider.
@@ -49,7 +50,7 @@ impl Number {
             let room = ui.available_width() - theme::VALUE_WIDTH - theme::RESET_WIDTH - 3.0 * spacing;
             ui.spacing_mut().slider_width = room.max(30.0);
             ui.spacing_mut().interact_size.x = theme::VALUE_WIDTH;
-            let slider = Slider::new(value, range).suffix(unit).logarithmic(log).max_decimals(decimals);
+            let slider = Slider::new(value, range).suffix(unit).logarithmic(log).fixed_decimals(decimals);
             // Settings from files may lie beyond the slider: they stay until the user moves it.
             let slider = slider.clamping(egui::SliderClamping::Edits);
             let response = ui.name_inputs(named.name, |ui| ui.add(slider)).on_hover_text(named.tip);
@@ -63,15 +64,16 @@ impl Number {
 
 /// A row: a label of the usual width, then what `add` shows.
 pub(super) fn row<R>(ui: &mut Ui, named: Named, add: impl FnOnce(&mut Ui) -> R) -> R {
-    ui.horizontal(|ui| {
+    let shown = ui.horizontal(|ui| {
         let size = Vec2::new(theme::LABEL_WIDTH, ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_width(theme::LABEL_WIDTH);
             ui.add(egui::Label::new(named.name).truncate().selectable(false)).on_hover_text(named.tip);
         });
         add(ui)
-    })
-    .inner
+    });
+    reveal::glow(ui, section_of(ui), named.name, shown.response.rect);
+    shown.inner
 }
 
 /// A row whose control says by itself what it is.
@@ -147,7 +149,9 @@ pub(super) fn spacing(spacing_mm: [f64; 3], is_unknown: bool) -> String {
 
 /// A switch.
 pub(super) fn switch(ui: &mut Ui, named: Named, value: &mut bool) -> Response {
-    ui.checkbox(value, named.name).on_hover_text(named.tip)
+    let response = ui.checkbox(value, named.name).on_hover_text(named.tip);
+    reveal::glow(ui, section_of(ui), named.name, response.rect);
+    response
 }
 
 /// An sRGB colour, stored as the button shows it.
@@ -161,17 +165,41 @@ pub(in crate::app) fn color(ui: &mut Ui, name: &str, srgb: &mut [f32; 3]) -> Res
     response.on_hover_text(name)
 }
 
-/// A section of the panel.
-pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
+/// A section of the panel. While it opens it is scrolled into sight: all of it, or as much as there is room for.
+pub(super) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl FnOnce(&mut Ui)) {
     let header = egui::CollapsingHeader::new(egui::RichText::new(title).strong());
-    header.default_open(open).show_unindented(ui, |ui| {
+    let header = header.open(reveal::opens(ui.ctx(), title, false).then_some(true));
+    ui.data_mut(|data| data.insert_temp(section_id(), title));
+    let shown = header.default_open(open).show_unindented(ui, |ui| {
         add(ui);
         ui.add_space(4.0);
     });
+    let id = shown.header_response.id.with("openness");
+    let before = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(shown.openness);
+    ui.data_mut(|data| data.insert_temp(id, shown.openness));
+    if shown.openness > before {
+        let header = shown.header_response.rect;
+        let whole = shown.body_response.map_or(header, |body| header.union(body.rect));
+        let has_room = whole.height() <= ui.clip_rect().height();
+        let (rect, align) = if has_room { (whole, None) } else { (header, Some(Align::TOP)) };
+        ui.scroll_to_rect(rect, align);
+    }
     ui.separator();
+}
+
+/// Where the title is kept of the section that is being shown.
+fn section_id() -> egui::Id {
+    egui::Id::unique("section of the panel")
+}
+
+/// The title of the section that is being shown.
+fn section_of(ui: &Ui) -> &'static str {
+    ui.data(|data| data.get_temp(section_id())).unwrap_or_default()
 }
 
 /// Rarely needed things, folded away.
 pub(super) fn advanced(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
-    egui::CollapsingHeader::new(text::common::ADVANCED).id_salt(salt).show_unindented(ui, add);
+    let header = egui::CollapsingHeader::new(text::common::ADVANCED).id_salt(salt);
+    let opens = reveal::opens(ui.ctx(), section_of(ui), true);
+    header.open(opens.then_some(true)).show_unindented(ui, add);
 }

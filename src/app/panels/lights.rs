@@ -59,7 +59,8 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
         let name = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
         let name = egui::RichText::new(name);
         let name = if selected { name.color(theme::accent(ui.visuals())).strong() } else { name };
-        ui.selectable_label(selected, name).on_hover_text(text::lights::SELECT_TIP).clicked()
+        let button = egui::Button::selectable(selected, name).truncate();
+        ui.add(button).on_hover_text(text::lights::SELECT_TIP).clicked()
     })
     .inner
 }
@@ -73,7 +74,9 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Comm
             .hint_text(text::lights::NAME_HINT);
         ui.add(field.desired_width(ui.available_width() - theme::RESET_WIDTH));
     });
-    choice(ui, text::lights::KIND, &mut light.kind, &KINDS);
+    if choice(ui, text::lights::KIND, &mut light.kind, &KINDS) {
+        bring_into_sight(light, camera);
+    }
     Number::new(text::lights::INTENSITY, 0.0..=4.0).show(ui, &mut light.intensity, fresh.intensity);
     if light.kind == LightKind::Perspective {
         let mut position = DVec3::from(light.position);
@@ -144,21 +147,65 @@ fn hood(ui: &mut Ui, hood: &mut Hood) {
     }
 }
 
-/// Adds a light to the upper left of the viewer and gives its index.
+/// Takes a light that shines from a point from now on to where it is seen, on the line on which it was.
+fn bring_into_sight(light: &mut Light, camera: &Camera) {
+    // In shares of a picture that is as wide as high: not under its border, nor under what lies over that.
+    let is_seen = |position: DVec3| {
+        let inside = |at: f64| (0.1..=0.9).contains(&at);
+        camera.pixel_from_scene(position, 1.0, 1.0).is_some_and(|(x, y, _)| inside(x) && inside(y))
+    };
+    if light.kind != LightKind::Perspective {
+        return;
+    }
+    let lamp = light.in_scene(camera);
+    let mut position = DVec3::from(lamp.position);
+    // No nearer than the volume's own size.
+    while !is_seen(position) && position.length() > 1.0 {
+        position *= 0.95;
+    }
+    light.set_scene_position(position, camera);
+}
+
+/// Places for a new light around the line of sight.
+const PLACES: u32 = 8;
+
+/// Colours of lights that are added, so that each is told from the others: as pale as gels of photographers.
+const COLORS: [[f32; 3]; 6] = [
+    [1.0, 0.95, 0.86],
+    [0.74, 0.85, 1.0],
+    [1.0, 0.82, 0.64],
+    [0.80, 1.0, 0.88],
+    [0.93, 0.82, 1.0],
+    [1.0, 0.80, 0.84],
+];
+
+/// Adds a light beside the viewer and gives its index.
 pub(in crate::app) fn add_light(settings: &mut Settings) -> Option<usize> {
     let index = settings.lights.len();
     (index < MAX_LIGHTS).then(|| {
         settings.lights.push(Light {
             name: text::lights::numbered(index + 1),
-            position: beside_the_eye(&settings.camera),
-            intensity: 0.5,
+            position: free_place(&settings.camera, &settings.lights),
+            color: COLORS[index % COLORS.len()],
+            // All of them together grow brighter by less than each.
+            intensity: 0.6 / ((index + 1) as f64).sqrt(),
             ..Light::default()
         });
         index
     })
 }
 
-fn beside_the_eye(camera: &Camera) -> [f64; 3] {
+/// Where a new light is in nobody's way: of places around the line of sight, all on the viewer's side, the one that is
+/// farthest from the lights that are there.
+fn free_place(camera: &Camera, lights: &[Light]) -> [f64; 3] {
     let view = camera.scene_from_view();
-    ((view.z_axis + 0.6 * view.y_axis + 0.6 * view.x_axis).normalize_or(DVec3::Z) * 3.0).into()
+    let place = |at: u32| {
+        // The first to the upper right, as one would hold a lamp.
+        let (sin, cos) = (f64::from(at) * std::f64::consts::TAU / f64::from(PLACES) + 0.8).sin_cos();
+        (view.z_axis + 0.85 * (cos * view.x_axis + sin * view.y_axis)).normalize_or(DVec3::Z)
+    };
+    let taken: Vec<DVec3> = lights.iter().map(|light| light.in_scene(camera).direction()).collect();
+    let nearest = |place: DVec3| taken.iter().map(|taken| taken.dot(place)).fold(-1.0, f64::max);
+    let free = (0..PLACES).map(place).min_by(|&a, &b| nearest(a).total_cmp(&nearest(b)));
+    (free.unwrap_or(DVec3::Z) * 3.0).into()
 }

@@ -25,6 +25,7 @@ use crate::data::KindName;
 use crate::model::Settings;
 
 pub(super) use lights::add_light;
+pub(super) use shadows::set_linked;
 
 /// What panels work with.
 pub(super) struct Panels<'a> {
@@ -48,8 +49,16 @@ pub(super) struct Panels<'a> {
     pub commands: &'a mut Vec<Command>,
 }
 
-/// Shows all sections, in the order in which people work.
+/// Shows all sections, in the order in which people work. Whatever they hold, the panel is as wide as it was made.
 pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
+    let room = ui.available_rect_before_wrap();
+    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
+    inside.shrink_clip_rect(room);
+    sections(&mut inside, panels);
+    ui.allocate_rect(room, egui::Sense::hover());
+}
+
+fn sections(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
         if panels.volume.is_some_and(|volume| volume.is_shown_by_label(panels.settings)) {

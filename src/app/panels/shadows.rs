@@ -67,12 +67,19 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     {
         level.apply(panels.settings);
     }
+    if panels.facts.software && panels.settings.casts_rays_to_all_points() {
+        let ink = ui.visuals().warn_fg_color;
+        ui.add(egui::Label::new(egui::RichText::new(text::shadows::MANY_RAYS).small().color(ink)).wrap());
+    }
     let on = panels.settings.shadows.algorithm.is_on();
     ui.add_enabled_ui(on, |ui| {
         live(ui, panels);
         balance(ui, panels);
         darkness(ui, panels.facts.dark_share);
         opacity(ui, panels);
+        let transmission = Number::new(text::shadows::TRANSMISSION, 0.0..=1.0);
+        let default = panels.defaults.shadows.transmission;
+        transmission.show(ui, &mut panels.settings.shadows.transmission, default);
         choice(ui, text::shadows::NEAR_FIELD, &mut panels.settings.shadows.near_field, &NEAR_FIELDS);
         choice(ui, text::shadows::RESOLUTION, &mut panels.settings.shadows.resolution, &RESOLUTIONS);
         advanced(ui, "advanced shadows", |ui| {

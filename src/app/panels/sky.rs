@@ -1,24 +1,33 @@
 //! Section "Sky and scattering", first half: light from all around.
 
-use eframe::egui::Ui;
+use eframe::egui::{Label, Ui};
 
 use super::super::text::common::{DEGREES, TIMES};
 use super::super::text::{self, Named};
 use super::Panels;
 use super::controls::{Number, advanced, choice, color, row};
 use super::shadows::RESOLUTIONS;
-use crate::model::{SKY_DIRECTIONS, SkyMode};
+use crate::app::common::commands::Command;
+use crate::model::{SKY_DIRECTIONS, SkyMode, SkyPicture};
 
-const MODES: [(SkyMode, Named); 3] = [
+const MODES: [(SkyMode, Named); 4] = [
     (SkyMode::Off, text::sky::OFF),
     (SkyMode::White, text::sky::WHITE),
     (SkyMode::Gradient, text::sky::GRADIENT),
+    (SkyMode::Picture, text::sky::PICTURE),
 ];
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (sky, defaults) = (&mut panels.settings.sky, &panels.defaults.sky);
+    let was_picture = sky.mode == SkyMode::Picture;
     choice(ui, text::sky::MODE, &mut sky.mode, &MODES);
+    if sky.mode == SkyMode::Picture {
+        surroundings(ui, &sky.picture, panels.commands);
+        if !was_picture && sky.picture.name.is_empty() {
+            panels.commands.push(Command::UseSurroundings);
+        }
+    }
     ui.add_enabled_ui(sky.is_on(), |ui| {
         let intensity = Number::new(text::sky::INTENSITY, 0.0..=2.0);
         intensity.show(ui, &mut sky.intensity, defaults.intensity);
@@ -30,6 +39,8 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             ] {
                 row(ui, named, |ui| color(ui, named.name, value));
             }
+        }
+        if matches!(sky.mode, SkyMode::Gradient | SkyMode::Picture) {
             let tilt = Number::new(text::sky::TILT, 0.0..=180.0).unit(DEGREES).decimals(0);
             tilt.show(ui, &mut sky.tilt_deg, defaults.tilt_deg);
             let turn = Number::new(text::sky::TURN, -180.0..=180.0).unit(DEGREES).decimals(0);
@@ -45,5 +56,16 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             sky.directions = directions.round().clamp(least, most) as u32;
             choice(ui, text::shadows::RESOLUTION, &mut sky.resolution, &RESOLUTIONS);
         });
+    });
+}
+
+/// Which panorama it is, and the way to another.
+fn surroundings(ui: &mut Ui, picture: &SkyPicture, commands: &mut Vec<Command>) {
+    row(ui, text::sky::SURROUNDINGS, |ui| {
+        if ui.button(text::sky::CHOOSE).clicked() {
+            commands.push(Command::UseSurroundings);
+        }
+        let name = if picture.name.is_empty() { text::sky::NO_SURROUNDINGS } else { &picture.name };
+        ui.add(Label::new(name).truncate()).on_hover_text(name);
     });
 }

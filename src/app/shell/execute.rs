@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::common::commands::Command;
-use crate::app::common::light_keys;
+use crate::app::common::{light_keys, reveal};
 use crate::app::text;
 use crate::app::windows::contact_sheet::Sheet;
 use crate::app::windows::export::Exported;
@@ -45,6 +45,7 @@ impl App {
             },
             Command::LoadSettings => self.files.ask(Purpose::LoadSettings, frame, ctx),
             Command::Export => self.export.open(self.viewport_size()),
+            Command::CancelExport => self.export.cancel(),
             Command::CopyPicture => self.copy_picture(ctx),
             Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
@@ -77,13 +78,24 @@ impl App {
             Command::ImportTransfer => self.files.ask(Purpose::ImportTransfer, frame, ctx),
             Command::ExportTransfer => self.files.ask(Purpose::ExportTransfer, frame, ctx),
             Command::InvertTransfer => self.settings.transfer.invert(),
-            Command::ToggleCrop => self.settings.cuts.crop.on ^= true,
-            Command::TogglePlane => self.settings.cuts.plane.on ^= true,
+            Command::ToggleCrop => {
+                let on = &mut self.settings.cuts.crop.on;
+                *on ^= true;
+                reveal::show_section(ctx, text::sections::CUTS, *on);
+            }
+            Command::TogglePlane => {
+                let on = &mut self.settings.cuts.plane.on;
+                *on ^= true;
+                reveal::show_section(ctx, text::sections::CUTS, *on);
+            }
             Command::FacePlane => {
                 let Camera { target, .. } = self.settings.camera;
                 self.settings.cuts.plane.face(self.settings.camera.scene_from_view().z_axis, target.into());
             }
-            Command::ToggleFloor => self.settings.floor.on ^= true,
+            Command::ToggleFloor => {
+                self.settings.floor.on ^= true;
+                reveal::show_section(ctx, text::sections::FLOOR, self.settings.floor.on);
+            }
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => {
                 if self.first_look_stands(Some(command), ctx) {
@@ -129,6 +141,7 @@ impl App {
                 }
             }
             Command::TryLights => self.contact_sheet.open(Sheet::Lights),
+            Command::UseSurroundings => self.files.ask(Purpose::Surroundings, frame, ctx),
             Command::SuggestLight => self.contact_sheet.open(Sheet::Suggestions),
             Command::TryPresets => self.contact_sheet.open(Sheet::Presets),
             Command::NextLight | Command::PreviousLight => {
@@ -148,11 +161,18 @@ impl App {
             }
             Command::ToggleSide => self.side_open ^= true,
             Command::ToggleHandles => self.handles.hidden ^= true,
-            Command::ToggleCompare => self.compare.on ^= true,
+            Command::ToggleCompare => {
+                self.compare.on ^= true;
+                reveal::show_section(ctx, text::sections::COMPARE, self.compare.on);
+            }
+            Command::Reveal(place) => {
+                self.side_open = true;
+                reveal::reveal(ctx, place);
+            }
             Command::ShowSlices => self.slices.open ^= true,
             Command::ShowLightVolume => self.light_slice.open = true,
             Command::CompareWithFile => self.files.ask(Purpose::CompareSettings, frame, ctx),
-            Command::ShowHelp => self.help.keys = true,
+            Command::ShowHelp => self.help.keys ^= true,
             Command::ShowAbout => self.help.about = true,
         }
         ctx.request_repaint();
@@ -180,6 +200,7 @@ impl App {
         }
         self.take_neighbour(ctx);
         self.take_treated(ctx);
+        self.take_surroundings();
         if let Some(result) = self.balance.as_ref().and_then(Work::take) {
             self.balance = None;
             match result {
@@ -300,6 +321,7 @@ impl App {
                 }
             }
             Purpose::LoadSettings => self.load_settings(path),
+            Purpose::Surroundings => self.read_surroundings(path, ctx),
             Purpose::ImportTransfer => {
                 match files::import_transfer(path, &self.settings, &self.value_ranges()) {
                     Ok(function) => {

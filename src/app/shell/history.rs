@@ -3,7 +3,7 @@
 use eframe::egui;
 use eframe::egui::util::undoer::{self, Undoer};
 
-use crate::app::App;
+use crate::app::{App, text};
 use crate::data::KindName;
 use crate::model::Settings;
 
@@ -38,6 +38,24 @@ impl History {
         let mut history = Self::default();
         history.undoer.add_undo(before);
         history
+    }
+
+    /// What the next step back or forward changes; `None` where there is none.
+    pub(crate) fn name(&self, now: &Step, is_back: bool) -> Option<String> {
+        if !(if is_back { self.can_undo(now) } else { self.can_redo(now) }) {
+            return None;
+        }
+        // Steps are looked at by taking them.
+        let mut history = Self { undoer: self.undoer.clone() };
+        let mut other = now.clone();
+        let changed = if is_back {
+            history.undo(&mut other);
+            text::changes::of(&other.settings, &now.settings)
+        } else {
+            history.redo(&mut other);
+            text::changes::of(&now.settings, &other.settings)
+        };
+        Some(changed.unwrap_or_else(|| text::changes::KIND_OF_DATA.to_owned()))
     }
 
     /// Takes note of the look, except while something is dragged: a drag is one step.
@@ -128,6 +146,9 @@ impl App {
     /// One step back, or one forward again; what reset buttons put back goes along.
     pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
         let mut step = self.step();
+        if let Some(what) = self.history.name(&step, is_back) {
+            self.messages.note(text::messages::went(is_back, &what));
+        }
         if is_back {
             self.history.undo(&mut step);
         } else {

@@ -24,10 +24,8 @@ pub(crate) struct Menu<'a> {
     pub settings: &'a mut Settings,
     /// The open volume's name and size, for the middle of the bar.
     pub title: String,
-    /// Whether there is a step back.
-    pub can_undo: bool,
-    /// Whether there is a step forward.
-    pub can_redo: bool,
+    /// What a step back changes, or one forward; `None` where there is none.
+    pub step: &'a dyn Fn(bool) -> Option<String>,
     /// What is on screen.
     pub shown: Shown,
     /// What the open file holds.
@@ -67,9 +65,8 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button(text::menu::FILE, |ui| file(ui, menu));
             ui.menu_button(text::menu::EDIT, |ui| {
-                let (can_undo, can_redo) = (menu.can_undo, menu.can_redo);
-                item(ui, menu, Command::Undo, can_undo);
-                item(ui, menu, Command::Redo, can_redo);
+                step(ui, menu, Command::Undo, true);
+                step(ui, menu, Command::Redo, false);
                 ui.separator();
                 item(ui, menu, Command::ShowPalette, true);
             });
@@ -102,6 +99,16 @@ fn several(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
 fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool) {
     let button = Button::new(&*command.label()).shortcut_text(command.shortcut_text(ui.ctx()));
     if ui.add_enabled(enabled, button).clicked() {
+        menu.commands.push(command);
+    }
+}
+
+/// A step of the history, with what it changes.
+fn step(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, is_back: bool) {
+    let what = (menu.step)(is_back);
+    let label = text::menu::step(&command.label(), what.as_deref());
+    let button = Button::new(label).shortcut_text(command.shortcut_text(ui.ctx()));
+    if ui.add_enabled(what.is_some(), button).clicked() {
         menu.commands.push(command);
     }
 }
@@ -262,6 +269,7 @@ fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::TryLights, true);
     let has_light = !menu.settings.lights.is_empty();
     item(ui, menu, Command::SuggestLight, has_light);
+    item(ui, menu, Command::UseSurroundings, true);
     item(ui, menu, Command::NextLight, true);
     item(ui, menu, Command::Solo, true);
     item(ui, menu, Command::Mute, true);

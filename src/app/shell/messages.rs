@@ -4,6 +4,7 @@
 
 use eframe::egui::{self, RichText};
 
+use crate::app::common::frame;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::data::{plain, without_controls};
@@ -83,9 +84,9 @@ impl Messages {
         self.note.as_deref()
     }
 
-    /// Shows the message in a row, if there is anything to say.
-    pub(crate) fn ui(&mut self, ui: &mut egui::Ui) {
-        let Some(message) = &self.current else { return };
+    /// Shows the message in a row from the right to the left, if there is anything to say; whether there is.
+    pub(crate) fn ui(&mut self, ui: &mut egui::Ui) -> bool {
+        let Some(message) = &self.current else { return false };
         let now_s = ui.input(|input| input.time);
         let mut over = false;
         if !message.is_error {
@@ -94,23 +95,29 @@ impl Messages {
             ui.request_repaint_after(std::time::Duration::from_secs_f64((until_s - now_s).max(0.0)));
         }
         let color = if message.is_error { ui.visuals().error_fg_color } else { theme::accent(ui.visuals()) };
-        ui.separator();
-        ui.label(RichText::new(&message.short).color(color));
+        over |= ui.small_button(text::messages::DISMISS).clicked();
         if !message.details.is_empty() && ui.small_button(text::messages::DETAILS).clicked() {
             self.expanded ^= true;
         }
-        over |= ui.small_button(text::messages::DISMISS).clicked();
+        // What is left of the row is the message's, which is cut rather than its buttons.
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.separator();
+            let label = egui::Label::new(RichText::new(&message.short).color(color)).truncate();
+            ui.add(label).on_hover_text(&message.short);
+        });
         if self.expanded {
             let above_bar = egui::vec2(8.0, -36.0);
-            egui::Window::new(text::messages::WHAT_HAPPENED)
+            let shown = egui::Window::new(text::messages::WHAT_HAPPENED)
                 .open(&mut self.expanded)
                 .collapsible(false)
                 .anchor(egui::Align2::LEFT_BOTTOM, above_bar)
                 .show(ui.ctx(), |ui| ui.label(&message.details));
+            self.expanded &= !frame::is_left(ui.ctx(), shown.as_ref().map(|shown| &shown.response));
         }
         if over {
             self.current = None;
         }
+        true
     }
 }
 

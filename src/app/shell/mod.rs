@@ -13,3 +13,4 @@ pub(super) mod picture;
 pub(super) mod session;
 pub(super) mod status;
 pub(super) mod status_file;
+pub(super) mod surroundings;

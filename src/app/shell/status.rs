@@ -18,6 +18,7 @@ pub(crate) fn show(
     ui: &mut egui::Ui,
     facts: &Facts,
     opening: Option<LoadProgress<'_>>,
+    exporting: Option<(u32, u32)>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
@@ -37,13 +38,37 @@ pub(crate) fn show(
             } else {
                 doing(ui, facts.doing);
             }
-            messages.ui(ui);
+            if let Some((done, total)) = exporting {
+                export(ui, done, total, commands);
+            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let figures = RichText::new(figures(facts)).weak();
-                ui.add(egui::Label::new(figures).truncate()).on_hover_text(&facts.driver);
+                // What is said is more urgent than figures, which make room.
+                if messages.ui(ui) {
+                    return;
+                }
+                let figures = figures(facts);
+                let tip = format!("{figures}\n{}", facts.driver);
+                ui.add(egui::Label::new(RichText::new(figures).weak()).truncate()).on_hover_text(tip);
             });
         });
     });
+}
+
+/// How far an export is, whose window may be closed.
+fn export(ui: &mut egui::Ui, done: u32, total: u32, commands: &mut Vec<Command>) {
+    ui.separator();
+    if total > 1 {
+        let bar = ProgressBar::new(done as f32 / total as f32).desired_width(80.0).desired_height(8.0);
+        ui.add(bar);
+    } else {
+        ui.spinner();
+    }
+    if ui.link(text::status::exporting(done, total)).on_hover_text(text::status::EXPORTING_TIP).clicked() {
+        commands.push(Command::Export);
+    }
+    if ui.small_button(text::common::CANCEL).clicked() {
+        commands.push(Command::CancelExport);
+    }
 }
 
 fn figures(facts: &Facts) -> String {

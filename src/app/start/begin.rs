@@ -129,6 +129,7 @@ impl App {
             keeps_look: false,
             pending: None,
             balance: None,
+            surroundings: None,
             keep_balanced: KeepBalanced::new(&Settings::default(), true),
             first_lights: FirstLights::default(),
             light_search: None,

@@ -13,10 +13,10 @@ mod windows;
 pub(super) mod work;
 
 pub(super) use self::panels::{
-    camera, corrections, cuts, data, floor, labels, lights, sampling, scattering, sections, shading, shadows,
-    sky,
+    camera, corrections, cuts, data, floor, found, labels, lights, sampling, scattering, sections, shading,
+    shadows, sky,
 };
-pub(super) use self::shell::{commands, memory, menu, messages, opening, status};
+pub(super) use self::shell::{changes, commands, memory, menu, messages, opening, status};
 pub(super) use self::viewport::{compared, cut_handles, overlay, picture, probe};
 pub(super) use self::windows::{
     chooser, contact_sheet, export, files, foreign_path, help, light_volume, raw, roomy, slices,

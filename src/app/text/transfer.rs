@@ -8,7 +8,8 @@ pub(crate) const PLOT: &str = "Transfer function";
 pub(crate) const EYE: Named = named("Eye", "Edit what the eye sees");
 pub(crate) const LIGHT: Named = named("Light", "Edit what light meets");
 /// Instead of the tip, while light meets what the eye sees.
-pub(crate) const LINKED_TIP: &str = "Light follows the eye's opacity; unlink it in the section Shadows";
+pub(crate) const LINKED_TIP: &str =
+    "Light meets the opacity that the eye sees; a click gives it a curve of its own";
 pub(crate) const HINT: &str = "Click adds a point, a drag selects, the wheel zooms";
 
 /// What screen readers call the points of either curve, before their number.

@@ -5,6 +5,7 @@ use eframe::egui::{self, DragValue, Slider, Ui};
 use super::super::panels::controls::color;
 use super::super::text;
 use super::super::text::common::DEGREES;
+use crate::app::common::volume_facts::decimals;
 use crate::data::ValueRange;
 use crate::model::{
     ControlPoint, Easing, TransferFunction, lab_from_lch, lch_from_lab, linear_from_oklab, linear_from_srgb,
@@ -36,7 +37,7 @@ pub(super) fn points(
     function: &mut TransferFunction,
     selected: &[usize],
     values: Values,
-    light: bool,
+    has_colors: bool,
 ) -> bool {
     let Some(&first) = selected.first() else { return false };
     let mut point = function.points[first];
@@ -45,14 +46,15 @@ pub(super) fn points(
         let (low, high) = neighbours(function, first, values.limits);
         let label = ui.label(text::transfer::POINT_VALUE);
         let speed = values.span.span().max(1e-12) / 500.0;
-        ui.add(DragValue::new(&mut point.value).range(low..=high).speed(speed)).labelled_by(label.id);
+        let field = DragValue::new(&mut point.value).range(low..=high).speed(speed);
+        ui.add(field.max_decimals(decimals(values.span))).labelled_by(label.id);
     } else {
         ui.label(text::transfer::several(selected.len()));
     }
     let label = ui.label(text::transfer::POINT_OPACITY);
     ui.add(DragValue::new(&mut point.opacity).range(0.0..=1.0).speed(0.005).max_decimals(3))
         .labelled_by(label.id);
-    if !light {
+    if has_colors {
         color(ui, text::transfer::POINT_COLOR, &mut point.color);
         perceived(ui, &mut point.color);
     }

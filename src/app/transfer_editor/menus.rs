@@ -6,7 +6,7 @@ use super::super::text::{self, Named};
 use super::zoom::ShownValues;
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
-use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::common::volume_facts::{VolumeFacts, decimals};
 use crate::data::ValueRange;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
@@ -113,12 +113,14 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: V
     let level = DragValue::new(&mut to)
         .speed(span / 400.0)
         .range(range.low - span..=range.high + span)
+        .max_decimals(decimals(range))
         .clamp_existing_to_range(false);
     ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tip);
     let label = ui.label(text::transfer::WINDOW.name);
     let window = DragValue::new(&mut wide)
         .speed(span / 400.0)
         .range(span / 1000.0..=4.0 * span)
+        .max_decimals(decimals(range))
         .clamp_existing_to_range(false);
     ui.add(window).labelled_by(label.id).on_hover_text(text::transfer::WINDOW.tip);
     if to != middle || (wide != width && width > 0.0) {

@@ -20,6 +20,7 @@ use super::common::commands::Command;
 use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
+use crate::app::panels::set_linked;
 use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
 use crate::model::{LabelTable, Settings, TransferFunction};
@@ -104,15 +105,16 @@ impl TransferEditor {
         let is_held = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
         let span = self.span.of(is_held, volume.ranges, volume.range);
         let is_wide = ui.available_width() >= WIDE;
+        let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
         ui.horizontal(|ui| {
             self.curve_tools(ui, settings, volume, span, is_wide);
             if is_wide {
-                let layout = egui::Layout::right_to_left(egui::Align::Center);
-                ui.with_layout(layout, |ui| self.plot_tools(ui, settings, commands));
+                ui.with_layout(from_the_right, |ui| self.plot_tools(ui, settings, commands));
             }
         });
         if !is_wide {
-            ui.horizontal(|ui| self.plot_tools(ui, settings, commands));
+            let row = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
+            ui.allocate_ui_with_layout(row, from_the_right, |ui| self.plot_tools(ui, settings, commands));
         }
         let size = ui.available_size();
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
@@ -145,15 +147,19 @@ impl TransferEditor {
         let before = self.curve;
         let eye = ui.selectable_value(&mut self.curve, Curve::Eye, text::transfer::EYE.name);
         eye.on_hover_text(text::transfer::EYE.tip);
-        ui.add_enabled_ui(!settings.lighting.linked, |ui| {
-            let light = ui.selectable_value(&mut self.curve, Curve::Light, text::transfer::LIGHT.name);
-            light.on_hover_text(text::transfer::LIGHT.tip).on_disabled_hover_text(text::transfer::LINKED_TIP);
-        });
+        let light = ui.selectable_value(&mut self.curve, Curve::Light, text::transfer::LIGHT.name);
+        let is_linked = settings.lighting.linked;
+        let tip = if is_linked { text::transfer::LINKED_TIP } else { text::transfer::LIGHT.tip };
+        if light.on_hover_text(tip).clicked() && is_linked {
+            // Whoever wants to edit it wants it to be another.
+            set_linked(settings, false);
+        }
         if self.curve != before {
             self.selection.clear();
         }
         ui.separator();
-        let light = self.curve == Curve::Light;
+        // Light passes matter that has a hue where shadows are coloured.
+        let has_colors = self.curve == Curve::Eye || settings.has_colored_shadows();
         let function = self.edited(settings);
         let selected = self.selection.within(function.points.len());
         if selected.is_empty() {
@@ -167,7 +173,7 @@ impl TransferEditor {
             function,
             &selected,
             fields::Values { span, limits: limits(volume.ranges, span) },
-            light,
+            has_colors,
         ) {
             self.selection.remove(function);
         }

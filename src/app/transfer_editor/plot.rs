@@ -7,6 +7,7 @@ use eframe::egui::{
 use super::text;
 use super::theme;
 use super::zoom::ShownValues;
+use crate::app::common::volume_facts::decimals;
 use crate::data::Histogram;
 use crate::data::ValueRange;
 use crate::model::{Settings, TransferFunction};
@@ -132,9 +133,7 @@ pub(super) fn labels(painter: &Painter, axes: &Axes) {
     let (font, ink) = (FontId::proportional(11.0), theme::EYE_CURVE.gamma_multiply(0.75));
     let plot = axes.plot;
     let write = |at: Pos2, align: Align2, text: String| {
-        let shadow = theme::OUTLINE.gamma_multiply(0.9);
-        painter.text(at + Vec2::splat(1.0), align, &text, font.clone(), shadow);
-        painter.text(at, align, text, font.clone(), ink);
+        over_anything(painter, at, align, text, &font, ink);
     };
     write(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.low, axes.range));
     write(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.high, axes.range));
@@ -143,8 +142,7 @@ pub(super) fn labels(painter: &Painter, axes: &Axes) {
 
 /// A value with as many digits as the range deserves.
 fn number(value: f64, range: ValueRange) -> String {
-    let span = (range.high - range.low).abs().max(1e-300);
-    let decimals = (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
+    let decimals = decimals(range);
     format!("{value:.decimals$}")
 }
 
@@ -167,9 +165,15 @@ pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Sett
     let right = at.x < axes.area.center().x;
     let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };
     let place = pos2(at.x + dx, axes.plot.min.y + 14.0);
-    let font = FontId::proportional(11.0);
-    painter.text(place + Vec2::splat(1.0), align, &words, font.clone(), theme::OUTLINE);
-    painter.text(place, align, words, font, theme::EYE_CURVE);
+    over_anything(&painter, place, align, words, &FontId::proportional(11.0), theme::EYE_CURVE);
+}
+
+/// Writes on a dark ground of its own: curves and what fills them have any colour.
+fn over_anything(painter: &Painter, at: Pos2, align: Align2, text: String, font: &FontId, ink: Color32) {
+    let galley = painter.layout_no_wrap(text, font.clone(), ink);
+    let area = align.anchor_size(at, galley.size());
+    painter.rect_filled(area.expand2(Vec2::new(3.0, 1.0)), 3.0, theme::OUTLINE.gamma_multiply(0.75));
+    painter.galley(area.min, galley, ink);
 }
 
 /// The value that another view marks.

@@ -27,8 +27,8 @@ impl Hints {
         let font = egui::TextStyle::Body.resolve(ui.style());
         let width = 460.0_f32.min(picture.width() - 40.0);
         let size = vec2(width, 24.0 * text::help::HINTS.len() as f32 + 16.0);
-        let middle = picture.center_bottom() - vec2(0.0, size.y / 2.0 + 44.0);
-        let area = Rect::from_center_size(middle, size);
+        // In the corner that nothing else has: the object stands in the middle, the scale bar at the left.
+        let area = Rect::from_min_size(picture.max - size - vec2(8.0, 8.0), size);
         painter.rect_filled(area, 8.0, theme::OUTLINE.gamma_multiply(0.78));
         for (row, (gesture, effect)) in (0..).zip(text::help::HINTS) {
             let left = area.left_top() + vec2(16.0, 20.0 + 24.0 * row as f32);

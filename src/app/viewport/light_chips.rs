@@ -9,6 +9,9 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Light, MAX_LIGHTS, Settings};
 
+/// Width of a name: longer ones are cut, and whole in the chip's tip.
+const LONGEST_NAME: f32 = 140.0;
+
 /// Shows the chips.
 pub(crate) fn show(
     ui: &mut Ui,
@@ -72,7 +75,9 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
         (false, true) => theme::EYE_CURVE,
         (false, false) => theme::GUIDE.gamma_multiply(0.6),
     };
-    let galley = ui.painter().layout_no_wrap(name.to_owned(), font, ink);
+    let mut job = egui::text::LayoutJob::simple_singleline(name.to_owned(), font, ink);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(LONGEST_NAME);
+    let galley = ui.painter().layout_job(job);
     let size = vec2(galley.size().x + 30.0, 20.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let spoken = text::lights::chip(name, light.on);

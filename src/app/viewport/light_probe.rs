@@ -4,6 +4,7 @@ use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
 
 use crate::app::common::theme;
+use crate::app::common::volume_facts::decimals;
 use crate::app::text::{self, common::LengthUnit};
 use crate::data::Volume;
 use crate::model::{Camera, Light, LightKind, Settings};
@@ -80,7 +81,7 @@ fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     let unit = LengthUnit::showing(volume.scene().mm_per_unit, volume.has_unknown_scale());
     let place = text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit);
     let mut words = if settings.labels.is_empty() || volume.labels().is_none() {
-        text::probe::found(found.value, found.opacity, &place)
+        text::probe::found(found.value, decimals(volume.table_range()), found.opacity, &place)
     } else {
         let number = found.value as i64;
         let named =

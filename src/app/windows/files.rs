@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
+use crate::app::common::frame;
 use crate::app::text;
 use crate::app::text::files::Question;
 use crate::app::worker::task::Work;
@@ -24,6 +25,8 @@ pub(crate) enum Purpose {
     VolumeOfLook,
     /// Settings to apply.
     LoadSettings,
+    /// A picture of surroundings to light by.
+    Surroundings,
     /// A transfer function of another program.
     ImportTransfer,
     /// Where to write the transfer function for another program.
@@ -51,6 +54,7 @@ impl Purpose {
             Self::OpenFolder => text::files::OPEN_FOLDER,
             Self::VolumeOfLook => text::files::VOLUME_OF_LOOK,
             Self::LoadSettings => text::files::LOAD_SETTINGS,
+            Self::Surroundings => text::files::SURROUNDINGS,
             Self::ImportTransfer => text::files::IMPORT_TRANSFER,
             Self::ExportTransfer => text::files::EXPORT_TRANSFER,
             Self::CompareSettings => text::files::COMPARE_SETTINGS,
@@ -108,6 +112,10 @@ impl Files {
             Purpose::LoadSettings | Purpose::CompareSettings => {
                 let endings = ["json", "png", "exr"];
                 Box::pin(dialog.add_filter(text::files::SETTINGS_AND_PICTURES, &endings).pick_file())
+            }
+            Purpose::Surroundings => {
+                let endings = ["hdr", "exr", "png", "jpg", "jpeg"];
+                Box::pin(dialog.add_filter(text::files::PANORAMAS, &endings).pick_file())
             }
             Purpose::ImportTransfer => {
                 Box::pin(dialog.add_filter(text::files::TRANSFER_FUNCTIONS, &IMPORTED).pick_file())
@@ -169,11 +177,14 @@ impl Files {
         let (mut open, mut accepted, mut cancelled) = (true, false, false);
         let Question { title, hint, verb } = typed.purpose.question();
         let window = egui::Window::new(title).id(egui::Id::unique("typed path")).open(&mut open);
-        window.collapsible(false).resizable(false).default_pos([140.0, 110.0]).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let width = (0.6 * ctx.content_rect().width()).clamp(240.0, 720.0);
+        let window = window.collapsible(false).resizable(false).default_pos([140.0, 110.0]);
+        let shown = window.show(ctx, |ui| {
             ui.horizontal(|ui| {
                 let label = ui.label(text::files::PATH);
                 let field = egui::TextEdit::singleline(&mut typed.text).hint_text(hint);
-                let field = ui.add(field.desired_width(380.0)).labelled_by(label.id);
+                let field = ui.add(field.desired_width(width)).labelled_by(label.id);
                 if std::mem::take(&mut typed.focus) {
                     field.request_focus();
                 }
@@ -199,7 +210,8 @@ impl Files {
         });
         let chosen = (accepted && !typed.text.trim().is_empty())
             .then(|| (typed.purpose, PathBuf::from(typed.text.trim())));
-        if chosen.is_some() || cancelled || !open {
+        let is_left = frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+        if chosen.is_some() || cancelled || is_left || !open {
             self.typed = None;
         }
         chosen

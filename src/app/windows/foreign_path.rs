@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use eframe::egui;
 
+use crate::app::common::frame;
 use crate::app::text;
 use crate::data::plain;
 use crate::model::Record;
@@ -61,7 +62,9 @@ impl ForeignPath {
         let asked = self.asked.as_ref()?;
         let (mut open, mut answer) = (true, None);
         let window = egui::Window::new(text::foreign_path::TITLE).open(&mut open);
-        window.collapsible(false).resizable(false).default_pos([140.0, 90.0]).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let window = window.collapsible(false).resizable(false).default_pos([140.0, 90.0]);
+        let shown = window.show(ctx, |ui| {
             ui.set_max_width(420.0);
             ui.label(asked.why);
             ui.add(egui::Label::new(egui::RichText::new(&asked.shown).monospace()).wrap());
@@ -78,6 +81,7 @@ impl ForeignPath {
                 button(text::foreign_path::NOT_NOW, Answer::NotNow);
             });
         });
+        open &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
         answer.or_else(|| (!open).then_some(Answer::NotNow))
     }
 }

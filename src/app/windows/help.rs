@@ -2,6 +2,7 @@
 
 use eframe::egui;
 
+use crate::app::common::frame;
 use crate::app::common::shortcuts::{SHORTCUTS, key_text};
 use crate::app::text;
 use crate::app::viewport::Facts;
@@ -39,7 +40,8 @@ impl Help {
             .open(&mut self.keys)
             .resizable(false)
             .collapsible(false);
-        window.default_pos([40.0, 50.0]).fixed_size(size).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let shown = window.default_pos([40.0, 50.0]).fixed_size(size).show(ctx, |ui| {
             egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
                 ui.horizontal_top(|ui| {
                     let mouse = text::help::MOUSE;
@@ -56,9 +58,11 @@ impl Help {
                 });
             });
         });
+        self.keys &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
         let window =
             egui::Window::new(text::help::ABOUT).open(&mut self.about).resizable(false).collapsible(false);
-        window.default_pos([420.0, 50.0]).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let shown = window.default_pos([420.0, 50.0]).show(ctx, |ui| {
             ui.strong(text::help::program(env!("CARGO_PKG_VERSION")));
             ui.label(text::help::PURPOSE);
             ui.label(text::help::AFTER);
@@ -69,5 +73,6 @@ impl Help {
                 ui.label(text::help::SOFTWARE_ADAPTER);
             }
         });
+        self.about &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
     }
 }

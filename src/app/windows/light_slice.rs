@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
+use crate::app::common::frame;
 use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::data::{Dataset, Volume};
@@ -77,7 +78,8 @@ impl LightSlice {
         let (mut open, mut export) = (true, false);
         let window =
             egui::Window::new(text::light_volume::TITLE).open(&mut open).collapsible(false).resizable(false);
-        window.default_pos([24.0, 60.0]).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let shown = window.default_pos([24.0, 60.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
                 let casting =
                     scene.settings.lights.iter().enumerate().filter(|(_, light)| light.needs_volume());
@@ -94,9 +96,12 @@ impl LightSlice {
                 }
             });
             let Some((key, attenuation)) = self.filled.clone() else {
-                ui.weak(text::light_volume::NONE);
+                // One that is being filled is not said to be none.
+                let is_coming = self.work.is_some() || !scene.at_rest;
+                ui.weak(if is_coming { text::light_volume::FILLING } else { text::light_volume::NONE });
                 return;
             };
+            let is_old = self.is_old(scene, &key);
             let count = attenuation.dims[self.axis];
             let mut at = self.at[self.axis].unwrap_or(count / 2).min(count - 1);
             ui.spacing_mut().slider_width = EDGE - 80.0;
@@ -104,12 +109,12 @@ impl LightSlice {
             if ui.name_inputs(text::light_volume::SLICE, |ui| ui.add(slider)).changed() {
                 self.at[self.axis] = Some(at);
             }
-            self.picture(ui, &attenuation, Drawn { key, axis: self.axis, at });
+            self.picture(ui, &attenuation, Drawn { key, axis: self.axis, at }, is_old);
             scale(ui);
             let button = text::light_volume::EXPORT;
             export = ui.button(button.name).on_hover_text(button.tip).clicked();
         });
-        self.open = open;
+        self.open = open && !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
         result.map(|()| export)
     }
 
@@ -178,7 +183,15 @@ impl LightSlice {
         Ok(())
     }
 
-    fn picture(&mut self, ui: &mut egui::Ui, attenuation: &Attenuation, what: Drawn) {
+    /// Whether a light volume is no longer that of the look.
+    fn is_old(&self, scene: &Scene<'_>, key: &LightKey) -> bool {
+        let Some(dataset) = &scene.dataset else { return true };
+        let volume = dataset.volume().id();
+        let request = Request { volume, settings: scene.settings.clone(), size: [16, 16], coarse: None };
+        LightKey::of(&request, self.light).as_ref() != Some(key)
+    }
+
+    fn picture(&mut self, ui: &mut egui::Ui, attenuation: &Attenuation, what: Drawn, is_old: bool) {
         if self.drawn.as_ref() != Some(&what) {
             let Some(slice) = attenuation.slice(what.axis, what.at) else { return };
             let image = ColorImage::from_rgb(slice.size, &slice.colors());
@@ -190,7 +203,15 @@ impl LightSlice {
         }
         let Some(texture) = &self.texture else { return };
         let size = texture.size_vec2();
-        ui.image((texture.id(), size * (EDGE / size.max_elem())));
+        let image = egui::Image::new((texture.id(), size * (EDGE / size.max_elem())));
+        // Another is on its way.
+        let tint = if is_old { egui::Color32::from_gray(0x70) } else { egui::Color32::WHITE };
+        let shown = ui.add(image.tint(tint));
+        if is_old {
+            let (font, ink) = (egui::TextStyle::Body.resolve(ui.style()), egui::Color32::WHITE);
+            let middle = shown.rect.center();
+            ui.painter().text(middle, egui::Align2::CENTER_CENTER, text::light_volume::FILLING, font, ink);
+        }
     }
 }
 

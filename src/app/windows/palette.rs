@@ -95,6 +95,24 @@ mod tests {
     }
 
     #[test]
+    fn settings_are_found_by_their_names_and_by_what_else_they_are_called() {
+        for (words, section, row) in [
+            ("shadow strength", "Shadows", "Strength"),
+            ("ambient occlusion", "Sky and scattering", "Soft light"),
+            ("subsurface", "Sky and scattering", "Bounces"),
+            ("spotlight", "Lights", "Kind"),
+            ("stained glass", "Shadows", "Shadow colour"),
+            ("window level", "Data", "Range"),
+            ("voxel size", "Data", "Spacing"),
+        ] {
+            let found = matching(words, SceneAxis::default());
+            let is_it = |command: &Command| matches!(command, Command::Reveal(place) if place.section == section && place.row == Some(row));
+            assert!(found.iter().any(is_it), "{words}: {found:?}");
+        }
+        assert!(matching("screenshot", SceneAxis::default()).contains(&Command::Export));
+    }
+
+    #[test]
     fn turning_the_object_is_found_by_what_people_call_it() {
         for words in ["flip", "upside down", "lay down", "stand up", "rotate 90", "Turn object"] {
             let found = matching(words, SceneAxis::default());

@@ -93,6 +93,11 @@ fn turntables_and_copies_come_from_the_window() {
     click(&mut harness, "1920 × 1080");
     click(&mut harness, "Export");
     harness.run_steps(3);
+    // The window is closed, and what it does goes on.
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Export picture").is_none());
+    assert!(harness.query_by_label_contains("exporting").is_some(), "the status bar says so");
     click(&mut harness, "Cancel");
     wait_until(&mut harness, "never cancelled", |app| !app.is_exporting());
     let made = std::fs::read_dir(path.with_extension("")).unwrap().count();

@@ -1,6 +1,8 @@
 //! Controls in the panels, and what they change in the picture.
 
 mod labels;
+mod side;
+mod surroundings;
 
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::model::{LightKind, Projection};
@@ -91,9 +93,9 @@ fn voxels_are_averaged_and_the_look_stays() {
 
 #[test]
 fn volumes_are_treated_as_other_data_in_one_step() {
-    // As tall as the section with a table of labels above it.
+    // As tall as the section with a table of labels and the section of cuts above it.
     let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 2000.0));
+    let mut harness = window_with(options, Vec2::new(760.0, 2600.0));
     click(&mut harness, "Data");
     harness.get_by_label("Scalar field");
     // What is cut away, how truly it is drawn, and what is behind it are none of a first look.

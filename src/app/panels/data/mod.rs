@@ -7,7 +7,7 @@ mod several;
 use eframe::egui::{self, Ui};
 
 use super::Panels;
-use super::controls::{row, short, spacing};
+use super::controls::{reset, row, short, spacing};
 use crate::app::common::commands::{Command, THINNINGS};
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, Named};
@@ -129,7 +129,7 @@ fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volum
                 Length::Extent(_) => Length::Extent(number),
             };
         }
-        let combo = egui::ComboBox::from_id_salt("opacity unit").selected_text(shown).width(70.0);
+        let combo = egui::ComboBox::from_id_salt("opacity unit").selected_text(shown).width(60.0);
         ui.name_inputs(text::data::UNITS, |ui| {
             combo.show_ui(ui, |ui| {
                 for (length, unit) in conversions {
@@ -140,7 +140,7 @@ fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volum
                 }
             })
         });
-        if chosen != defaults.opacity_unit && ui.small_button(text::data::RESET).clicked() {
+        if reset(ui, named.name, chosen != defaults.opacity_unit) {
             chosen = defaults.opacity_unit;
         }
     });

@@ -131,8 +131,6 @@ pub(crate) const UNITS: &str = "Unit of the opacity unit";
 pub(crate) const MILLIMETRES: Named = named("mm", "Stays the same for every volume of the same thing");
 pub(crate) const VOXELS: Named = named("voxels", "Follows the resolution of the data");
 pub(crate) const EXTENT: Named = named("extent", "A share of the longest edge of the volume");
-/// The button that puts the opacity unit back.
-pub(crate) const RESET: &str = "Reset";
 
 /// Voxels along x, y and z.
 pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {

@@ -5,6 +5,7 @@ pub(in crate::app) mod corrections;
 pub(in crate::app) mod cuts;
 pub(in crate::app) mod data;
 pub(in crate::app) mod floor;
+pub(in crate::app) mod found;
 pub(in crate::app) mod labels;
 pub(in crate::app) mod lights;
 pub(in crate::app) mod sampling;

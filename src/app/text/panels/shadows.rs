@@ -15,6 +15,10 @@ pub(crate) const DIRECT: Named = named(
     "A ray to the light from every sample: the sharpest shadows; every picture takes as long as a light volume",
 );
 
+/// Where a driver that draws with the processor ends such rays early.
+pub(crate) const MANY_RAYS: &str = "This driver, which draws with the processor, ends rays to lights that have a size before they \
+                                    arrive: such lights are too dark. Fine shows them as they are";
+
 pub(crate) const STRENGTH: Named =
     named("Strength", "0 shows no shadows, 1 shows them fully; between, they are mixed");
 pub(crate) const AMBIENT_OFFSET: Named = named(
@@ -58,6 +62,12 @@ pub(crate) const LIGHT_OPACITY: Named = named(
 pub(crate) const LINKED: Named = named(
     "Light opacity follows the eye's",
     "Light meets the opacity that the eye sees. Unlinked, it gets a curve of its own in the editor below",
+);
+
+pub(crate) const TRANSMISSION: Named = named(
+    "Shadow colour",
+    "Coloured shadows: how much of the light of its own hue a material lets through, as coloured glass does: 0 leaves shadows grey. Colours \
+     are those of the curve, or of a lighting curve of its own. Light volumes take four times the memory",
 );
 
 pub(crate) const RESOLUTION: Named =

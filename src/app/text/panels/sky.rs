@@ -7,6 +7,15 @@ pub(crate) const OFF: Named = named("Off", "The same everywhere: the ambient lig
 pub(crate) const WHITE: Named = named("White", "Ambient occlusion: hollows are darker than what stands out");
 pub(crate) const GRADIENT: Named =
     named("Sky", "Other colours from above than from the horizon and from below");
+pub(crate) const PICTURE: Named = named(
+    "Picture",
+    "Surroundings in a panorama: their colours as far as they change evenly with the direction, and their brightest light \
+     as a light of its own",
+);
+pub(crate) const SURROUNDINGS: Named = named("Surroundings", "The panorama whose light this is");
+pub(crate) const CHOOSE: &str = "Choose…";
+/// In place of the name of a panorama.
+pub(crate) const NO_SURROUNDINGS: &str = "none yet: white";
 pub(crate) const INTENSITY: Named = named("Brightness", "What an open white surface gives back of it");
 pub(crate) const ZENITH: Named = named("Above", "Colour of the sky overhead");
 pub(crate) const HORIZON: Named = named("Horizon", "Colour all around");

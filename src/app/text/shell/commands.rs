@@ -51,7 +51,22 @@ pub(crate) const ADD_LIGHT: &str = "Add light";
 pub(crate) const USE_LIGHTS: &str = "Use lights";
 pub(crate) const USE_LOOK: &str = "Use look";
 pub(crate) const TRY_LOOKS: &str = "Try looks…";
+/// What else commands are found by.
+pub(crate) const EXPORT_WORDS: &str = "screenshot save picture image figure render turntable video movie";
+pub(crate) const TRANSFER_WORDS: &str = "load colormap colour map lut tf";
+pub(crate) const COMPARE_WORDS: &str = "before after split side by side difference";
+
+/// Where something is set.
+pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {
+    match row {
+        Some(row) => format!("{section} › {row}"),
+        None => section.to_owned(),
+    }
+}
+
+pub(crate) const CANCEL_EXPORT: &str = "Stop exporting";
 pub(crate) const SUGGEST_LIGHT: &str = "Suggest a light…";
+pub(crate) const USE_SURROUNDINGS: &str = "Light by surroundings in a picture…";
 pub(crate) const TRY_LIGHTS: &str = "Try lights…";
 pub(crate) const NEXT_LIGHT: &str = "Next light";
 pub(crate) const PREVIOUS_LIGHT: &str = "Previous light";

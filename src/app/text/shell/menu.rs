@@ -31,6 +31,11 @@ pub(crate) const AS_SYSTEM: &str = "As the system";
 
 pub(crate) const USE_RIG: &str = "Use other lights";
 
+/// A step of the history, and what it changes.
+pub(crate) fn step(label: &str, what: Option<&str>) -> String {
+    what.map_or_else(|| label.to_owned(), |what| format!("{label} {what}"))
+}
+
 /// A switch and its key.
 pub(crate) fn with_key(label: &str, key: &str) -> String {
     format!("{label} ({key})")

@@ -53,6 +53,23 @@ pub(crate) fn wrote(path: &Path) -> String {
     format!("Wrote {}", path.display())
 }
 
+/// A step back or forward was taken.
+pub(crate) fn went(is_back: bool, what: &str) -> String {
+    let verb = if is_back { "Undone" } else { "Done again" };
+    format!("{verb}: {what}")
+}
+
+pub(crate) const SURROUNDINGS_NOT_READ: &str = "the surroundings were not read";
+
+/// A picture of surroundings lights the scene.
+pub(crate) fn surrounded(name: &str, has_light: bool) -> String {
+    if has_light {
+        format!("Lit by {name}: its gradient, and its brightest light as the light “Surroundings”")
+    } else {
+        format!("Lit by {name}: its gradient; no light stands out in it")
+    }
+}
+
 /// A view is kept under a digit.
 pub(crate) fn view_kept(slot: u8) -> String {
     format!("View {slot} is kept: {} looks that way again", recall_view_keys(slot))

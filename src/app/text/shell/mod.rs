@@ -1,5 +1,6 @@
 //! Words of menus, commands, messages and the status bar.
 
+pub(in crate::app) mod changes;
 pub(in crate::app) mod commands;
 pub(in crate::app) mod memory;
 pub(in crate::app) mod menu;

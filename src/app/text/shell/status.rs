@@ -37,6 +37,13 @@ pub(crate) fn refining(share: f32, stage: Stage) -> String {
     format!("refining {:.0} %, {}", share * 100.0, name_of(stage))
 }
 
+pub(crate) const EXPORTING_TIP: &str = "Shows the window of the export";
+
+/// How many pictures, or parts of one, of an export are done.
+pub(crate) fn exporting(done: u32, total: u32) -> String {
+    if total > 1 { format!("exporting, {done} of {total}") } else { "exporting".to_owned() }
+}
+
 /// What the status bar says of the renderer.
 pub(crate) struct Figures<'a> {
     /// Milliseconds of the last picture at full quality.

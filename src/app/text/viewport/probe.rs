@@ -13,8 +13,8 @@ pub(crate) const SKY: &str = "Sky";
 pub(crate) const IN_ITS_WAY: &str = "nothing arrives: something stands in its way";
 
 /// What is there: value, opacity, and where it is.
-pub(crate) fn found(value: f64, opacity: f64, place: &str) -> String {
-    format!("Value {value:.4}, opacity {:.0} %\n{place}", 100.0 * opacity)
+pub(crate) fn found(value: f64, decimals: usize, opacity: f64, place: &str) -> String {
+    format!("Value {value:.decimals$}, opacity {:.0} %\n{place}", 100.0 * opacity)
 }
 
 /// The label that is there, and as [`found`].

@@ -7,7 +7,16 @@ pub(crate) const LIGHTS: &str = "Try lights";
 pub(crate) const SUGGESTIONS: &str = "Suggested lights";
 pub(crate) const PRESETS: &str = "Try presets";
 
-pub(crate) const TRYING: &str = "trying them on your volume";
+/// How many of them have been tried.
+pub(crate) fn trying(done: usize, count: usize) -> String {
+    if count == 0 {
+        "trying them on your volume".to_owned()
+    } else {
+        format!("trying them on your volume, {done} of {count}")
+    }
+}
+/// What is for another kind of data.
+pub(crate) const FOR_CT: &str = "For Hounsfield units of CT, which these data are not in";
 pub(crate) const AGAIN: &str = "Again, as it looks now";
 /// Why the pictures are small and coarse.
 pub(crate) const QUALITY: &str = "the picture's own size and quality come with a click";

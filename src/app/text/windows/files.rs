@@ -28,6 +28,13 @@ pub(crate) const COMPARE_SETTINGS: Question =
     Question { title: "Compare with settings", hint: LOAD_SETTINGS.hint, verb: "Compare" };
 pub(crate) const SAVE_SETTINGS: Question =
     Question { title: "Save settings", hint: "a .json file", verb: "Save" };
+pub(crate) const SURROUNDINGS: Question = Question {
+    title: "Light by surroundings",
+    hint: "a panorama of all directions: .hdr, .exr, .png, .jpg",
+    verb: "Use",
+};
+/// Files that the dialog shows.
+pub(crate) const PANORAMAS: &str = "Panoramas";
 pub(crate) const IMPORT_TRANSFER: Question = Question {
     title: "Import transfer function",
     hint: "ParaView, AGAVE .json, Slicer .vp, Inviwo .itf, Voreen .tfi, MRIcroGL .clut, ImageJ .lut",

@@ -9,6 +9,8 @@ pub(crate) const ACROSS: [&str; 3] = ["across x", "across y", "across z"];
 pub(crate) const SLICE: &str = "Slice";
 
 /// Instead of the slice.
+/// In place of a light volume that is being filled, and over one that is no longer that of the look.
+pub(crate) const FILLING: &str = "filling…";
 pub(crate) const NONE: &str =
     "No light volume: shadows must be on, splatted or by rays, and a light must cast them";
 

@@ -88,9 +88,11 @@ impl CutHandles {
                 let Some(position) = view_projection.point(at) else { continue };
                 let name = text::cut_handles::crop_side(axis, is_high);
                 let id = Id::unique("crop side").with((axis, is_high));
-                let (response, to) = self.interact(ui, id, &name, position, DVec3::ZERO, false);
+                // Those of sides beyond the picture wait at its border.
+                let waits = within(painter.clip_rect(), position);
+                let (response, to) = self.interact(ui, id, &name, waits, DVec3::ZERO, false);
                 if let Some(to) = to
-                    && let Some(share) = view_projection.along(to, at, along)
+                    && let Some(share) = view_projection.along(to + (position - waits), at, along)
                 {
                     let (low, high) = (crop.low[axis], crop.high[axis]);
                     if is_high {
@@ -101,7 +103,7 @@ impl CutHandles {
                 }
                 let now =
                     view_projection.point(outline::side(crop, scene, axis, is_high).0).unwrap_or(position);
-                square(painter, now, &response);
+                square(painter, within(painter.clip_rect(), now), &response);
             }
         }
     }
@@ -193,6 +195,12 @@ impl CutHandles {
         let to = drag.zip(pointer).filter(|_| moves).map(|(drag, pointer)| pointer + drag.grip);
         (response, to)
     }
+}
+
+/// Where a handle lies that is to be reached: not beyond the border of the picture.
+fn within(picture: Rect, position: Pos2) -> Pos2 {
+    let room = picture.shrink(theme::HANDLE_INSET);
+    if room.is_positive() { room.clamp(position) } else { position }
 }
 
 /// The direction in which a line of sight (its origin relative to the middle) meets a sphere, or passes it.

@@ -5,12 +5,14 @@ mod sheet;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
 
 use self::sheet::{Candidate, SIZE, Tried};
 use super::export::Subject;
 use crate::app::common::commands::Command;
+use crate::app::common::frame;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
@@ -33,11 +35,18 @@ struct Print {
     tip: String,
     command: Command,
     texture: TextureHandle,
+    /// It is for data of this kind.
+    fits: bool,
 }
 
 /// A sheet whose pictures are being made.
 struct Trying {
-    work: Work<Result<Vec<Tried>, String>>,
+    work: Work<Result<(), String>>,
+    /// What has been tried, and how many there will be.
+    tried: mpsc::Receiver<(usize, Tried)>,
+    /// Whether pictures of a sheet before are still shown.
+    is_fresh: bool,
+    count: usize,
     sheet: Sheet,
     /// What is tried on: the look, and the light that is selected.
     of: (Settings, usize),
@@ -128,21 +137,39 @@ impl ContactSheet {
         self.is_due = false;
         let is_unwanted = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&is_unwanted);
-        let task = move || sheet.try_all(&subject, &asked);
+        let (sender, tried) = mpsc::channel();
+        let wake = ctx.clone();
+        let task = move || {
+            let hand_on = |count: usize, of: Tried| {
+                // Nobody looks any more when the receiver is gone.
+                drop(sender.send((count, of)));
+                wake.request_repaint();
+            };
+            sheet.try_all(&subject, &asked, &hand_on)
+        };
         let work = Work::start("contact-sheet", ctx, task).map_err(text::contact_sheet::no_thread)?;
-        self.trying = Some(Trying { work, sheet, of, is_unwanted });
+        self.trying = Some(Trying { work, tried, is_fresh: true, count: 0, sheet, of, is_unwanted });
         Ok(())
     }
 
     /// Takes what has been made, unless nobody wants it any more.
     fn take(&mut self, ctx: &egui::Context) -> Result<(), String> {
-        let Some(result) = self.trying.as_ref().and_then(|trying| trying.work.take()) else { return Ok(()) };
-        let is_unwanted = self.trying.take().is_none_or(|trying| trying.is_cancelled());
-        if !is_unwanted {
-            let tried = result.and_then(|result| result)?;
-            self.prints = tried.into_iter().map(|(look, picture)| print(ctx, look, picture)).collect();
+        let Some(trying) = &mut self.trying else { return Ok(()) };
+        // Asked before what was handed on is taken: nothing comes after the end.
+        let result = trying.work.take();
+        for (count, (look, picture)) in trying.tried.try_iter() {
+            if trying.is_unwanted.load(Ordering::Relaxed) {
+                continue;
+            }
+            if std::mem::take(&mut trying.is_fresh) {
+                self.prints.clear();
+            }
+            trying.count = count;
+            self.prints.push(print(ctx, look, picture));
         }
-        Ok(())
+        let Some(result) = result else { return Ok(()) };
+        let is_unwanted = self.trying.take().is_none_or(|trying| trying.is_cancelled());
+        if is_unwanted { Ok(()) } else { result.and_then(|result| result) }
     }
 
     /// Shows the window, and adds what was chosen. An error says why there are no pictures.
@@ -151,11 +178,17 @@ impl ContactSheet {
         let mut open = self.open;
         let window =
             egui::Window::new(self.sheet.title()).open(&mut open).resizable(false).collapsible(false);
-        window.default_pos([60.0, 60.0]).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let shown = window.default_pos([60.0, 60.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
                 if self.trying.is_some() || self.is_due {
                     ui.spinner();
-                    ui.label(text::contact_sheet::TRYING);
+                    let (done, count) = self
+                        .trying
+                        .as_ref()
+                        .filter(|trying| !trying.is_fresh)
+                        .map_or((0, 0), |trying| (self.prints.len(), trying.count));
+                    ui.label(text::contact_sheet::trying(done, count));
                 } else if ui.button(text::contact_sheet::AGAIN).clicked() {
                     self.is_due = true;
                 }
@@ -174,6 +207,13 @@ impl ContactSheet {
                         ui.vertical(|ui| {
                             let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
                             let image = egui::Image::new((tried.texture.id(), size));
+                            // What is for other data is there, and no more.
+                            let tint = if tried.fits {
+                                egui::Color32::WHITE
+                            } else {
+                                egui::Color32::from_gray(0x60)
+                            };
+                            let image = image.tint(tint);
                             let button = ui.add(egui::Button::image(image).frame(false));
                             let name = text::contact_sheet::use_look(&tried.name);
                             button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
@@ -186,6 +226,7 @@ impl ContactSheet {
                 })
             });
         });
+        open &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
         if self.open && !open {
             self.is_due = false;
             self.cancel();
@@ -196,9 +237,9 @@ impl ContactSheet {
 }
 
 fn print(ctx: &egui::Context, look: Candidate, picture: ColorImage) -> Print {
-    let Candidate { name, tip, command, settings: _ } = look;
+    let Candidate { name, tip, command, settings: _, fits } = look;
     let texture = ctx.load_texture(format!("contact sheet {name}"), picture, TextureOptions::LINEAR);
-    Print { name, tip, command, texture }
+    Print { name, tip, command, texture, fits }
 }
 
 #[cfg(test)]

@@ -8,9 +8,11 @@ use glam::DVec3;
 use crate::app::common::commands::Command;
 use crate::app::text;
 use crate::app::windows::export::{Subject, Worker};
-use crate::data::ValueRanges;
+use crate::data::{DataKind, Volume};
 use crate::gpu::{LightSearch, SmallLook, Sought, small_volume};
-use crate::model::{Camera, ImageSpec, Kernel, Light, PRESETS, Resolution, Rig, Settings, Slabs, auto};
+use crate::model::{
+    Camera, ImageSpec, Kernel, Light, PRESETS, Preset, Resolution, Rig, Settings, Slabs, auto,
+};
 
 /// Pixels of a picture: 4:3, as first looks are framed, and four of them with what lies between are no wider than a
 /// window of 1280 points has beside its panel.
@@ -43,6 +45,8 @@ pub(super) struct Candidate {
     pub settings: Settings,
     /// What takes it over.
     pub command: Command,
+    /// It is for data of this kind.
+    pub fits: bool,
 }
 
 /// A look, and what it looks like.
@@ -59,24 +63,28 @@ impl Sheet {
         }
     }
 
-    /// Tries everything, until nobody wants it any more. An error says why there are no pictures.
-    pub(super) fn try_all(self, subject: &Subject, is_unwanted: &AtomicBool) -> Result<Vec<Tried>, String> {
+    /// Tries everything, until nobody wants it any more; each picture is handed on when it is made, with how many there
+    /// will be. An error says why there are no more.
+    pub(super) fn try_all(
+        self,
+        subject: &Subject,
+        is_unwanted: &AtomicBool,
+        hand_on: &dyn Fn(usize, Tried),
+    ) -> Result<(), String> {
         let is_wanted = || !is_unwanted.load(Ordering::Relaxed);
         let mut worker = Worker::new(subject)?;
         let candidates = match self {
             Self::Lights => with_lights(&subject.settings, subject.selected_light),
-            Self::Presets => with_presets(&subject.settings, &subject.dataset.volume().ranges()),
+            Self::Presets => with_presets(&subject.settings, subject.dataset.volume()),
             Self::Suggestions => suggested(subject, &worker, &is_wanted)?,
-            Self::Looks => return looks(subject, &mut worker, &is_wanted),
+            Self::Looks => return looks(subject, &mut worker, &is_wanted, hand_on),
         };
-        candidates
-            .into_iter()
-            .take_while(|_| is_wanted())
-            .map(|candidate| {
-                let picture = picture(&mut worker, subject, &quick(&candidate.settings))?;
-                Ok((candidate, picture))
-            })
-            .collect()
+        let count = candidates.len();
+        for candidate in candidates.into_iter().take_while(|_| is_wanted()) {
+            let picture = picture(&mut worker, subject, &quick(&candidate.settings))?;
+            hand_on(count, (candidate, picture));
+        }
+        Ok(())
     }
 }
 
@@ -86,16 +94,24 @@ fn picture(worker: &mut Worker, subject: &Subject, settings: &Settings) -> Resul
     Ok(ColorImage::from_rgba_unmultiplied(SIZE.map(|n| n as usize), &shown))
 }
 
-/// The look with each preset laid over it, but for that of the benchmarks.
-fn with_presets(settings: &Settings, ranges: &ValueRanges) -> Vec<Candidate> {
-    let presets = PRESETS.into_iter().filter(|preset| preset.domain() != "bench");
+/// The look with each preset laid over it, but for that of the benchmarks; those for other kinds of data come last.
+fn with_presets(settings: &Settings, volume: &Volume) -> Vec<Candidate> {
+    let ranges = volume.ranges();
+    let is_ct = matches!(volume.kind().kind, DataKind::HounsfieldCt { .. });
+    let mut presets: Vec<_> = PRESETS.into_iter().filter(|preset| preset.domain() != "bench").collect();
+    // Those of CT say Hounsfield units, and nothing or a brick of other data.
+    let fits = |preset: &Preset| preset.domain() != "ct" || is_ct;
+    presets.sort_by_key(|preset| !fits(preset));
     presets
+        .into_iter()
         .filter_map(|preset| {
-            let settings = preset.apply(settings, ranges).ok()?;
+            let settings = preset.apply(settings, &ranges).ok()?;
             let [domain, _] = preset.domain_titles();
             let name = text::contact_sheet::preset(domain, &preset.title());
-            let tip = text::contact_sheet::USE_TIP.to_owned();
-            Some(Candidate { name, tip, settings, command: Command::UsePreset(preset) })
+            let fits = fits(&preset);
+            let tip = if fits { text::contact_sheet::USE_TIP } else { text::contact_sheet::FOR_CT };
+            let command = Command::UsePreset(preset);
+            Some(Candidate { name, tip: tip.to_owned(), settings, command, fits })
         })
         .collect()
 }
@@ -104,7 +120,7 @@ fn with_presets(settings: &Settings, ranges: &ValueRanges) -> Vec<Candidate> {
 fn with(name: String, lights: Vec<Light>, settings: &Settings) -> Candidate {
     let settings = Settings { lights: lights.clone(), ..settings.clone() };
     let tip = text::contact_sheet::USE_TIP.to_owned();
-    Candidate { name, tip, settings, command: Command::UseLights(lights) }
+    Candidate { name, tip, settings, command: Command::UseLights(lights), fits: true }
 }
 
 /// The look with each choice of lights.
@@ -139,32 +155,35 @@ fn suggested(
 }
 
 /// Whole looks of the volume, on a small copy of it.
-fn looks(subject: &Subject, worker: &mut Worker, is_wanted: &dyn Fn() -> bool) -> Result<Vec<Tried>, String> {
+fn looks(
+    subject: &Subject,
+    worker: &mut Worker,
+    is_wanted: &dyn Fn() -> bool,
+    hand_on: &dyn Fn(usize, Tried),
+) -> Result<(), String> {
     let whole = subject.dataset.volume();
     let small = small_volume(&subject.dataset).map_err(|err| err.to_string())?;
     let proposals = auto::looks(&subject.first, small.volume(), small.histogram());
     let on_small = Subject { dataset: small, ..subject.clone() };
-    proposals
-        .into_iter()
-        .take_while(|_| is_wanted())
-        .enumerate()
-        .map(|(at, proposal)| {
-            // The brightness of the first is known.
-            let look = if at == 0 {
-                SmallLook::known(whole, &on_small.dataset, proposal.settings)
-            } else {
-                worker.measure(whole, &on_small.dataset, &proposal.settings)?
-            };
-            let picture = picture(worker, &on_small, &look.quick)?;
-            let candidate = Candidate {
-                name: text::contact_sheet::look(at + 1, proposal.name),
-                tip: proposal.differs.to_owned(),
-                command: Command::UseLook(Box::new(look.settings.clone())),
-                settings: look.settings,
-            };
-            Ok((candidate, picture))
-        })
-        .collect()
+    let count = proposals.len();
+    for (at, proposal) in proposals.into_iter().enumerate().take_while(|_| is_wanted()) {
+        // The brightness of the first is known.
+        let look = if at == 0 {
+            SmallLook::known(whole, &on_small.dataset, proposal.settings)
+        } else {
+            worker.measure(whole, &on_small.dataset, &proposal.settings)?
+        };
+        let picture = picture(worker, &on_small, &look.quick)?;
+        let candidate = Candidate {
+            name: text::contact_sheet::look(at + 1, proposal.name),
+            tip: proposal.differs.to_owned(),
+            command: Command::UseLook(Box::new(look.settings.clone())),
+            settings: look.settings,
+            fits: true,
+        };
+        hand_on(count, (candidate, picture));
+    }
+    Ok(())
 }
 
 /// The lights that are tried, and what they are called.
@@ -204,6 +223,7 @@ fn quick(settings: &Settings) -> Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::synthetic::builtin;
 
     #[test]
     fn hours_are_where_a_clock_has_them() {
@@ -225,7 +245,10 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), Rig::ALL.len() + HOURS.len());
         assert_eq!(lights_to_try(&Settings::default(), 9).len(), Rig::ALL.len(), "no light is selected");
-        let presets = with_presets(&Settings::default(), &ValueRanges::UNIT);
+        let volume = builtin("sphere", Some(8)).unwrap();
+        let presets = with_presets(&Settings::default(), &volume);
+        let last_that_fits = presets.iter().rposition(|look| look.fits);
+        assert_eq!(last_that_fits, presets.iter().position(|look| !look.fits).map(|first| first - 1));
         assert_eq!(presets.len(), PRESETS.len() - 1);
         let usual = Settings::default();
         // Those of light are for any curve.

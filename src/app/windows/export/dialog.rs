@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering;
 use eframe::egui::{self, Ui};
 
 use super::{Export, Kind, Request};
+use crate::app::common::frame;
 use crate::app::text::{self, Named};
 use crate::export::{AnimationFormat, PictureFormat};
 use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES};
@@ -41,7 +42,8 @@ impl Export {
         let mut open = self.open;
         let window =
             egui::Window::new(text::export::TITLE).open(&mut open).collapsible(false).resizable(false);
-        window.default_pos([160.0, 90.0]).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let shown = window.default_pos([160.0, 90.0]).show(ctx, |ui| {
             ui.horizontal(|ui| {
                 for (kind, Named { name, tip }) in KINDS {
                     if ui.selectable_label(self.kind == kind, name).on_hover_text(tip).clicked() {
@@ -86,7 +88,7 @@ impl Export {
                 request = Some(Request::Export);
             }
         });
-        self.open = open;
+        self.open = open && !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
         request
     }
 
@@ -192,7 +194,7 @@ impl Export {
     fn progress_ui(&self, ui: &mut Ui) {
         // First, so that it stays where it is when there is something to count.
         if ui.button(text::common::CANCEL).clicked() {
-            self.progress.cancelled.store(true, Ordering::Relaxed);
+            self.cancel();
         }
         let (done, total) =
             (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));

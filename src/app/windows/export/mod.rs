@@ -106,9 +106,21 @@ impl Export {
         self.work.is_some()
     }
 
+    /// How many pictures, or parts of one, are done and are to be made, where the window does not say so; `None` while
+    /// nothing is made.
+    pub(crate) fn progress_unseen(&self) -> Option<(u32, u32)> {
+        let Progress { done, total, cancelled: _ } = &*self.progress;
+        (self.is_busy() && !self.open).then(|| (done.load(Ordering::Relaxed), total.load(Ordering::Relaxed)))
+    }
+
+    /// Ends what is being made.
+    pub(crate) fn cancel(&self) {
+        self.progress.cancelled.store(true, Ordering::Relaxed);
+    }
+
     /// Ends what is being made, because the window closes, and waits for that: so that nothing is left of it.
     pub(crate) fn abandon(&mut self) {
-        self.progress.cancelled.store(true, Ordering::Relaxed);
+        self.cancel();
         let begin = Instant::now();
         while self.is_busy() && self.take().is_none() && begin.elapsed() < LONGEST_WAIT {
             std::thread::sleep(Duration::from_millis(20));

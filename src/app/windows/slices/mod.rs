@@ -12,6 +12,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use self::image::{Grey, across, lookup, slice};
+use crate::app::common::frame;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
@@ -88,7 +89,8 @@ impl Slices {
         let mut open = true;
         let window =
             egui::Window::new(text::slices::TITLE).open(&mut open).collapsible(false).resizable(false);
-        window.default_pos([24.0, 60.0]).show(ctx, |ui| {
+        let window = window.constrain_to(frame::room(ctx));
+        let shown = window.default_pos([24.0, 60.0]).show(ctx, |ui| {
             // From above, from the front, from the right; and what is at the cursor.
             ui.horizontal_top(|ui| {
                 self.cut(ui, 2, volume, &mut grey, transfer);
@@ -99,7 +101,7 @@ impl Slices {
                 ui.vertical(|ui| self.facts(ui, volume, facts, &mut grey, transfer));
             });
         });
-        self.open = open;
+        self.open = open && !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
         self.of = Some((volume.content_id(), grey.within(facts.range)));
     }
 

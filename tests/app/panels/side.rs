@@ -1,0 +1,88 @@
+//! The side panel: nothing that it holds makes it wider than it is, and what is sought in it is found.
+
+use chiaroscuro::app::{App, Options};
+use chiaroscuro::model::{Settings, SkyMode};
+use eframe::egui::{Event, Key, Modifiers, Rect, Vec2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{SCENE, drag, wait_until_idle, window_with};
+
+/// A window whose first look is changed.
+fn window(change: fn(&mut Settings)) -> Harness<'static, App> {
+    let adjust = Box::new(move |mut settings: Settings| {
+        settings.shadows.keep_balanced = false;
+        change(&mut settings);
+        settings
+    });
+    let options = Options { source: Some(SCENE.into()), adjust: Some(adjust), ..Options::default() };
+    window_with(options, Vec2::new(760.0, 1140.0))
+}
+
+fn picture_of(harness: &Harness<'_, App>) -> Rect {
+    harness.state().viewport_rect().expect("a picture").0
+}
+
+#[test]
+fn names_of_any_length_leave_the_picture_as_wide_as_it_is() {
+    let usual = picture_of(&window(|_| {}));
+    let long = window(|settings| {
+        for light in &mut settings.lights {
+            light.name = "Überlänge ".repeat(20);
+        }
+        settings.sky.mode = SkyMode::Picture;
+        settings.sky.picture.name = "panorama_".repeat(22);
+    });
+    assert_eq!(picture_of(&long), usual);
+}
+
+#[test]
+fn the_side_panel_is_as_wide_as_it_is_dragged() {
+    let mut harness = window(|_| {});
+    let before = picture_of(&harness);
+    // Just beyond the picture, which is dragged to turn it.
+    drag(&mut harness, pos2(before.right() + 2.0, before.center().y), vec2(-80.0, 0.0));
+    wait_until_idle(&mut harness);
+    let after = picture_of(&harness);
+    assert!((before.right() - after.right() - 80.0).abs() < 6.0, "{before:?} {after:?}");
+    assert_eq!(after.left(), before.left());
+}
+
+/// What a key switches on is shown in its section, and a setting that is sought by a word in its row.
+#[test]
+fn sections_open_where_something_is_switched_on_or_sought() {
+    let mut harness = window(|_| {});
+    assert!(harness.query_by_label("Towards the eye").is_none(), "the section of cuts is folded");
+    harness.key_press(Key::X);
+    harness.run_steps(12);
+    assert!(harness.state().settings().cuts.plane.on);
+    assert!(harness.query_by_label("Towards the eye").is_some());
+    wait_until_idle(&mut harness);
+
+    assert!(harness.query_by_label("Precision").is_none(), "it is folded away");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(3);
+    harness.event(Event::Text("memory precision".to_owned()));
+    harness.run_steps(3);
+    harness.key_press(Key::Enter);
+    harness.run_steps(12);
+    let row = harness.get_by_label("16 bits").rect();
+    assert!(row.top() > 0.0 && row.bottom() < 1140.0, "{row:?}");
+    wait_until_idle(&mut harness);
+}
+
+/// Steps back and forward say what they change.
+#[test]
+fn steps_of_the_history_have_names() {
+    let mut harness = window(|_| {});
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::G);
+    harness.run_steps(12);
+    wait_until_idle(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().latest_note(), Some("Undone: floor"));
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().latest_note(), Some("Done again: floor"));
+    wait_until_idle(&mut harness);
+}
