@@ -78,7 +78,7 @@ fn lights_are_suggested() {
     let mut harness = window();
     let before = harness.state().settings().clone();
     click(&mut harness, "Suggest…");
-    wait_for(&mut harness, "Use Key, suggestion 1");
+    wait_for(&mut harness, "Again, as it looks now");
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
     click(&mut harness, "Use Key, suggestion 2");
     let after = harness.state().settings().clone();
@@ -97,6 +97,8 @@ fn looks_are_tried_on_the_volume() {
     harness.key_press(egui::Key::V);
     harness.run_steps(3);
     wait_for(&mut harness, "Use 1 · First look");
+    // The others follow one by one.
+    wait_for(&mut harness, "Again, as it looks now");
     let count = harness.query_all_by_label_contains("Use ").count();
     assert!([8, 10].contains(&count), "{count} looks");
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");

@@ -26,6 +26,16 @@ struct Message {
     is_error: bool,
 }
 
+impl Message {
+    /// What is said in a row: what happened, and the first reason for it.
+    fn words(&self) -> String {
+        match self.details.lines().next().map(str::trim) {
+            Some(reason) if !reason.is_empty() => format!("{}: {reason}", self.short),
+            _ => self.short.clone(),
+        }
+    }
+}
+
 /// The latest message and the errors so far.
 #[derive(Debug, Default)]
 pub(crate) struct Messages {
@@ -102,8 +112,9 @@ impl Messages {
         // What is left of the row is the message's, which is cut rather than its buttons.
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.separator();
-            let label = egui::Label::new(RichText::new(&message.short).color(color)).truncate();
-            ui.add(label).on_hover_text(&message.short);
+            let words = message.words();
+            let label = egui::Label::new(RichText::new(&words).color(color)).truncate();
+            ui.add(label).on_hover_text(&words);
         });
         if self.expanded {
             let above_bar = egui::vec2(8.0, -36.0);
@@ -135,5 +146,11 @@ mod tests {
         // One more says that it was cut.
         assert_eq!((length(&short), length(&details)), (LONGEST_SHORT + 1, LONGEST_DETAILS));
         assert_eq!(messages.errors(), [short]);
+        let said = |details: &str| {
+            let details = details.to_owned();
+            Message { short: "not exported".to_owned(), details, is_error: true }.words()
+        };
+        assert_eq!(said(""), "not exported");
+        assert_eq!(said("/a/b.png: no such folder\nmore"), "not exported: /a/b.png: no such folder");
     }
 }

@@ -25,8 +25,11 @@ pub(crate) fn show(
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
             if let Some(LoadProgress { source, reading: _, phase, fraction, bytes }) = opening {
-                let bar = ProgressBar::new(fraction.unwrap_or(0.0)).desired_width(120.0).desired_height(8.0);
-                ui.add(bar.animate(fraction.is_none()));
+                match fraction {
+                    Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
+                    // A bar that stays empty looks stuck.
+                    None => ui.spinner(),
+                };
                 ui.label(text::status::opening(
                     phase,
                     bytes,
@@ -57,6 +60,10 @@ pub(crate) fn show(
 /// How far an export is, whose window may be closed.
 fn export(ui: &mut egui::Ui, done: u32, total: u32, commands: &mut Vec<Command>) {
     ui.separator();
+    // First, so that it stays where it is while pictures are counted.
+    if ui.small_button(text::common::CANCEL).clicked() {
+        commands.push(Command::CancelExport);
+    }
     if total > 1 {
         let bar = ProgressBar::new(done as f32 / total as f32).desired_width(80.0).desired_height(8.0);
         ui.add(bar);
@@ -65,9 +72,6 @@ fn export(ui: &mut egui::Ui, done: u32, total: u32, commands: &mut Vec<Command>)
     }
     if ui.link(text::status::exporting(done, total)).on_hover_text(text::status::EXPORTING_TIP).clicked() {
         commands.push(Command::Export);
-    }
-    if ui.small_button(text::common::CANCEL).clicked() {
-        commands.push(Command::CancelExport);
     }
 }
 

@@ -102,6 +102,14 @@ fn turntables_and_copies_come_from_the_window() {
     wait_until(&mut harness, "never cancelled", |app| !app.is_exporting());
     let made = std::fs::read_dir(path.with_extension("")).unwrap().count();
     assert!(made < 72, "{made} were made after all");
+    // What is there is not replaced unasked.
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::E);
+    harness.run_steps(3);
+    click(&mut harness, "Export");
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Replace").is_some() && !harness.state().is_exporting());
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
 
     harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), egui::Key::C);
     harness.run_steps(2);

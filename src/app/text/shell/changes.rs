@@ -1,7 +1,7 @@
 //! What a step of the history changes, in a few words.
 
 use crate::app::text;
-use crate::model::{Light, Settings};
+use crate::model::{Light, Settings, Shadows};
 
 /// Where only the kind of data changes for which the look was made.
 pub(crate) const KIND_OF_DATA: &str = "kind of data";
@@ -37,7 +37,7 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
         (*range != after.range, "range of values"),
         (*opacity_unit != after.opacity_unit, "opacity unit"),
         (*shading != after.shading, "shading"),
-        (*shadows != after.shadows, "shadows"),
+        (with_balance(&after.shadows, shadows.balance) != *shadows, "shadows"),
         (*sky != after.sky, "sky"),
         (*scattering != after.scattering, "scattering"),
         (*cuts != after.cuts, "cut"),
@@ -50,6 +50,8 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
     let changed: Vec<&str> =
         parts.into_iter().filter(|(differs, _)| *differs).map(|(_, name)| name).collect();
     match changed[..] {
+        // It follows what else changes, and is nobody's doing then.
+        [] if shadows.balance.to_bits() != after.shadows.balance.to_bits() => Some("balance".to_owned()),
         [] => None,
         ["lights"] => Some(of_lights(lights, &after.lights)),
         [one] => Some(one.to_owned()),
@@ -57,6 +59,11 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
         // More than that is another look.
         _ => Some("look".to_owned()),
     }
+}
+
+/// Shadows with another balance.
+fn with_balance(shadows: &Shadows, balance: f64) -> Shadows {
+    Shadows { balance, ..shadows.clone() }
 }
 
 fn of_lights(before: &[Light], after: &[Light]) -> String {
@@ -94,6 +101,12 @@ mod tests {
         assert_eq!(said(change(|settings| settings.lights.push(Light::default()))), "adding a light");
         assert_eq!(said(change(|settings| settings.lights.clear())), "removing a light");
         assert_eq!(said(change(|settings| settings.floor.on = true)), "floor");
+        assert_eq!(said(change(|settings| settings.shadows.balance = 2.0)), "balance");
+        let balanced = said(change(|settings| {
+            settings.lights[0].intensity = 3.0;
+            settings.shadows.balance = 2.0;
+        }));
+        assert_eq!(balanced, "Light");
         let two = said(change(|settings| {
             settings.floor.on = true;
             settings.camera.azimuth_deg = 3.0;

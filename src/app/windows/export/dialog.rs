@@ -8,7 +8,7 @@ use eframe::egui::{self, Ui};
 use super::{Export, Kind, Request};
 use crate::app::common::frame;
 use crate::app::text::{self, Named};
-use crate::export::{AnimationFormat, PictureFormat};
+use crate::export::{AnimationFormat, PictureFormat, frame_names};
 use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES};
 
 const KINDS: [(Kind, Named); 3] = [
@@ -94,15 +94,21 @@ impl Export {
 
     /// Whether there is a file of that name, which the user has not agreed to replace.
     fn would_replace(&self) -> bool {
+        self.is_there() && self.agreed.as_deref() != Some(Path::new(self.path.trim()))
+    }
+
+    /// Whether what is written has the name of something that is there: a file, or one of the pictures in a folder.
+    fn is_there(&self) -> bool {
         let path = Path::new(self.path.trim());
-        path.is_file() && self.agreed.as_deref() != Some(path)
+        let is_folder = self.kind != Kind::Still && self.animation() == AnimationFormat::Folder;
+        path.is_file() || is_folder && frame_names(path, self.frames).iter().any(|name| name.exists())
     }
 
     /// Asks whether the file may be replaced; whether it may.
     fn question_ui(&mut self, ui: &mut Ui) -> bool {
         let path = PathBuf::from(self.path.trim());
         // Another name was typed meanwhile.
-        self.asks = path.is_file();
+        self.asks = self.is_there();
         let mut agreed = false;
         ui.horizontal(|ui| {
             ui.label(text::files::is_there_already(&path));
