@@ -56,6 +56,11 @@ fn lights_and_camera_follow_the_mouse() {
     assert_eq!(harness.state().settings().lights[0].position, orbited.lights[0].position);
 }
 
+/// The first button goes down or up.
+fn button(pos: egui::Pos2, pressed: bool) -> Event {
+    Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+}
+
 /// A finger or a pen comes from nowhere: it is never above a handle before it presses it.
 #[test]
 fn handles_are_taken_without_hovering() {
@@ -64,12 +69,6 @@ fn handles_are_taken_without_hovering() {
     harness.run_steps(12);
     let before = harness.state().settings().clone();
     let handle = harness.state().light_handle_positions()[0];
-    let button = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
     harness.event(Event::PointerMoved(handle));
     harness.event(button(handle, true));
     harness.step();
@@ -186,12 +185,6 @@ fn escape_ends_a_drag_where_it_began() {
     harness.hover_at(rect.center());
     harness.run_steps(2);
     let handle = harness.state().light_handle_positions()[0];
-    let button = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
     harness.event(Event::PointerMoved(handle));
     harness.event(button(handle, true));
     harness.run_steps(1);

@@ -43,6 +43,8 @@ pub(crate) struct LightSlice {
     at: [Option<usize>; 3],
     work: Option<Work<Result<Option<Filled>, GpuError>>>,
     filled: Option<(LightKey, Arc<Attenuation>)>,
+    /// Of the look as it is.
+    wanted: Option<LightKey>,
     /// The key that could not be filled: it is not tried again.
     failed: Option<LightKey>,
     texture: Option<TextureHandle>,
@@ -101,7 +103,7 @@ impl LightSlice {
                 ui.weak(if is_coming { text::light_volume::FILLING } else { text::light_volume::NONE });
                 return;
             };
-            let is_old = self.is_old(scene, &key);
+            let is_old = self.wanted.as_ref() != Some(&key);
             let count = attenuation.dims[self.axis];
             let mut at = self.at[self.axis].unwrap_or(count / 2).min(count - 1);
             ui.spacing_mut().slider_width = EDGE - 80.0;
@@ -148,6 +150,7 @@ impl LightSlice {
                 Err(panic) => return Err(panic),
             }
         }
+        self.wanted = None;
         let Some(dataset) = &scene.dataset else { return Ok(()) };
         let is_there =
             |index: usize| scene.settings.lights.get(index).is_some_and(crate::model::Light::needs_volume);
@@ -160,7 +163,8 @@ impl LightSlice {
             size: [16, 16],
             coarse: None,
         };
-        let Some(key) = LightKey::of(&request, self.light) else {
+        self.wanted = LightKey::of(&request, self.light);
+        let Some(key) = self.wanted.clone() else {
             self.filled = None;
             return Ok(());
         };
@@ -181,14 +185,6 @@ impl LightSlice {
         };
         self.work = Some(Work::start("light-slice", ctx, task).map_err(|err| err.to_string())?);
         Ok(())
-    }
-
-    /// Whether a light volume is no longer that of the look.
-    fn is_old(&self, scene: &Scene<'_>, key: &LightKey) -> bool {
-        let Some(dataset) = &scene.dataset else { return true };
-        let volume = dataset.volume().id();
-        let request = Request { volume, settings: scene.settings.clone(), size: [16, 16], coarse: None };
-        LightKey::of(&request, self.light).as_ref() != Some(key)
     }
 
     fn picture(&mut self, ui: &mut egui::Ui, attenuation: &Attenuation, what: Drawn, is_old: bool) {

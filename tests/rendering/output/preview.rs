@@ -36,6 +36,23 @@ fn brightness(
     mean_luminance(&renderer.read_light().expect("light"))
 }
 
+/// How bright a preview is over the picture, with the key light turned by an angle about the vertical.
+fn preview_over_picture(
+    renderer: &mut Renderer,
+    loaded: &Dataset,
+    home: &Settings,
+    angle_deg: f64,
+    (size, resolution): ([u32; 2], Resolution),
+) -> f64 {
+    let mut settings = home.clone();
+    let turn = glam::DQuat::from_rotation_z(angle_deg.to_radians());
+    settings.lights[0].position = (turn * glam::DVec3::from(home.lights[0].position)).into();
+    let whole = brightness(renderer, loaded, &settings, SIZE, None);
+    // Moved by a hair, so that a coarse light volume is filled for it.
+    settings.lights[0].position[0] += 1e-6;
+    brightness(renderer, loaded, &settings, size, Some(resolution)) / whole
+}
+
 /// The first preview of a drag is exposed to be as bright as the picture before it; until the light has
 /// moved a third of a right angle the exposure must stay right.
 #[test]
@@ -80,14 +97,8 @@ fn previews_stay_as_bright_as_pictures() {
             .flat_map(|scale| [Resolution::Half, Resolution::Quarter].map(|r| (scale, r)))
         {
             let mut off = |angle_deg: f64| {
-                let mut settings = home.clone();
-                let turn = glam::DQuat::from_rotation_z(angle_deg.to_radians());
-                settings.lights[0].position = (turn * glam::DVec3::from(home.lights[0].position)).into();
-                let whole = brightness(&mut renderer, &loaded, &settings, SIZE, None);
-                // Moved by a hair, so that a coarse light volume is filled for it.
-                settings.lights[0].position[0] += 1e-6;
                 let size = SIZE.map(|n| n / scale);
-                brightness(&mut renderer, &loaded, &settings, size, Some(resolution)) / whole
+                preview_over_picture(&mut renderer, &loaded, &home, angle_deg, (size, resolution))
             };
             let at_first = off(0.0);
             let is_soft = name == "chair" && near_field == NearField::Off;
@@ -129,13 +140,8 @@ fn previews_of_soft_light_stay_as_bright_as_pictures() {
             [("disc", disc), ("sky", sky), ("bounces", bounces), ("coloured", colored), ("all", all)]
         {
             let mut off = |angle_deg: f64| {
-                let mut settings = home.clone();
-                let turn = glam::DQuat::from_rotation_z(angle_deg.to_radians());
-                settings.lights[0].position = (turn * glam::DVec3::from(home.lights[0].position)).into();
-                let whole = brightness(&mut renderer, &loaded, &settings, SIZE, None);
-                settings.lights[0].position[0] += 1e-6;
-                let size = SIZE.map(|n| n / 2);
-                brightness(&mut renderer, &loaded, &settings, size, Some(Resolution::Half)) / whole
+                let preview = (SIZE.map(|n| n / 2), Resolution::Half);
+                preview_over_picture(&mut renderer, &loaded, &home, angle_deg, preview)
             };
             let at_first = off(0.0);
             let drift = [10.0, 30.0].map(|angle_deg| (off(angle_deg) / at_first - 1.0).abs());
